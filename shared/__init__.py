@@ -1,0 +1,1 @@
+"""What every process shares: messages, topics, the codec, the bus, life cycle and geometry."""

@@ -1,0 +1,89 @@
+"""Where samples wait between Zenoh's threads and a service's loop: callbacks only store, the loop decodes."""
+
+import logging
+import threading
+import time
+from collections import Counter, deque
+from typing import Generic, TypeVar
+
+from shared.messages.base import Message
+from shared.wire import WireError, decode
+
+M = TypeVar("M", bound=Message)
+log = logging.getLogger(__name__)
+
+WARN_PERIOD_S = 1.0
+
+
+class Counters:
+    """Counts of things that went wrong, by name; readable from any thread."""
+
+    def __init__(self) -> None:
+        self._counts: Counter[str] = Counter()
+        self._warned_s: dict[str, float] = {}
+        self._lock = threading.Lock()
+
+    def count(self, name: str, detail: str) -> None:
+        """Add one to `name`; log `detail` at most once a second per name."""
+        now_s = time.monotonic()
+        with self._lock:
+            self._counts[name] += 1
+            loud = now_s - self._warned_s.get(name, -WARN_PERIOD_S) >= WARN_PERIOD_S
+            if loud:
+                self._warned_s[name] = now_s
+        if loud:
+            log.warning("%s: %s", name, detail)
+
+    def snapshot(self) -> dict[str, int]:
+        """Copy of all counts."""
+        with self._lock:
+            return dict(self._counts)
+
+
+class Inbox(Generic[M]):
+    """Keeps the newest `capacity` payloads of one subscription and decodes them when they are taken."""
+
+    def __init__(
+        self, kind: type[M], max_bytes: int, capacity: int, wake: threading.Event, counters: Counters
+    ) -> None:
+        self._kind, self._max_bytes = kind, max_bytes
+        self._payloads: deque[bytes] = deque(maxlen=capacity)
+        self._wake, self._counters = wake, counters
+        self._capacity = capacity
+
+    def push(self, payload: bytes) -> None:
+        """Store one payload; the oldest makes room. Called on Zenoh's thread."""
+        if self._capacity > 1 and len(self._payloads) == self._capacity:
+            self._counters.count("overflow", f"{self._kind.SCHEMA}: queue of {self._capacity} is full")
+        self._payloads.append(payload)
+        self._wake.set()
+
+    def take(self) -> M | None:
+        """Return the oldest waiting message, or None. Malformed ones are counted and skipped."""
+        while True:
+            try:
+                payload = self._payloads.popleft()
+            except IndexError:
+                return None
+            try:
+                return decode(self._kind, payload, self._max_bytes)
+            except WireError as error:
+                self._counters.count("malformed", str(error))
+
+    def take_all(self) -> list[M]:
+        """Return everything that waits, oldest first."""
+        messages = []
+        while (message := self.take()) is not None:
+            messages.append(message)
+        return messages
+
+    def wait(self, timeout_s: float) -> M | None:
+        """Wait for a message up to `timeout_s`; None when none came. For loops with one subscription."""
+        deadline_s = time.monotonic() + timeout_s
+        while (message := self.take()) is None:
+            left_s = deadline_s - time.monotonic()
+            if left_s <= 0.0:
+                return None
+            self._wake.wait(left_s)
+            self._wake.clear()
+        return message

@@ -1,0 +1,62 @@
+"""How a service starts and stops: JSON logs, signals, and the loop's life around the bus."""
+
+import json
+import logging
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+
+from shared.bus import Bus, open_bus
+from shared.settings import ServiceSettings
+
+log = logging.getLogger(__name__)
+
+
+class JsonFormatter(logging.Formatter):
+    """One JSON object a line, for people's tools and for the launcher."""
+
+    def __init__(self, service: str) -> None:
+        super().__init__()
+        self._service = service
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Return the record as one line of JSON."""
+        entry: dict[str, object] = {
+            "time": time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(record.created)) + f".{int(record.msecs):03d}Z",
+            "level": record.levelname,
+            "service": self._service,
+            "logger": record.name,
+            "text": record.getMessage(),
+        }
+        if record.exc_info:
+            entry["error"] = self.formatException(record.exc_info)
+        return json.dumps(entry)
+
+
+def configure_logging(service: str, level: str) -> None:
+    """Send every log record to standard error as JSON."""
+    handler = logging.StreamHandler(sys.stderr)
+    handler.setFormatter(JsonFormatter(service))
+    logging.basicConfig(level=level, handlers=[handler], force=True)
+
+
+def stop_on_signals() -> threading.Event:
+    """An event that SIGINT and SIGTERM set."""
+    stop = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stop.set())
+    return stop
+
+
+def run_service(
+    service: str, settings: ServiceSettings, loop: Callable[[Bus, threading.Event], None]
+) -> None:
+    """Run `loop(bus, stop)` with logging, signals and a bus that closes. The loop announces itself when ready."""
+    configure_logging(service, settings.log_level)
+    stop = stop_on_signals()
+    with open_bus(settings.endpoint) as bus:
+        log.info("started, endpoint %s", settings.endpoint)
+        loop(bus, stop)
+    log.info("stopped")

@@ -1,0 +1,35 @@
+"""Messages, one file per link. The bus contract; JSON Schemas are generated into deploy/contracts."""
+
+from shared.messages.base import Message
+from shared.messages.drive import Command, Heading
+from shared.messages.features import ExtractRequest, Features
+from shared.messages.maps import MapDelta, MapReply, MapRequest, MissionRecord, MissionRecordRequest
+from shared.messages.matching import MatchReply, MatchRequest
+from shared.messages.missions import Event, MissionRequest, MissionStatus
+from shared.messages.sensors import Frame, Ranges
+from shared.messages.simulation import SimulationReply, SimulationRequest, Truth
+
+ALL: tuple[type[Message], ...] = (
+    Frame,
+    Ranges,
+    Features,
+    ExtractRequest,
+    MatchRequest,
+    MatchReply,
+    Heading,
+    Command,
+    MissionRequest,
+    MissionStatus,
+    Event,
+    MapRequest,
+    MapReply,
+    MapDelta,
+    MissionRecord,
+    MissionRecordRequest,
+    Truth,
+    SimulationRequest,
+    SimulationReply,
+)
+"""Every message kind that may appear on the bus."""
+
+__all__ = ["ALL", *(message.__name__ for message in ALL)]

@@ -1,0 +1,48 @@
+"""Keypoints and descriptors of one panorama. Features -> planner, map store."""
+
+from typing import Annotated, ClassVar
+
+from pydantic import Field, model_validator
+
+from shared.messages.arrays import Array, ArraySpec
+from shared.messages.base import Message, Name
+from shared.messages.sensors import Frame
+
+MAX_KEYPOINTS = 4096
+
+
+class Features(Message):
+    """The visual words of one frame; what a map node keeps instead of the picture.
+
+    Attributes:
+        pipeline: extractor, representation and count that made them; only equals can be matched.
+        lonlat_rad: (N, 2) longitude and latitude of each keypoint, camera frame.
+        scores: (N,) detector response, larger is better.
+        descriptors: (N, D).
+        thumbnail: small JPEG of the frame for people, may be empty.
+    """
+
+    SCHEMA: ClassVar[str] = "features.v1"
+
+    robot: Name = "none"
+    lockstep: bool = False
+    pipeline: str = Field(max_length=128)
+    lonlat_rad: Annotated[Array, ArraySpec(("float32",), (None, 2), MAX_KEYPOINTS)]
+    scores: Annotated[Array, ArraySpec(("float32",), (None,), MAX_KEYPOINTS)]
+    descriptors: Annotated[Array, ArraySpec(("float32", "float16", "uint8"), (None, None), MAX_KEYPOINTS)]
+    thumbnail: bytes = Field(default=b"", max_length=200_000)
+
+    @model_validator(mode="after")
+    def _counts_agree(self) -> "Features":
+        counts = (len(self.lonlat_rad), len(self.scores), len(self.descriptors))
+        if len(set(counts)) != 1:
+            raise ValueError(f"lonlat_rad, scores and descriptors must have one length, got {counts}")
+        return self
+
+
+class ExtractRequest(Message):
+    """Ask for the features of any equirectangular picture, for example a goal."""
+
+    SCHEMA: ClassVar[str] = "extract_request.v1"
+
+    frame: Frame

@@ -1,0 +1,182 @@
+"""The map: a graph of places, written by transactions and followed by deltas. Planner, gateway <-> map store."""
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from shared.messages.base import SECTORS, Bearing, Message, Name, Part
+from shared.messages.features import Features
+
+Sectors = Annotated[tuple[bool, ...], Field(min_length=SECTORS, max_length=SECTORS)]
+
+
+class Node(Part):
+    """A place. Its features and thumbnail are kept apart, see `AddNode`.
+
+    Attributes:
+        stamp_ns: capture time of its frame.
+        frame_seq: number of its frame.
+        open: directions (node's camera frame) in which the distance sensors saw room.
+        explored: directions already known: an edge leads there or the robot left that way.
+    """
+
+    node_id: int = Field(ge=0)
+    stamp_ns: int = Field(default=0, ge=0)
+    frame_seq: int = Field(default=0, ge=0)
+    pipeline: str = ""
+    keypoints: int = Field(default=0, ge=0)
+    open: Sectors = (False,) * SECTORS
+    explored: Sectors = (False,) * SECTORS
+
+
+class Edge(Part):
+    """Two places seen from one another, with the evidence. Always a < b.
+
+    Attributes:
+        heading_ab_rad: direction from a to b in a's camera frame.
+        heading_ba_rad: direction from b to a in b's camera frame.
+        yaw_ab_rad: rotation from a's camera to b's.
+        s_min, s_max: thresholds in force when it was made.
+        traversals: times the robot drove it; failures: times it tried in vain.
+    """
+
+    a: int = Field(ge=0)
+    b: int = Field(ge=0)
+    raw_matches: int = Field(default=0, ge=0)
+    inliers: int = Field(default=0, ge=0)
+    confidence: float = Field(default=0.0, ge=0.0, le=1.0)
+    heading_ab_rad: Bearing | None = None
+    heading_ba_rad: Bearing | None = None
+    yaw_ab_rad: Bearing | None = None
+    disparity_rad: float | None = None
+    s_min: int = Field(default=0, ge=0)
+    s_max: int = Field(default=0, ge=0)
+    pipeline: str = ""
+    traversals: int = Field(default=0, ge=0)
+    failures: int = Field(default=0, ge=0)
+    suspended: bool = False
+    why: str = Field(default="", max_length=200)
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "Edge":
+        if self.a >= self.b:
+            raise ValueError(f"edge must have a < b, got a={self.a}, b={self.b}")
+        return self
+
+
+class AddNode(Part):
+    """Add a place with what it looks like."""
+
+    op: Literal["add_node"] = "add_node"
+    node: Node
+    features: Features
+
+
+class UpdateNode(Part):
+    """Replace what is known about a place's surroundings."""
+
+    op: Literal["update_node"] = "update_node"
+    node: Node
+
+
+class DeleteNode(Part):
+    """Remove a place and its edges."""
+
+    op: Literal["delete_node"] = "delete_node"
+    node_id: int = Field(ge=0)
+
+
+class PutEdge(Part):
+    """Add an edge or replace the one between the same places."""
+
+    op: Literal["put_edge"] = "put_edge"
+    edge: Edge
+
+
+class DeleteEdge(Part):
+    """Remove an edge."""
+
+    op: Literal["delete_edge"] = "delete_edge"
+    a: int = Field(ge=0)
+    b: int = Field(ge=0)
+
+
+Operation = Annotated[AddNode | UpdateNode | DeleteNode | PutEdge | DeleteEdge, Field(discriminator="op")]
+
+
+class MapRequest(Message):
+    """Read or write one map.
+
+    Actions: create (fails if it exists), read (graph only), read_features (of node_ids, all if empty),
+    transact (all operations or none; refused when base_revision is given and is not the newest).
+    """
+
+    SCHEMA: ClassVar[str] = "map_request.v1"
+
+    action: Literal["create", "read", "read_features", "transact"]
+    author: str = Field(default="", max_length=64)
+    base_revision: int | None = None
+    operations: tuple[Operation, ...] = Field(default=(), max_length=10_000)
+    node_ids: tuple[int, ...] = Field(default=(), max_length=10_000)
+
+
+class NodeFeatures(Part):
+    """The features of one node."""
+
+    node_id: int
+    features: Features
+
+
+class MapReply(Message):
+    """The map after the request; nodes and edges only for read."""
+
+    SCHEMA: ClassVar[str] = "map_reply.v1"
+
+    map: Name
+    revision: int = Field(ge=0)
+    nodes: tuple[Node, ...] = ()
+    edges: tuple[Edge, ...] = ()
+    features: tuple[NodeFeatures, ...] = ()
+
+
+class MapDelta(Message):
+    """The operations that led from revision - 1 to revision. A gap means: read the map again.
+
+    Attributes:
+        reset: the map was replaced, deleted or undone: read it again whatever revision you hold.
+    """
+
+    SCHEMA: ClassVar[str] = "map_delta.v1"
+
+    map: Name
+    revision: int = Field(ge=0)
+    reset: bool = False
+    author: str = ""
+    operations: tuple[Operation, ...] = ()
+
+
+class MissionRecord(Message):
+    """A mission as kept by the map store, so that a planner that restarts goes on with it."""
+
+    SCHEMA: ClassVar[str] = "mission_record.v1"
+
+    robot: Name
+    epoch: int = Field(default=0, ge=0)
+    mission_id: str = ""
+    action: Literal["", "explore", "goto"] = ""
+    map: Name = "default"
+    goal: Features | None = None
+    goal_node: int | None = None
+    seed: int = 0
+    max_steps: int = 20_000
+    step: int = 0
+    paused: bool = False
+
+
+class MissionRecordRequest(Message):
+    """claim: a planner starts, gets the record with epoch + 1; save: store it (refused if epoch is older)."""
+
+    SCHEMA: ClassVar[str] = "mission_record_request.v1"
+
+    action: Literal["claim", "save"]
+    record: MissionRecord

@@ -1,0 +1,82 @@
+"""Compare one frame with map nodes. Planner, gateway -> features and back."""
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from shared.messages.arrays import Array, ArraySpec
+from shared.messages.base import Bearing, Message, Name, Part
+from shared.messages.features import MAX_KEYPOINTS, Features
+
+TwoViewStatus = Literal["ok", "no_baseline", "too_few", "inconsistent"]
+
+
+class MatchRequest(Message):
+    """Compare the robot's frame `seq` (or `features`) with nodes of a map and with `targets`.
+
+    Attributes:
+        features: compare these instead of the robot's frame.
+        node_ids: nodes to compare with, each verified.
+        best_k: also the k most similar nodes of the whole map, each verified.
+        targets: pictures outside the map (a goal); reported with node_id -1, -2, ... in order.
+        with_matches: send the matched bearings, not only their count.
+    """
+
+    SCHEMA: ClassVar[str] = "match_request.v1"
+
+    map: Name
+    features: Features | None = None
+    node_ids: tuple[int, ...] = Field(default=(), max_length=4096)
+    best_k: int = Field(default=0, ge=0, le=4096)
+    targets: tuple[Features, ...] = Field(default=(), max_length=16)
+    with_matches: bool = True
+
+
+class NodeMatch(Part):
+    """How the frame relates to one node.
+
+    Attributes:
+        raw_matches: matches of descriptors alone.
+        inliers: S, matches that agree with one camera motion.
+        heading_rad: direction from the frame to the node, camera frame of the frame; None if unknown.
+        yaw_rad: rotation from the frame's camera to the node's, counter-clockwise.
+        disparity_rad: median change of bearing after yaw: falls to zero on arrival.
+        confidence: 0 to 1 trust in heading_rad.
+        matches_rad: (M, 4) lon, lat in the frame, then lon, lat in the node, all raw matches.
+        inlier_mask: (M,) 1 where the match is an inlier.
+    """
+
+    node_id: int
+    raw_matches: int = Field(ge=0)
+    inliers: int = Field(ge=0)
+    status: TwoViewStatus
+    heading_rad: Bearing | None = None
+    heading_std_rad: float | None = None
+    yaw_rad: Bearing | None = None
+    disparity_rad: float | None = None
+    confidence: float = Field(default=0.0, ge=0.0, le=1.0)
+    matches_rad: Annotated[Array, ArraySpec(("float32",), (None, 4), MAX_KEYPOINTS)] | None = None
+    inlier_mask: Annotated[Array, ArraySpec(("uint8",), (None,), MAX_KEYPOINTS)] | None = None
+
+    @model_validator(mode="after")
+    def _mask_fits(self) -> "NodeMatch":
+        if (self.matches_rad is None) != (self.inlier_mask is None):
+            raise ValueError("matches_rad and inlier_mask come together")
+        if self.matches_rad is not None and self.inlier_mask is not None:
+            if len(self.matches_rad) != len(self.inlier_mask):
+                raise ValueError("matches_rad and inlier_mask must have one length")
+        return self
+
+
+class MatchReply(Message):
+    """One entry per compared node, most similar first."""
+
+    SCHEMA: ClassVar[str] = "match_reply.v1"
+
+    map: Name
+    map_revision: int = Field(default=0, ge=0)
+    pipeline: str = ""
+    max_similarity: int = Field(default=0, ge=0)
+    results: tuple[NodeMatch, ...] = ()
+    match_ms: float = 0.0
+    verify_ms: float = 0.0

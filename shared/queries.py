@@ -1,0 +1,111 @@
+"""Questions over the bus: a service answers in its own loop, an asker gets a reply or a typed error."""
+
+import logging
+import threading
+from collections import deque
+from typing import Generic, TypeVar
+
+import zenoh
+
+from shared.inbox import Counters
+from shared.messages.base import Message
+from shared.topics import Query
+from shared.wire import WireError, decode, encode
+
+Q = TypeVar("Q", bound=Message)
+R = TypeVar("R", bound=Message)
+log = logging.getLogger(__name__)
+
+MAX_WAITING = 256
+
+
+class QueryError(RuntimeError):
+    """A question that got no reply of the expected kind."""
+
+
+class AbsentError(QueryError):
+    """Nobody answers this key."""
+
+
+class TimedOutError(QueryError):
+    """Somebody is there but did not answer in time."""
+
+
+class RefusedError(QueryError):
+    """The service answered with an error; the text is its own."""
+
+
+class Request(Generic[Q, R]):
+    """One question waiting for its answer. Answer it exactly once."""
+
+    def __init__(self, query: zenoh.Query, message: Q, name: str) -> None:
+        self._query, self.message, self.name = query, message, name
+
+    def reply(self, answer: R) -> None:
+        """Send the answer."""
+        with self._query as query:
+            query.reply(query.key_expr, encode(answer))
+
+    def refuse(self, reason: str) -> None:
+        """Send an error the asker raises as RefusedError."""
+        with self._query as query:
+            query.reply_err(reason.encode())
+
+
+class Requests(Generic[Q, R]):
+    """Questions of one kind, taken by the service's loop in the order they came."""
+
+    def __init__(self, query: Query[Q, R], wake: threading.Event, counters: Counters) -> None:
+        self._query = query
+        self._waiting: deque[zenoh.Query] = deque()
+        self._wake, self._counters = wake, counters
+
+    def push(self, query: zenoh.Query) -> None:
+        """Store a question; refuse it when too many wait. Called on Zenoh's thread."""
+        if len(self._waiting) >= MAX_WAITING:
+            self._counters.count("overflow", f"{self._query.template}: {MAX_WAITING} questions wait")
+            with query:
+                query.reply_err(b"busy: too many questions wait, ask again later")
+            return
+        self._waiting.append(query)
+        self._wake.set()
+
+    def take(self) -> Request[Q, R] | None:
+        """Return the oldest question, or None. Malformed ones are refused with the reason and counted."""
+        while self._waiting:
+            query = self._waiting.popleft()
+            payload = query.payload.to_bytes() if query.payload is not None else b""
+            try:
+                message = decode(self._query.request, payload, self._query.max_bytes)
+            except WireError as error:
+                self._counters.count("malformed", str(error))
+                with query:
+                    query.reply_err(f"malformed request: {error}".encode())
+                continue
+            return Request(query, message, _variable(self._query.template, str(query.key_expr)))
+        return None
+
+
+def ask(session: zenoh.Session, query: Query[Q, R], key: str, request: Q, timeout_s: float) -> R:
+    """Ask and wait for the first answer.
+
+    Raises:
+        AbsentError, TimedOutError, RefusedError: see their docstrings.
+        WireError: the answer is not the expected message.
+    """
+    for answer in session.get(key, payload=encode(request), timeout=timeout_s):
+        if answer.ok is not None:
+            return decode(query.reply, answer.ok.payload.to_bytes(), query.max_bytes)
+        text = answer.err.payload.to_bytes().decode(errors="replace") if answer.err is not None else ""
+        if text == "Timeout":
+            raise TimedOutError(f"{key}: no answer within {timeout_s} s")
+        raise RefusedError(text)
+    raise AbsentError(f"{key}: nobody answers; is the service up?")
+
+
+def _variable(template: str, key: str) -> str:
+    """The part of `key` that stands where `template` has its {name}."""
+    for wanted, found in zip(template.split("/"), key.split("/"), strict=True):
+        if wanted.startswith("{"):
+            return found
+    return ""

@@ -1,0 +1,45 @@
+"""Settings read from the environment: typed, frozen, and a misspelt name is an error."""
+
+import os
+from typing import Any, Self
+
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+NESTED = "__"
+
+
+class ServiceSettings(BaseSettings):
+    """Base of every service's settings. A subclass sets `env_prefix`, for example "DRIVE_".
+
+    Attributes:
+        endpoint: Zenoh router to reach, from TOPNAV_ENDPOINT.
+        robot: whose service this is, from TOPNAV_ROBOT.
+        log_level: DEBUG, INFO, WARNING or ERROR, from TOPNAV_LOG_LEVEL.
+    """
+
+    model_config = SettingsConfigDict(frozen=True, extra="forbid", env_nested_delimiter=NESTED)
+
+    endpoint: str = "tcp/127.0.0.1:7447"
+    robot: str = "r1"
+    log_level: str = "INFO"
+
+    @classmethod
+    def from_environment(cls) -> Self:
+        """Read the environment.
+
+        Raises:
+            ValueError: a variable with this service's prefix that no setting has, or a bad value.
+        """
+        prefix = str(cls.model_config.get("env_prefix") or "")
+        known = set(cls.model_fields)
+        for variable in os.environ:
+            if prefix and variable.startswith(prefix):
+                field = variable[len(prefix) :].lower().split(NESTED)[0]
+                if field not in known:
+                    raise ValueError(f"{variable}: no such setting; {prefix}* may be one of {sorted(known)}")
+        shared: dict[str, Any] = {
+            field: os.environ[f"TOPNAV_{field.upper()}"]
+            for field in ServiceSettings.model_fields
+            if f"TOPNAV_{field.upper()}" in os.environ and f"{prefix}{field.upper()}" not in os.environ
+        }
+        return cls(**shared)
