@@ -1,0 +1,1 @@
+"""Studies of the heading methods, the matching and the whole loop."""

@@ -1,0 +1,43 @@
+"""How far a two-view answer can be trusted."""
+
+import numpy as np
+
+
+def log_nfa(inliers: int, count: int, chance: float, sample: int, tests: int) -> float:
+    """Natural logarithm of the expected number of equally good models among wrong matches only.
+
+    A-contrario test (Moisan and Stival 2004) with the Chernoff bound of the binomial tail:
+    ln NFA <= ln tests - n KL(k/n || chance) for k = inliers - sample of n = count - sample.
+
+    Args:
+        inliers: matches explained.
+        count: matches given.
+        chance: probability that a wrong match fits the model, (0, 1).
+        sample: matches that fix a hypothesis, which explain themselves.
+        tests: hypotheses tried.
+    """
+    n, k = count - sample, inliers - sample
+    if n <= 0 or k <= n * chance:
+        return float(np.log(tests))
+    share = k / n
+    divergence = share * np.log(share / chance)
+    if share < 1.0:
+        divergence += (1.0 - share) * np.log((1.0 - share) / (1.0 - chance))
+    return float(np.log(tests) - n * divergence)
+
+
+def confidence(
+    inliers: int, count: int, chance: float, log_alarms: float, heading_std_rad: float, sign_margin: float
+) -> float:
+    """Trust in a heading, [0, 1]: the product of four shares.
+
+    evidence  1 - exp(ln NFA / 5): near 0 where chance could explain the inliers, 0.86 at ln NFA = -10;
+    purity    share of the inliers left after those that chance adds, (count - inliers) chance / (1 - chance);
+    precision 1 / (1 + (heading_std / 10 deg)^2);
+    sign      the margin by which the parallax tells forwards from backwards.
+    """
+    evidence = 1.0 - np.exp(min(log_alarms, 0.0) / 5.0)
+    stray = (count - inliers) * chance / (1.0 - chance)
+    purity = np.clip(1.0 - stray / max(inliers, 1), 0.0, 1.0)
+    precision = 1.0 / (1.0 + (heading_std_rad / np.deg2rad(10.0)) ** 2)
+    return float(np.clip(evidence * purity * precision * sign_margin, 0.0, 1.0))

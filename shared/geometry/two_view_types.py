@@ -1,0 +1,100 @@
+"""What every two-view estimator takes and returns."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from shared.geometry.angles import FloatArray
+
+BoolArray = npt.NDArray[np.bool_]
+Status = Literal["ok", "no_baseline", "too_few", "inconsistent"]
+Model = Literal["planar", "essential", "rotation", "none"]
+
+
+@dataclass(frozen=True)
+class TwoViewSettings:
+    """Limits of the two-view estimation.
+
+    Attributes:
+        pairs: hypotheses drawn, each from two matches (all pairs where there are fewer).
+        threshold_rad: largest angular (Sampson) distance of an inlier from the epipolar plane, radians.
+        min_matches: fewer matches than this are not tried.
+        min_inliers: fewer inliers than this are never a usable answer.
+        no_baseline_rad: a median disparity below this means that the camera has only turned, radians.
+        no_baseline_noise: the same bound in units of the measured noise, whichever is larger; pure noise gives 1.7.
+        max_log_nfa: largest natural logarithm of the number of false alarms: above it, chance explains the inliers.
+        max_heading_std_rad: above this spread a direction is not worth following, radians.
+        fallback: try the essential matrix where the planar model explains too little.
+        fallback_min_matches: fewer matches than this are not worth the price of the fallback.
+        fallback_samples: five-point samples drawn by the fallback.
+        fallback_gain: inliers the fallback must have per planar inlier to be preferred.
+    """
+
+    pairs: int = 320
+    threshold_rad: float = float(np.deg2rad(0.7))
+    min_matches: int = 6
+    min_inliers: int = 8
+    no_baseline_rad: float = float(np.deg2rad(0.3))
+    no_baseline_noise: float = 2.5
+    max_log_nfa: float = -2.0
+    max_heading_std_rad: float = float(np.deg2rad(20.0))
+    fallback: bool = True
+    fallback_min_matches: int = 20
+    fallback_samples: int = 200
+    fallback_gain: float = 1.3
+
+
+@dataclass(frozen=True, eq=False)
+class TwoViewResult:
+    """Relative pose of two upright spherical views.
+
+    Attributes:
+        status: 'ok'; 'no_baseline', the camera has only turned; 'too_few' matches to try;
+            'inconsistent', no motion explains enough of them.
+        heading_rad: direction from the current to the target position, current frame, [-pi, pi); None unless 'ok'.
+        yaw_rad: rotation of the target frame seen from the current one, [-pi, pi); None for 'too_few' and
+            'inconsistent'.
+        inlier_mask: (N,) matches the model explains; all False for 'too_few'.
+        inliers: their number.
+        confidence: [0, 1], how far `heading_rad` can be trusted; 0 unless 'ok'.
+        disparity_rad: median angle over the inliers between the current bearing and the yaw-compensated target
+            bearing, the arrival measure; None where `yaw_rad` is None.
+        heading_std_rad: standard deviation of the heading from the normal matrix; None unless 'ok'.
+        yaw_std_rad: the same for the yaw.
+        sign_margin: [0, 1], how clearly the parallax tells forwards from backwards.
+        model: which model gave the answer.
+    """
+
+    status: Status
+    heading_rad: float | None
+    yaw_rad: float | None
+    inlier_mask: BoolArray
+    inliers: int
+    confidence: float
+    disparity_rad: float | None
+    heading_std_rad: float | None
+    yaw_std_rad: float | None
+    sign_margin: float
+    model: Model
+
+    @property
+    def usable(self) -> bool:
+        """Whether there is a heading to follow."""
+        return self.status == "ok"
+
+
+def refused(status: Status, mask: BoolArray) -> TwoViewResult:
+    """Result without a pose; `mask` still tells which matches agreed best."""
+    return TwoViewResult(status, None, None, mask, int(mask.sum()), 0.0, None, None, None, 0.0, "none")
+
+
+def checked_matches(current: npt.ArrayLike, target: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Return both inputs as float64 arrays of equal shape (N, 2), or say what is wrong with them."""
+    c, t = np.asarray(current, dtype=np.float64), np.asarray(target, dtype=np.float64)
+    if c.ndim != 2 or c.shape[1] != 2 or c.shape != t.shape:
+        raise ValueError(f"current and target must both have shape (N, 2), got {c.shape} and {t.shape}")
+    if not (np.isfinite(c).all() and np.isfinite(t).all()):
+        raise ValueError("current and target must be finite longitudes and latitudes, got NaN or infinity")
+    return c, t
