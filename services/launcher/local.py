@@ -1,0 +1,98 @@
+"""From a Compose service to a local process: host names, volumes, Python and health check replaced."""
+
+import re
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from services.launcher.compose_file import Service
+
+LIVELINESS_TEST = ("CMD", "python", "-m", "shared.health")
+
+
+@dataclass(frozen=True)
+class ProcessSpec:
+    """All that is needed to run one service on this machine.
+
+    Attributes:
+        name: service name of the Compose file.
+        command: words of the command line.
+        environment: variables on top of the launcher's own.
+        alive_as: liveliness token that says the service is ready, or None.
+        check: health command to run where there is no token, or None.
+        check_interval_s: pause between two health commands.
+        needs: service name -> whether it must be healthy, not just started.
+        restart: start it again when it ends.
+        stop_grace_s: time between SIGTERM and SIGKILL.
+    """
+
+    name: str
+    command: tuple[str, ...]
+    environment: Mapping[str, str]
+    alive_as: str | None
+    check: tuple[str, ...] | None
+    check_interval_s: float
+    needs: Mapping[str, bool]
+    restart: bool
+    stop_grace_s: float
+
+
+@dataclass(frozen=True)
+class LocalMachine:
+    """Where local processes find Python and keep what containers keep in volumes."""
+
+    python: str
+    data_dir: Path
+
+
+def local_process(name: str, service: Service, hosts: Collection[str], machine: LocalMachine) -> ProcessSpec:
+    """Translate one service.
+
+    Args:
+        name: its name.
+        service: its entry in the Compose file.
+        hosts: all service names; as host names they mean this machine.
+        machine: Python and data folder of this machine.
+    """
+    mounts = _mounts(service.volumes, machine.data_dir)
+    test = service.healthcheck.test if service.healthcheck else ()
+    by_token = test[: len(LIVELINESS_TEST)] == LIVELINESS_TEST
+    return ProcessSpec(
+        name=name,
+        command=_with_python(service.command, machine.python),
+        environment={key: _local_value(value, hosts, mounts) for key, value in service.environment.items()},
+        alive_as=test[len(LIVELINESS_TEST)] if by_token else None,
+        check=None if by_token or not test or test[0] == "NONE" else _check_command(test, machine.python),
+        check_interval_s=service.healthcheck.interval if service.healthcheck else 0.0,
+        needs={other: need.condition == "service_healthy" for other, need in service.depends_on.items()},
+        restart=service.restart != "no",
+        stop_grace_s=service.stop_grace_period,
+    )
+
+
+def _with_python(command: tuple[str, ...], python: str) -> tuple[str, ...]:
+    return (python, *command[1:]) if command[0] == "python" else command
+
+
+def _check_command(test: tuple[str, ...], python: str) -> tuple[str, ...]:
+    if test[0] == "CMD-SHELL":
+        return ("/bin/sh", "-c", *test[1:])
+    return _with_python(test[1:], python)
+
+
+def _mounts(volumes: tuple[str, ...], data_dir: Path) -> dict[str, Path]:
+    """Map the container path of each named volume to a folder under `data_dir`."""
+    mounts = {}
+    for volume in volumes:
+        source, target = volume.split(":")[:2]
+        mounts[target] = data_dir / source
+    return mounts
+
+
+def _local_value(value: str, hosts: Collection[str], mounts: Mapping[str, Path]) -> str:
+    """Point service host names ("tcp/router:7447") at loopback and volume paths at the data folder."""
+    names = "|".join(re.escape(host) for host in hosts)
+    value = re.sub(rf"(?<=[/@])(?:{names})(?=:\d)", "127.0.0.1", value)
+    for target, folder in mounts.items():
+        value = value.replace(target, str(folder))
+    return value
