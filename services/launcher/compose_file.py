@@ -25,11 +25,13 @@ def seconds_from_duration(value: object) -> object:
 
 
 def _text_mapping(value: object) -> object:
-    """Accept Compose's two forms, a mapping or a list of NAME=value, with numbers and booleans as YAML reads them."""
+    """Accept both forms, a mapping or a list of NAME=value; YAML's numbers and booleans become text."""
     if isinstance(value, list):
         value = dict(str(item).split("=", 1) for item in value)
     if isinstance(value, dict):
-        return {key: str(item).lower() if isinstance(item, bool) else str(item) for key, item in value.items()}
+        return {
+            key: str(item).lower() if isinstance(item, bool) else str(item) for key, item in value.items()
+        }
     return value
 
 

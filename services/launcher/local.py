@@ -18,6 +18,7 @@ class ProcessSpec:
         name: service name of the Compose file.
         command: words of the command line.
         environment: variables on top of the launcher's own.
+        data_folders: what is a volume in a container.
         alive_as: liveliness token that says the service is ready, or None.
         check: health command to run where there is no token, or None.
         check_interval_s: pause between two health commands.
@@ -29,6 +30,7 @@ class ProcessSpec:
     name: str
     command: tuple[str, ...]
     environment: Mapping[str, str]
+    data_folders: tuple[Path, ...]
     alive_as: str | None
     check: tuple[str, ...] | None
     check_interval_s: float
@@ -61,6 +63,7 @@ def local_process(name: str, service: Service, hosts: Collection[str], machine: 
         name=name,
         command=_with_python(service.command, machine.python),
         environment={key: _local_value(value, hosts, mounts) for key, value in service.environment.items()},
+        data_folders=tuple(mounts.values()),
         alive_as=test[len(LIVELINESS_TEST)] if by_token else None,
         check=None if by_token or not test or test[0] == "NONE" else _check_command(test, machine.python),
         check_interval_s=service.healthcheck.interval if service.healthcheck else 0.0,

@@ -9,7 +9,7 @@ from services.launcher.compose_file import Service
 def active_services(
     services: Mapping[str, Service], profiles: Collection[str] = (), only: Collection[str] | None = None
 ) -> dict[str, Service]:
-    """Keep the services without a profile or with a chosen one; `only` keeps these and all that they depend on.
+    """Keep the services without a profile or with a chosen one; `only` keeps these and what they need.
 
     Raises:
         ValueError: `only` names a service that the file lacks.

@@ -1,0 +1,121 @@
+"""The `topnav` command."""
+
+import os
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import click
+import typer
+from rich.console import Console
+
+from services.launcher.commands import COMMANDS, CommandMissingError, register
+
+app = typer.Typer(
+    name="topnav",
+    help="Visual navigation with one 360-degree camera: explore, remember, drive to a picture.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+register(app, COMMANDS)
+
+DataDir = Annotated[Path, typer.Option(envvar="TOPNAV_DATA_DIR", help="Maps, logs and state live here.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
+DEFAULT_DATA_DIR = Path("data")
+
+
+@app.command()
+def up(
+    world: Annotated[str | None, typer.Option(help="A file in simulator/worlds, without .yaml.")] = None,
+    lockstep: Annotated[
+        bool | None, typer.Option(help="As fast as the machine allows; same seed, same path.")
+    ] = None,
+    seed: Annotated[int | None, typer.Option(help="Of every random draw.")] = None,
+    profile: Annotated[
+        str | None, typer.Option(help="Rules of planner and drive: default or thesis.")
+    ] = None,
+    detach: Annotated[
+        bool, typer.Option("--detach/--foreground", help="Return once all is healthy.")
+    ] = False,
+    data_dir: DataDir = DEFAULT_DATA_DIR,
+    timeout_s: Annotated[float, typer.Option(help="How long the start may take.")] = 120.0,
+) -> None:
+    """Start the processes of docker-compose.yml on this machine."""
+    from services.launcher.stack_settings import StackSettings
+    from services.launcher.up import run_detached, run_foreground, variables_with_dotenv
+
+    variables = variables_with_dotenv()
+    choices: dict[str, Any] = {"world": world, "lockstep": lockstep, "seed": seed, "profile": profile}
+    settings = StackSettings(data_dir.resolve(), **choices)
+    if detach:
+        run_detached(settings, timeout_s)
+    else:
+        run_foreground(settings, variables, timeout_s)
+
+
+@app.command()
+def down(
+    data_dir: DataDir = DEFAULT_DATA_DIR,
+    timeout_s: Annotated[float, typer.Option(help="Kill the launcher after this.")] = 30.0,
+) -> None:
+    """Stop the stack of a data folder."""
+    from services.launcher.down import stop_stack
+
+    typer.echo(stop_stack(data_dir.resolve(), timeout_s))
+
+
+@app.command()
+def status(data_dir: DataDir = DEFAULT_DATA_DIR, as_json: AsJson = False) -> None:
+    """Show the stack of a data folder; exit 1 unless every service is healthy."""
+    from services.launcher.display import status_table
+    from services.launcher.state import StateFolder
+
+    state = StateFolder(data_dir.resolve()).read()
+    if as_json:
+        typer.echo(state.model_dump_json(indent=2) if state else "null")
+    elif state is None:
+        typer.echo(f"no stack runs in {data_dir}; start one with 'topnav up'")
+    else:
+        console = Console()
+        console.print(status_table(state.services))
+        console.print(
+            f"console {state.gateway_url}  bus {state.endpoint}  logs {state.logs}", highlight=False
+        )
+    raise typer.Exit(0 if state and state.healthy else 1)
+
+
+@app.command()
+def doctor(data_dir: DataDir = DEFAULT_DATA_DIR, as_json: AsJson = False) -> None:
+    """Say what this machine lacks for a run and how to fix it; exit 1 when something is missing."""
+    import json
+    from dataclasses import asdict
+
+    from services.launcher.display import check_table
+    from services.launcher.doctor import examine
+    from services.launcher.stack_settings import Ports
+
+    checks = examine(data_dir.resolve(), Ports.from_variables(os.environ))
+    if as_json:
+        typer.echo(json.dumps([asdict(check) for check in checks], indent=2))
+    else:
+        Console().print(check_table(checks), highlight=False)
+    raise typer.Exit(0 if all(check.ok for check in checks) else 1)
+
+
+def main() -> None:
+    """Run a command; what users can mend is one line on standard error and exit 1."""
+    from services.launcher.state import AlreadyRunningError
+    from services.launcher.wait import LaunchError
+
+    try:
+        code = app(standalone_mode=False)
+    except click.ClickException as error:
+        error.show()
+        sys.exit(error.exit_code)
+    except (click.Abort, KeyboardInterrupt):
+        sys.exit(130)
+    except (LaunchError, AlreadyRunningError, CommandMissingError, ValueError, OSError) as error:
+        sys.stderr.write(f"topnav: {error}\n")
+        sys.exit(1)
+    sys.exit(code if isinstance(code, int) else 0)

@@ -1,0 +1,71 @@
+"""Commands that live elsewhere, imported when called so that `topnav --help` stays fast."""
+
+from dataclasses import dataclass
+from importlib import import_module
+
+import click
+import typer
+from typer.main import get_command
+
+
+@dataclass(frozen=True)
+class LazyCommand:
+    """A command implemented by the Typer app `module:app`."""
+
+    module: str
+    help: str
+
+
+COMMANDS: dict[str, LazyCommand] = {
+    "demo": LazyCommand(
+        "experiments.demo", "Explore the apartment, then find a hidden robot from its picture."
+    ),
+    "explore": LazyCommand("experiments.explore", "Explore a world and build a map of pictures."),
+    "goto": LazyCommand("experiments.goto", "Drive to where a picture was taken."),
+    "hide-and-seek": LazyCommand("experiments.hide_and_seek", "The thesis's evaluation: find hidden robots."),
+    "study": LazyCommand("experiments.studies", "Experiments on headings, matching, disturbances and scale."),
+    "calibrate": LazyCommand("experiments.calibrate", "Measure the thresholds of a pipeline."),
+    "bench": LazyCommand("experiments.bench", "Time the stages of the control loop."),
+    "map": LazyCommand("experiments.maps", "List, export, import, rename and delete maps."),
+}
+
+
+class CommandMissingError(RuntimeError):
+    """A command whose module is not installed."""
+
+
+def register(app: typer.Typer, commands: dict[str, LazyCommand]) -> None:
+    """Add all commands to `app`; their own help and options are read only when one is called."""
+    for name, command in commands.items():
+        app.command(
+            name,
+            help=command.help,
+            add_help_option=False,
+            context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
+        )(_forward(name, command))
+
+
+def load(name: str, command: LazyCommand) -> click.Command:
+    """Import the module of a command.
+
+    Raises:
+        CommandMissingError: the module is not there, or lacks `app`.
+    """
+    try:
+        app = import_module(command.module).app
+    except ModuleNotFoundError as error:
+        raise CommandMissingError(
+            f"topnav {name} needs the Python module {error.name!r}: run 'make setup'"
+        ) from None
+    except AttributeError:
+        raise CommandMissingError(
+            f"topnav {name}: {command.module} must define a Typer named `app`"
+        ) from None
+    return get_command(app)
+
+
+def _forward(name: str, command: LazyCommand):  # type: ignore[no-untyped-def]  # Typer reads the inner signature
+    def run(context: typer.Context) -> None:
+        load(name, command).main(args=list(context.args), prog_name=f"topnav {name}", standalone_mode=False)
+
+    return run

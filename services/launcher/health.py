@@ -1,0 +1,102 @@
+"""Whether a service is ready: by its liveliness token, or by the health command of the Compose file."""
+
+import subprocess
+import threading
+import time
+from collections import defaultdict
+from collections.abc import Mapping
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Protocol
+
+from shared.bus import open_bus
+
+
+class Health(Protocol):
+    """Readiness of the processes of one service."""
+
+    def instances(self) -> frozenset[str]:
+        """Name what is ready now; a restarted process brings a new name."""
+
+
+class Liveliness:
+    """Watches over one Zenoh session the liveliness tokens that `python -m shared.health` asks for."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._alive: defaultdict[str, set[str]] = defaultdict(set)
+        self._stack = ExitStack()
+
+    def open(self, endpoint: str) -> None:
+        """Join the bus; returns at once, the router may come later."""
+        bus = self._stack.enter_context(open_bus(endpoint))
+        bus.watch_alive(self._changed)
+
+    def close(self) -> None:
+        """Leave the bus."""
+        self._stack.close()
+
+    def of(self, service: str) -> "TokenHealth":
+        """Return the readiness of one service."""
+        return TokenHealth(self, service)
+
+    def alive(self, service: str) -> frozenset[str]:
+        """Return the instances of `service` that are alive."""
+        with self._lock:
+            return frozenset(self._alive[service])
+
+    def _changed(self, service: str, instance: str, alive: bool) -> None:
+        with self._lock:
+            (self._alive[service].add if alive else self._alive[service].discard)(instance)
+
+
+class TokenHealth:
+    """Ready while a process of that service has its token on the bus."""
+
+    def __init__(self, liveliness: Liveliness, service: str) -> None:
+        self._liveliness, self._service = liveliness, service
+
+    def instances(self) -> frozenset[str]:
+        """Return the living instances."""
+        return self._liveliness.alive(self._service)
+
+
+class CommandHealth:
+    """Ready while the last run of a command ended with 0. Never blocks: it runs in the background."""
+
+    def __init__(
+        self, command: tuple[str, ...], environment: Mapping[str, str], cwd: Path, interval_s: float
+    ) -> None:
+        self._command, self._environment, self._cwd = command, dict(environment), cwd
+        self._interval_s = interval_s
+        self._run: subprocess.Popen[bytes] | None = None
+        self._next_s = 0.0
+        self._ready = False
+        self._count = 0
+
+    def instances(self) -> frozenset[str]:
+        """Collect the last result and start the next run when it is due."""
+        if self._run is not None and self._run.poll() is not None:
+            self._ready = self._run.returncode == 0
+            self._count += 1
+            self._run = None
+        if self._run is None and time.monotonic() >= self._next_s:
+            self._next_s = time.monotonic() + self._interval_s
+            self._run = subprocess.Popen(
+                self._command,
+                env=self._environment,
+                cwd=self._cwd,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+            )
+        # The count makes each success a new name: one that came after a restart is told from one before it.
+        return frozenset({str(self._count)}) if self._ready else frozenset()
+
+
+class AlwaysReady:
+    """For services without a health check: ready once started."""
+
+    def instances(self) -> frozenset[str]:
+        """Return one instance whose name never clashes with that of an earlier process."""
+        return frozenset({str(time.monotonic_ns())})

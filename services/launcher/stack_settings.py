@@ -1,0 +1,85 @@
+"""What a caller chooses about a stack, and the variables of the Compose file that this becomes."""
+
+import os
+import socket
+from collections.abc import Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+
+HOST = "127.0.0.1"
+
+
+@dataclass(frozen=True)
+class Ports:
+    """TCP ports on loopback."""
+
+    router: int = 7447
+    gateway: int = 8000
+    map_store: int = 8001
+
+    @classmethod
+    def free(cls) -> "Ports":
+        """Pick three ports that are free now, for stacks side by side."""
+        with ExitStack() as stack:
+            sockets = [stack.enter_context(socket.socket()) for _ in range(3)]
+            for one in sockets:
+                one.bind((HOST, 0))
+            router, gateway, map_store = (one.getsockname()[1] for one in sockets)
+        return cls(router, gateway, map_store)
+
+    @classmethod
+    def from_variables(cls, variables: Mapping[str, str]) -> "Ports":
+        """Read TOPNAV_ROUTER_PORT, TOPNAV_GATEWAY_PORT and TOPNAV_MAP_STORE_PORT, with the usual defaults."""
+        default = cls()
+        return cls(
+            int(variables.get("TOPNAV_ROUTER_PORT") or default.router),
+            int(variables.get("TOPNAV_GATEWAY_PORT") or default.gateway),
+            int(variables.get("TOPNAV_MAP_STORE_PORT") or default.map_store),
+        )
+
+
+@dataclass(frozen=True)
+class StackSettings:
+    """One stack.
+
+    Attributes:
+        data_dir: maps, models, logs and state live here.
+        world: world of the simulator; None leaves the Compose file's default, as for the three below.
+        lockstep: run as fast as the machine allows, same seed, same path.
+        seed: of every random draw.
+        profile: rules of planner and drive, "default" or "thesis".
+        ports: where the services listen.
+        environment: set in every service last of all, for example {"FEATURES_KEYPOINTS": "300"}.
+    """
+
+    data_dir: Path
+    world: str | None = None
+    lockstep: bool | None = None
+    seed: int | None = None
+    profile: str | None = None
+    ports: Ports = field(default_factory=Ports)
+    environment: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def endpoint(self) -> str:
+        """Zenoh endpoint of the router."""
+        return f"tcp/{HOST}:{self.ports.router}"
+
+    def variables(self, base: Mapping[str, str] | None = None) -> dict[str, str]:
+        """Return what the Compose file interpolates: the choices on top of `base` (the environment)."""
+        base = dict(os.environ if base is None else base)
+        chosen = {
+            "TOPNAV_WORLD": self.world,
+            "TOPNAV_LOCKSTEP": None if self.lockstep is None else str(self.lockstep).lower(),
+            "TOPNAV_SEED": None if self.seed is None else str(self.seed),
+            "TOPNAV_PROFILE": self.profile,
+            "TOPNAV_BIND": HOST,
+            "TOPNAV_TOKEN": base.get("TOPNAV_TOKEN", ""),  # nobody else reaches loopback: no secret needed
+            "TOPNAV_ROUTER_PORT": str(self.ports.router),
+            "TOPNAV_GATEWAY_PORT": str(self.ports.gateway),
+            "TOPNAV_MAP_STORE_PORT": str(self.ports.map_store),
+            # Weights are the same for every stack: keep them where torch keeps them, not per data folder.
+            "TORCH_HOME": base.get("TORCH_HOME") or str(Path("~/.cache/torch").expanduser()),
+        }
+        return base | {name: value for name, value in chosen.items() if value is not None}
