@@ -1,0 +1,68 @@
+"""REST over the same store: `create_app(store)`. The schema is at /openapi.json, a page at /docs."""
+
+from collections.abc import Callable
+
+from fastapi import APIRouter, Depends, FastAPI
+
+from services.map_store import archive_routes, graph_routes, map_routes, problems
+from services.map_store.errors import UnavailableError
+from services.map_store.guard import writer_guard
+from services.map_store.schemas import Health, Problem
+from services.map_store.store import MapStore
+
+VERSION = "1"
+MAX_BODY_BYTES = 100_000
+"""Of every request but an import."""
+
+DESCRIPTION = "Maps of places: their nodes, edges, pictures and history. Errors are RFC 9457 problems."
+ERRORS = {
+    status: {"model": Problem, "description": "problem+json"} for status in (401, 404, 409, 413, 422, 507)
+}
+
+
+def create_app(
+    store: MapStore,
+    token: str = "",
+    max_archive_bytes: int = 4_000_000_000,
+    ready: Callable[[], bool] = lambda: True,
+) -> FastAPI:
+    """Build the application.
+
+    Args:
+        store: the maps.
+        token: bearer token that writes need; empty = none.
+        max_archive_bytes: largest archive to import.
+        ready: whether the bus side answers too.
+    """
+    app = FastAPI(
+        title="topnav map store", version=VERSION, description=DESCRIPTION, max_body_size=MAX_BODY_BYTES
+    )
+    problems.install(app)
+    write = [Depends(writer_guard(token))]
+    for router in (
+        map_routes.build(store, write),
+        graph_routes.build(store, write),
+        archive_routes.build(store, write, max_archive_bytes),
+    ):
+        app.include_router(router, responses=ERRORS)  # type: ignore[arg-type]
+    app.include_router(_health(store, ready))
+    return app
+
+
+def _health(store: MapStore, ready: Callable[[], bool]) -> APIRouter:
+    router = APIRouter(tags=["health"])
+
+    @router.get("/healthz")
+    def healthz() -> Health:
+        """The process lives."""
+        return Health(status="alive")
+
+    @router.get("/readyz", responses={503: {"model": Problem}})
+    def readyz() -> Health:
+        """The database answers and questions on the bus are taken."""
+        if not ready():
+            raise UnavailableError("the bus side has not started")
+        store.summaries()
+        return Health(status="ready")
+
+    return router

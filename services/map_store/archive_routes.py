@@ -1,0 +1,73 @@
+"""REST: a map to and from one file."""
+
+import tempfile
+from collections.abc import Iterator, Sequence
+from typing import IO, Annotated
+
+from fastapi import APIRouter, Query, Request
+from fastapi.concurrency import run_in_threadpool
+from fastapi.params import Depends
+from fastapi.responses import StreamingResponse
+
+from services.map_store.archive import Archive, write_archive
+from services.map_store.errors import CorruptError, InvalidError
+from services.map_store.map_routes import AUTHOR
+from services.map_store.names import MapName
+from services.map_store.schemas import MapView, map_view
+from services.map_store.store import MapStore
+
+ZIP = {200: {"content": {"application/zip": {}}}}
+IN_MEMORY_BYTES = 8_000_000
+CHUNK_BYTES = 1_000_000
+NewName = Annotated[str | None, Query(alias="name", pattern=r"^[a-z0-9_-]{1,64}$")]
+
+
+def build(store: MapStore, write: Sequence[Depends], max_bytes: int) -> APIRouter:
+    """Routes /maps/{map}/export and /maps/import."""
+    router = APIRouter(prefix="/maps", tags=["archives"])
+
+    @router.get("/{map}/export", response_class=StreamingResponse, responses=ZIP)  # type: ignore[arg-type]
+    def export_map(name: MapName) -> StreamingResponse:
+        """The newest revision as a zip; the same map always gives the same bytes."""
+        revision, graph = store.graph(name)
+        file = tempfile.SpooledTemporaryFile(IN_MEMORY_BYTES)  # noqa: SIM115  closed by _chunks
+        try:
+            write_archive(
+                file, name, revision, graph, lambda place, kind: store.blob(name, place.node.node_id, kind)
+            )
+        except CorruptError as error:
+            file.close()
+            raise CorruptError(f"{error}, then export again") from None
+        headers = {"Content-Disposition": f'attachment; filename="{name}.zip"'}
+        return StreamingResponse(_chunks(file), media_type="application/zip", headers=headers)
+
+    @router.post(
+        "/import",
+        status_code=201,
+        dependencies=write,
+        max_body_size=max_bytes,
+        openapi_extra={"requestBody": {"content": {"application/zip": {}}, "required": True}},
+    )
+    async def import_map(request: Request, name: NewName = None) -> MapView:
+        """Make a map from an exported file, under its own name or `name`. It must not exist."""
+        with tempfile.SpooledTemporaryFile(IN_MEMORY_BYTES) as file:
+            async for chunk in request.stream():
+                await run_in_threadpool(file.write, chunk)
+            return await run_in_threadpool(_import, store, file, max_bytes, name)
+
+    return router
+
+
+def _import(store: MapStore, file: IO[bytes], max_bytes: int, name: str | None) -> MapView:
+    file.seek(0)
+    archive = Archive(file, max_bytes)
+    name = name or archive.index.name
+    store.restore(name, archive.steps, archive.blob, AUTHOR)
+    return map_view(store.summary(name))
+
+
+def _chunks(file: IO[bytes]) -> Iterator[bytes]:
+    with file:
+        file.seek(0)
+        while chunk := file.read(CHUNK_BYTES):
+            yield chunk

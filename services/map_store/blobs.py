@@ -1,0 +1,93 @@
+"""Content-addressed bytes: kept once, named by their checksum, checked on every read."""
+
+import hashlib
+from collections.abc import Iterable, Mapping
+
+from sqlalchemy import Column, Connection, Select, delete, insert, select, update
+
+from services.map_store import tables
+from services.map_store.errors import CorruptError
+from shared.messages.features import Features
+from shared.topics import FEATURES
+from shared.wire import WireError, decode, encode
+
+CHUNK = 500
+"""Values in one SQL list; SQLite's oldest limit is 999."""
+
+
+def checksum(data: bytes) -> str:
+    """SHA-256 as 64 hexadecimal digits."""
+    return hashlib.sha256(data).hexdigest()
+
+
+def pack_features(features: Features) -> bytes:
+    """The features as stored: the wire's bytes without the thumbnail, which is a blob of its own."""
+    return encode(features.model_copy(update={"thumbnail": b""}))
+
+
+def unpack_features(data: bytes) -> Features:
+    """Features from stored bytes; CorruptError when they are not."""
+    try:
+        return decode(Features, data, FEATURES.max_bytes)
+    except WireError as error:
+        raise CorruptError(f"stored features: {error}") from error
+
+
+def put(connection: Connection, map_id: int, contents: Mapping[str, bytes]) -> None:
+    """Keep `contents` (checksum -> bytes) for a map; good bytes are not written again, damaged ones are."""
+    names = list(contents)
+    known = _existing(connection, select(tables.blobs.c.sha256), tables.blobs.c.sha256, names)
+    for name in known:
+        _heal(connection, name, contents[name])
+    rows = [{"sha256": n, "size": len(contents[n]), "data": contents[n]} for n in names if n not in known]
+    if rows:
+        connection.execute(insert(tables.blobs), rows)
+    owned = select(tables.map_blobs.c.sha256).where(tables.map_blobs.c.map_id == map_id)
+    linked = _existing(connection, owned, tables.map_blobs.c.sha256, names)
+    links = [{"map_id": map_id, "sha256": name} for name in names if name not in linked]
+    if links:
+        connection.execute(insert(tables.map_blobs), links)
+
+
+def _heal(connection: Connection, name: str, data: bytes) -> None:
+    try:
+        get(connection, name)
+    except CorruptError:
+        blobs, nodes = tables.blobs, tables.nodes
+        connection.execute(update(blobs).where(blobs.c.sha256 == name).values(data=data, size=len(data)))
+        connection.execute(update(nodes).where(nodes.c.features == name).values(quarantined=False))
+
+
+def get(connection: Connection, name: str) -> bytes:
+    """Read one blob; CorruptError when it is gone or its checksum does not match."""
+    data = connection.execute(select(tables.blobs.c.data).where(tables.blobs.c.sha256 == name)).scalar()
+    if data is None:
+        raise CorruptError(f"blob {name[:12]} is missing")
+    if checksum(data) != name:
+        raise CorruptError(f"blob {name[:12]} does not match its checksum")
+    return bytes(data)
+
+
+def sizes(connection: Connection, names: Iterable[str]) -> int:
+    """Bytes of all named blobs together."""
+    wanted, total = list(names), 0
+    for start in range(0, len(wanted), CHUNK):
+        chunk = tables.blobs.c.sha256.in_(wanted[start : start + CHUNK])
+        total += sum(connection.execute(select(tables.blobs.c.size).where(chunk)).scalars())
+    return total
+
+
+def drop(connection: Connection, map_id: int) -> None:
+    """Forget a map's blobs, and the bytes that no other map uses."""
+    connection.execute(delete(tables.map_blobs).where(tables.map_blobs.c.map_id == map_id))
+    used = select(tables.map_blobs.c.sha256).where(tables.map_blobs.c.sha256 == tables.blobs.c.sha256)
+    connection.execute(delete(tables.blobs).where(~used.exists()))
+
+
+def _existing(
+    connection: Connection, query: Select[tuple[str]], column: Column[str], names: list[str]
+) -> set[str]:
+    found: set[str] = set()
+    for start in range(0, len(names), CHUNK):
+        found |= set(connection.execute(query.where(column.in_(names[start : start + CHUNK]))).scalars())
+    return found

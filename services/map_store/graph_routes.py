@@ -1,0 +1,68 @@
+"""REST: nodes, their pictures and edges."""
+
+from collections.abc import Sequence
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Response
+from fastapi.params import Depends
+
+from services.map_store.errors import MissingError
+from services.map_store.graph import MAX_NODE_ID
+from services.map_store.map_routes import AUTHOR
+from services.map_store.names import MapName, NodeId
+from services.map_store.schemas import Changed, EdgeView, NodeView
+from services.map_store.store import MapStore
+from services.map_store.views import edge_views, node_views
+from shared.messages.maps import DeleteEdge, DeleteNode
+from shared.wire import MAX_CONTAINER
+
+JPEG = {200: {"content": {"image/jpeg": {}}}}
+Limit = Annotated[int, Query(ge=1, le=MAX_CONTAINER)]
+After = Annotated[int, Query(ge=-1, le=MAX_NODE_ID, description="last node id of the page before")]
+
+
+def build(store: MapStore, write: Sequence[Depends]) -> APIRouter:
+    """Routes below /maps/{map}/nodes and /maps/{map}/edges; `write` guards those that change something."""
+    router = APIRouter(prefix="/maps/{map}", tags=["graph"])
+
+    @router.get("/nodes")
+    def list_nodes(name: MapName, after: After = -1, limit: Limit = MAX_CONTAINER) -> list[NodeView]:
+        """Nodes by number."""
+        return node_views(store.database, name, after, limit)
+
+    @router.get("/nodes/{node_id}")
+    def read_node(name: MapName, node_id: NodeId) -> NodeView:
+        """One node."""
+        found = node_views(store.database, name, node_id - 1, 1)
+        if not found or found[0].node_id != node_id:
+            raise MissingError(f"map {name!r}: node {node_id} does not exist")
+        return found[0]
+
+    @router.get("/nodes/{node_id}/thumbnail", response_class=Response, responses=JPEG)  # type: ignore[arg-type]
+    def read_thumbnail(name: MapName, node_id: NodeId) -> Response:
+        """The small picture of a node."""
+        data = store.blob(name, node_id, "thumbnail")
+        if not data:
+            raise MissingError(f"map {name!r}: node {node_id} has no thumbnail")
+        # A node's picture never changes, but another node may get its number after an undo.
+        headers = {"Cache-Control": "private, no-cache", "X-Content-Type-Options": "nosniff"}
+        return Response(data, media_type="image/jpeg", headers=headers)
+
+    @router.get("/edges")
+    def list_edges(name: MapName) -> list[EdgeView]:
+        """Edges with their evidence."""
+        return edge_views(store.database, name)
+
+    @router.delete("/nodes/{node_id}", dependencies=write)
+    def delete_node(name: MapName, node_id: NodeId) -> Changed:
+        """Delete a node and its edges, as a new revision."""
+        revision = store.transact(name, [DeleteNode(node_id=node_id)], AUTHOR)
+        return Changed(map=name, revision=revision)
+
+    @router.delete("/edges/{a}/{b}", dependencies=write)
+    def delete_edge(name: MapName, a: NodeId, b: NodeId) -> Changed:
+        """Delete an edge, as a new revision."""
+        revision = store.transact(name, [DeleteEdge(a=min(a, b), b=max(a, b))], AUTHOR)
+        return Changed(map=name, revision=revision)
+
+    return router

@@ -1,0 +1,101 @@
+"""The bus side of the map store: answers questions, publishes deltas. Nothing here works inside a callback."""
+
+import logging
+from collections import deque
+from collections.abc import Callable
+from threading import Event
+
+from services.map_store.errors import ConflictError, InvalidError, MapError
+from services.map_store.missions import MissionStore
+from services.map_store.store import MapStore
+from shared.bus import Bus, Publisher
+from shared.messages.maps import MapDelta, MapReply, MapRequest, MissionRecord, MissionRecordRequest
+from shared.topics import MAP, MAP_DELTA, MISSION_RECORD, NAME
+from shared.wire import encode
+
+log = logging.getLogger(__name__)
+
+PERIOD_S = 0.5
+
+
+class Deltas:
+    """Deltas between the thread that commits and the loop that publishes, in order."""
+
+    def __init__(self, bus: Bus) -> None:
+        self._bus = bus
+        self._waiting: deque[MapDelta] = deque()
+        self._publishers: dict[str, Publisher[MapDelta]] = {}
+
+    def push(self, delta: MapDelta) -> None:
+        """Store one; any thread."""
+        self._waiting.append(delta)
+        self._bus.wake.set()
+
+    def publish(self) -> None:
+        """Send all that wait. One too long for the bus becomes a reset: followers then read the map."""
+        while self._waiting:
+            delta = self._waiting.popleft()
+            if len(encode(delta)) > MAP_DELTA.max_bytes:
+                delta = delta.model_copy(update={"operations": (), "reset": True})
+            if delta.map not in self._publishers:
+                self._publishers[delta.map] = self._bus.publisher(MAP_DELTA, map=delta.map)
+            self._publishers[delta.map].put(delta)
+
+
+def answer_map(store: MapStore, name: str, request: MapRequest) -> MapReply:
+    """Do what `request` asks of map `name`; raises MapError."""
+    if request.action == "create":
+        return MapReply(map=name, revision=store.create(name))
+    if request.action == "transact":
+        revision = store.transact(name, request.operations, request.author, request.base_revision)
+        return MapReply(map=name, revision=revision)
+    if request.action == "read_features":
+        revision, features = store.features(name, request.node_ids)
+        return MapReply(map=name, revision=revision, features=features)
+    revision, graph = store.graph(name)
+    nodes = tuple(place.node for place in graph.places.values())
+    return MapReply(map=name, revision=revision, nodes=nodes, edges=tuple(graph.edges.values()))
+
+
+def answer_mission(missions: MissionStore, robot: str, request: MissionRecordRequest) -> MissionRecord:
+    """Claim or save the record of `robot`; raises MapError."""
+    if request.record.robot != robot:
+        raise InvalidError(f"record of robot {request.record.robot!r} sent to the key of {robot!r}")
+    return missions.claim(robot) if request.action == "claim" else missions.save(request.record)
+
+
+def run(
+    bus: Bus,
+    stop: Event,
+    store: MapStore,
+    missions: MissionStore,
+    deltas: Deltas,
+    ready: Callable[[], None],
+) -> None:
+    """Answer until `stop`; `ready` is called once questions can be asked."""
+    maps, records = bus.requests(MAP, map="*"), bus.requests(MISSION_RECORD, robot="*")
+    for summary in store.summaries():  # a delta may have been lost with the process that committed it
+        deltas.push(MapDelta(map=summary.name, revision=summary.revision, reset=True))
+    deltas.publish()
+    ready()
+    while not stop.is_set():
+        bus.wait(PERIOD_S)
+        while (question := maps.take()) is not None:
+            _answer(question, lambda name, request: answer_map(store, name, request))
+            deltas.publish()
+        while (mission := records.take()) is not None:
+            _answer(mission, lambda name, request: answer_mission(missions, name, request))
+        deltas.publish()
+
+
+def _answer(question, answer) -> None:  # type: ignore[no-untyped-def]
+    try:
+        if not NAME.match(question.name):
+            raise InvalidError(f"one name must be given, got {question.name[:80]!r}")
+        reply = answer(question.name, question.message)
+    except MapError as error:
+        level = logging.INFO if isinstance(error, InvalidError | ConflictError) else logging.WARNING
+        log.log(level, "refused: %s", error)
+        question.refuse(str(error))
+        return
+    question.reply(reply)

@@ -1,0 +1,94 @@
+"""The tables of the map store, in SQL that SQLite and PostgreSQL share."""
+
+from sqlalchemy import (
+    BigInteger,
+    Boolean,
+    Column,
+    ForeignKey,
+    ForeignKeyConstraint,
+    Integer,
+    LargeBinary,
+    MetaData,
+    String,
+    Table,
+    Text,
+)
+
+VERSION = 1
+"""Raised with every change of these tables; an older or newer database is refused at start."""
+
+metadata = MetaData()
+
+about = Table("about", metadata, Column("version", Integer, primary_key=True))
+
+maps = Table(
+    "maps",
+    metadata,
+    Column("map_id", Integer, primary_key=True, autoincrement=True),
+    Column("name", String(64), nullable=False, unique=True),
+    Column("revision", BigInteger, nullable=False),
+    Column("created_ns", BigInteger, nullable=False),
+    Column("changed_ns", BigInteger, nullable=False),
+    sqlite_autoincrement=True,  # an id is never given twice: caches are keyed by it
+)
+
+revisions = Table(
+    "revisions",
+    metadata,
+    Column("map_id", ForeignKey("maps.map_id"), primary_key=True),
+    Column("revision", BigInteger, primary_key=True),
+    Column("author", String(64), nullable=False),
+    Column("stamp_ns", BigInteger, nullable=False),
+    Column("undoes", BigInteger),
+    Column("steps", Integer, nullable=False),
+    Column("content", LargeBinary, nullable=False),
+    Column("sha256", String(64), nullable=False),
+)
+
+blobs = Table(
+    "blobs",
+    metadata,
+    Column("sha256", String(64), primary_key=True),
+    Column("size", BigInteger, nullable=False),
+    Column("data", LargeBinary, nullable=False),
+)
+
+map_blobs = Table(
+    "map_blobs",
+    metadata,
+    Column("map_id", ForeignKey("maps.map_id"), primary_key=True),
+    Column("sha256", ForeignKey("blobs.sha256"), primary_key=True, index=True),
+)
+
+nodes = Table(
+    "nodes",
+    metadata,
+    Column("map_id", ForeignKey("maps.map_id"), primary_key=True),
+    Column("node_id", BigInteger, primary_key=True, autoincrement=False),
+    Column("revision", BigInteger, nullable=False),
+    Column("record", Text, nullable=False),
+    Column("features", ForeignKey("blobs.sha256"), nullable=False),
+    Column("thumbnail", ForeignKey("blobs.sha256")),
+    Column("quarantined", Boolean, nullable=False, default=False),
+)
+
+edges = Table(
+    "edges",
+    metadata,
+    Column("map_id", Integer, primary_key=True),
+    Column("a", BigInteger, primary_key=True, autoincrement=False),
+    Column("b", BigInteger, primary_key=True, autoincrement=False),
+    Column("revision", BigInteger, nullable=False),
+    Column("record", Text, nullable=False),
+    ForeignKeyConstraint(["map_id", "a"], ["nodes.map_id", "nodes.node_id"]),
+    ForeignKeyConstraint(["map_id", "b"], ["nodes.map_id", "nodes.node_id"]),
+)
+
+missions = Table(
+    "missions",
+    metadata,
+    Column("robot", String(64), primary_key=True),
+    Column("epoch", BigInteger, nullable=False),
+    Column("content", LargeBinary, nullable=False),
+    Column("sha256", String(64), nullable=False),
+)
