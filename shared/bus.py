@@ -73,7 +73,9 @@ class Bus:
 
     def subscribe(self, topic: Topic[M], wake: threading.Event | None = None, **names: str) -> Inbox[M]:
         """Declare a subscriber; `wake` replaces the bus's own event."""
-        inbox = Inbox(topic.message, topic.max_bytes, CAPACITY[topic.delivery], wake or self.wake, self.counters)
+        inbox = Inbox(
+            topic.message, topic.max_bytes, CAPACITY[topic.delivery], wake or self.wake, self.counters
+        )
         key = topic.key(**names)
         store = zenoh.handlers.Callback(lambda sample: inbox.push(sample.payload.to_bytes()), indirect=False)
         if topic.delivery is Delivery.RECOVERED:
@@ -89,7 +91,9 @@ class Bus:
         self._declared.append(declared)
         return inbox
 
-    def requests(self, query: Query[Q, R], wake: threading.Event | None = None, **names: str) -> Requests[Q, R]:
+    def requests(
+        self, query: Query[Q, R], wake: threading.Event | None = None, **names: str
+    ) -> Requests[Q, R]:
         """Declare that this service answers `query`; take the questions in the loop."""
         waiting = Requests(query, wake or self.wake, self.counters)
         store = zenoh.handlers.Callback(waiting.push, indirect=False)

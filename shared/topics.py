@@ -98,7 +98,17 @@ MAP = Query("topnav/maps/{map}/graph", MapRequest, MapReply, 512 * MB)
 MISSION_RECORD = Query("topnav/missions/{robot}", MissionRecordRequest, MissionRecord, 8 * MB)
 SIMULATION = Query("topnav/{robot}/simulation", SimulationRequest, SimulationReply, 64 * MB)
 
-TOPICS: tuple[Topic[Message], ...] = (FRAME, RANGES, FEATURES, HEADING, COMMAND, STATUS, EVENT, TRUTH, MAP_DELTA)  # type: ignore[assignment]
+TOPICS: tuple[Topic[Message], ...] = (
+    FRAME,
+    RANGES,
+    FEATURES,
+    HEADING,
+    COMMAND,
+    STATUS,
+    EVENT,
+    TRUTH,
+    MAP_DELTA,
+)  # type: ignore[assignment]
 QUERIES: tuple[Query[Message, Message], ...] = (MATCH, EXTRACT, MISSION, MAP, MISSION_RECORD, SIMULATION)  # type: ignore[assignment]
 
 

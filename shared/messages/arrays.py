@@ -56,9 +56,13 @@ class ArraySpec:
             for length, wanted in zip(shape, self.shape, strict=True)
         )
         if not fits:
-            raise ValueError(f"array shape must be {self.shape} (open axes <= {self.max_length}), got {shape}")
+            raise ValueError(
+                f"array shape must be {self.shape} (open axes <= {self.max_length}), got {shape}"
+            )
 
-    def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+    def __get_pydantic_core_schema__(
+        self, _source: Any, _handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
         return core_schema.no_info_plain_validator_function(
             self.check, serialization=core_schema.plain_serializer_function_ser_schema(_to_wire)
         )

@@ -1,4 +1,4 @@
-"""The map: a graph of places, written by transactions and followed by deltas. Planner, gateway <-> map store."""
+"""The map: a graph of places, written by transactions, followed by deltas. Planner <-> map store."""
 
 from typing import Annotated, ClassVar, Literal
 

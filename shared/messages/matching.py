@@ -20,11 +20,13 @@ class MatchRequest(Message):
         best_k: also the k most similar nodes of the whole map, each verified.
         targets: pictures outside the map (a goal); reported with node_id -1, -2, ... in order.
         with_matches: send the matched bearings, not only their count.
+        map_revision: the answer must know the map at least as of this revision.
     """
 
     SCHEMA: ClassVar[str] = "match_request.v1"
 
     map: Name
+    map_revision: int = Field(default=0, ge=0)
     features: Features | None = None
     node_ids: tuple[int, ...] = Field(default=(), max_length=4096)
     best_k: int = Field(default=0, ge=0, le=4096)
@@ -62,9 +64,10 @@ class NodeMatch(Part):
     def _mask_fits(self) -> "NodeMatch":
         if (self.matches_rad is None) != (self.inlier_mask is None):
             raise ValueError("matches_rad and inlier_mask come together")
-        if self.matches_rad is not None and self.inlier_mask is not None:
-            if len(self.matches_rad) != len(self.inlier_mask):
-                raise ValueError("matches_rad and inlier_mask must have one length")
+        if self.matches_rad is None or self.inlier_mask is None:
+            return self
+        if len(self.matches_rad) != len(self.inlier_mask):
+            raise ValueError("matches_rad and inlier_mask must have one length")
         return self
 
 

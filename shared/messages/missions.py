@@ -8,7 +8,9 @@ from shared.messages.base import Message, Name, Part
 from shared.messages.features import Features
 
 MissionState = Literal["idle", "running", "paused", "succeeded", "failed", "cancelled"]
-FailureKind = Literal["", "goal_not_in_map", "lost", "blocked", "cancelled", "no_path", "timeout", "service_lost"]
+FailureKind = Literal[
+    "", "goal_not_in_map", "lost", "blocked", "cancelled", "no_path", "timeout", "service_lost"
+]
 
 
 class MissionRequest(Message):

@@ -32,7 +32,7 @@ class Truth(Message):
 
 
 class SimulationRequest(Message):
-    """reset: start pose, step noise from seed; place_robot; place_hider: reply with its picture; look: picture from a pose."""
+    """reset: start pose, noise from seed; place_robot; place_hider and look: reply with a picture."""
 
     SCHEMA: ClassVar[str] = "simulation_request.v1"
 

@@ -1,0 +1,81 @@
+"""Pure core of the drive service: heading and distances in, command out."""
+
+from typing import Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, PositiveFloat, PositiveInt
+
+from services.drive.clearance import Obstacles
+from services.drive.momentary import obstacle_heading, steer_away
+from services.drive.passing import Passing, PassingLimits, steer_past
+from services.drive.steering import Steering
+from services.drive.velocity import WheelLimits, wheel_speed
+from shared.messages import Command, Heading, Ranges
+
+FULL_SPEED_CLEARANCE_M = 0.5
+SLOWEST = 0.25
+
+
+class DriveLimits(BaseModel):
+    """How this robot drives.
+
+    Attributes:
+        avoidance: "passing" remembers the side it passes; "momentary" is the thesis's rule.
+        obstacle_range_m: distance at which the momentary rule reacts.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    avoidance: Literal["passing", "momentary"] = "passing"
+    wheels: WheelLimits = WheelLimits()
+    passing: PassingLimits = PassingLimits()
+    obstacle_range_m: PositiveFloat = 0.5
+    command_ttl_ms: PositiveInt = 300
+
+
+def compute_command(
+    heading: Heading, ranges: Ranges, memory: Passing, rng: np.random.Generator, limits: DriveLimits
+) -> tuple[Command, Passing]:
+    """Obstacles first, then the estimate, then the velocity law (thesis figure 4.8, equations 6.5 and 6.6)."""
+    if heading.action == "hold":
+        return stop_command(heading, "hold: " + heading.why[:100], limits), memory
+    steering, memory = _steer(heading, ranges, memory, rng, limits)
+    if steering.blocked:
+        return stop_command(heading, steering.why, limits), memory
+    speed = wheel_speed(heading.s_cv, heading.s_slow, heading.s_max, heading.speed_fraction, limits.wheels)
+    if limits.avoidance == "passing":
+        speed *= min(1.0, max(SLOWEST, steering.clearance_m / FULL_SPEED_CLEARANCE_M))
+    command = Command(
+        seq=heading.seq,
+        stamp_ns=heading.stamp_ns,
+        robot=heading.robot,
+        epoch=heading.epoch,
+        ttl_ms=limits.command_ttl_ms,
+        steer_rad=steering.heading_rad,
+        wheel_speed_radps=speed,
+        avoiding=steering.avoiding,
+        why=steering.why,
+    )
+    return command, memory
+
+
+def stop_command(heading: Heading, why: str, limits: DriveLimits) -> Command:
+    """Wheels still, in answer to `heading`."""
+    return Command(
+        seq=heading.seq,
+        stamp_ns=heading.stamp_ns,
+        robot=heading.robot,
+        epoch=heading.epoch,
+        ttl_ms=limits.command_ttl_ms,
+        why=why,
+    )
+
+
+def _steer(
+    heading: Heading, ranges: Ranges, memory: Passing, rng: np.random.Generator, limits: DriveLimits
+) -> tuple[Steering, Passing]:
+    if limits.avoidance == "momentary":
+        near_rad = obstacle_heading(ranges.angles_rad, ranges.distances_m, limits.obstacle_range_m)
+        return steer_away(heading.heading_rad, near_rad, rng), memory
+    obstacles = Obstacles.from_ranges(ranges.angles_rad, ranges.distances_m, ranges.max_range_m)
+    return steer_past(heading.heading_rad, obstacles, memory, heading.speed_fraction, limits.passing)

@@ -1,0 +1,1 @@
+"""Planner service: missions, localisation, paths and headings. Sees pictures and distances, never poses."""

@@ -1,0 +1,175 @@
+"""The one mission of a robot: started, paused, stepped and ended; kept by the map store across restarts."""
+
+import logging
+import uuid
+
+import numpy as np
+
+from services.planner.explore import FrontierExploration
+from services.planner.frontiers import open_directions
+from services.planner.goto import Goto
+from services.planner.ports import Decision, Mission, Observation, Progress
+from services.planner.profiles import Profile
+from services.planner.remote import RemoteMap, RemoteMatcher
+from services.planner.settings import PlannerSettings
+from services.planner.strategies import ThesisExploration
+from shared.bus import Bus
+from shared.messages import MissionRecord, MissionRecordRequest, MissionRequest, MissionStatus
+from shared.messages.missions import FailureKind, MissionState
+from shared.topics import MISSION_RECORD
+
+log = logging.getLogger(__name__)
+
+
+class MissionError(ValueError):
+    """A request that cannot be followed; the text goes to the asker."""
+
+
+class MissionControl:
+    """State machine of missions: idle, running, paused, then succeeded, failed or cancelled."""
+
+    def __init__(self, settings: PlannerSettings, profile: Profile, bus: Bus) -> None:
+        self._settings, self._profile, self._bus = settings, profile, bus
+        self._record = MissionRecord(robot=settings.robot)
+        self._mission: Mission | None = None
+        self._matcher: RemoteMatcher | None = None
+        self.map: RemoteMap | None = None
+        self.state: MissionState = "idle"
+        self._failure: FailureKind = ""
+        self._reason = ""
+        self.step_count = 0
+
+    @property
+    def epoch(self) -> int:
+        """This planner's lease number."""
+        return self._record.epoch
+
+    def claim(self) -> None:
+        """Take over from a planner before; goes on with its mission. Raises QueryError while the store is away."""
+        request = MissionRecordRequest(action="claim", record=self._record)
+        self._record = self._bus.ask(
+            MISSION_RECORD, request, self._settings.map_timeout_s, robot=self._settings.robot
+        )
+        log.info("claimed epoch %d", self.epoch)
+        if self._record.action:
+            self._begin(create=False)
+            self.state = "paused" if self._record.paused else "running"
+            self._reason = "taken over after a restart"
+
+    def handle(self, request: MissionRequest) -> MissionStatus:
+        """Follow a request and return the status after it; MissionError says why not."""
+        if request.action in ("explore", "goto"):
+            self._start(request)
+        elif request.action != "status":
+            self._change(request.action)
+        return self.status()
+
+    def step(self, observation: Observation) -> Decision:
+        """Decide for one frame of a running mission."""
+        assert self._mission is not None
+        assert self._matcher is not None
+        self._matcher.frame_seq = observation.features.seq
+        self._matcher.frame_stamp_ns = observation.features.stamp_ns
+        if self.step_count >= self._record.max_steps:
+            why = f"not done within {self._record.max_steps} steps"
+            decision = Decision("hold", why=why, outcome="failed", failure="timeout")
+        else:
+            decision = self._mission.decide(observation)
+        self.step_count += 1
+        self._reason = decision.why
+        if decision.outcome:
+            self._finish(
+                "succeeded" if decision.outcome == "succeeded" else "failed", decision.failure, decision.why
+            )
+        return decision
+
+    def status(self) -> MissionStatus:
+        """What is published after every step."""
+        progress = self._mission.progress if self._mission is not None else Progress()
+        graph = self.map.graph if self.map is not None else None
+        return MissionStatus(
+            robot=self._settings.robot,
+            mission_id=self._record.mission_id,
+            action=self._record.action,
+            map=self._record.map,
+            state=self.state,
+            failure=self._failure,
+            reason=self._reason[:400],
+            step=self.step_count,
+            nodes=len(graph.nodes) if graph is not None else 0,
+            edges=len(graph.edges) if graph is not None else 0,
+            open_directions=open_directions(graph) if graph is not None else 0,
+            via_points=progress.via_points,
+            via_index=progress.via_index,
+            nearest_node=progress.nearest_node,
+            similarity=progress.similarity,
+            disparity_rad=progress.disparity_rad,
+            epoch=self.epoch,
+        )
+
+    def follow_store(self, revision: int, author: str) -> None:
+        """Somebody else changed the map: read it again."""
+        if self.map is not None and revision > self.map.revision and author != "planner":
+            self.map.load(create=False)
+
+    def _start(self, request: MissionRequest) -> None:
+        if self.state in ("running", "paused"):
+            raise MissionError(f"mission {self._record.mission_id} is {self.state}; cancel it first")
+        if request.action == "goto" and (request.goal is None) == (request.goal_node is None):
+            raise MissionError("goto needs a goal picture's features or a goal_node, exactly one of them")
+        self._record = MissionRecord(
+            robot=self._settings.robot,
+            epoch=self.epoch,
+            mission_id=request.mission_id or uuid.uuid4().hex[:12],
+            action="explore" if request.action == "explore" else "goto",
+            map=request.map,
+            goal=request.goal,
+            goal_node=request.goal_node,
+            seed=request.seed,
+            max_steps=request.max_steps,
+        )
+        self._begin(create=request.action == "explore")
+        self._save()
+        self.state, self._failure, self._reason, self.step_count = "running", "", "started", 0
+
+    def _begin(self, *, create: bool) -> None:
+        record = self._record
+        self.map = RemoteMap(self._bus, record.map, self._settings.map_timeout_s)
+        self.map.load(create=create)
+        self._matcher = RemoteMatcher(self._bus, record.robot, self.map, self._settings.query_timeout_s)
+        self._mission = self._make(self.map, self._matcher)
+
+    def _make(self, maps: RemoteMap, matcher: RemoteMatcher) -> Mission:
+        record = self._record
+        if record.action == "explore":
+            rng = np.random.default_rng(record.seed)
+            if self._profile.exploration == "strategies":
+                return ThesisExploration(self._profile, maps, matcher, rng)
+            return FrontierExploration(self._profile, maps, matcher, rng)
+        if record.goal is not None:
+            return Goto(self._profile, maps, matcher, record.goal)
+        if record.goal_node not in maps.graph.nodes:
+            raise MissionError(f"map {maps.name!r} has no node {record.goal_node}")
+        return Goto(self._profile, maps, matcher, maps.features_of(record.goal_node))
+
+    def _change(self, action: str) -> None:
+        allowed = {"pause": ("running",), "resume": ("paused",), "cancel": ("running", "paused")}[action]
+        if self.state not in allowed:
+            raise MissionError(f"{action} needs a mission that is {' or '.join(allowed)}, it is {self.state}")
+        if action == "cancel":
+            self._finish("cancelled", "cancelled", "cancelled by request")
+            return
+        self.state = "paused" if action == "pause" else "running"
+        self._record = self._record.model_copy(update={"paused": action == "pause"})
+        self._save()
+
+    def _finish(self, state: MissionState, failure: FailureKind, reason: str) -> None:
+        self.state, self._failure, self._reason = state, failure, reason
+        ended = self._record.model_copy(
+            update={"action": "", "goal": None, "goal_node": None, "paused": False}
+        )
+        self._save(ended)
+
+    def _save(self, record: MissionRecord | None = None) -> None:
+        request = MissionRecordRequest(action="save", record=record or self._record)
+        self._bus.ask(MISSION_RECORD, request, self._settings.map_timeout_s, robot=self._settings.robot)

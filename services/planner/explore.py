@@ -1,0 +1,240 @@
+"""Mission explore by frontiers: leave a place in an unexplored open direction, add what is new, repeat.
+
+The node and edge rules are the thesis's (equations 4.1, 4.2); the choice of direction replaces its random
+strategies, so that the map stops growing only when nothing open is left.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from services.planner.following import PathFollower, Target
+from services.planner.frontiers import (
+    best_sector,
+    frontier_sectors,
+    mark_explored,
+    open_directions,
+    sector_rad,
+)
+from services.planner.mapping import add_place, is_new_place
+from services.planner.ports import Decision, MapAccess, Matcher, Note, Observation, Progress
+from services.planner.profiles import Profile
+from services.planner.routing import edge_cost, visible
+from services.planner.similarity import ranked, similarity, trusted
+from shared.messages.maps import Node, UpdateNode
+from shared.messages.matching import NodeMatch
+
+EDGE_CANDIDATES = 12
+NEAR_NODES = 5
+MAX_DEPARTURE_STEPS = 30
+KNOWN_STEPS = 4
+MAX_TRAVEL_FAILURES = 2
+
+
+@dataclass
+class Departure:
+    """Leaving `node_id` through `sector`, straight on in the direction `heading_rad` (robot frame)."""
+
+    node_id: int
+    sector: int
+    heading_rad: float
+    steps: int = 0
+    known_steps: int = 0
+    unseen_steps: int = 0
+
+
+class FrontierExploration:
+    """Decides per frame; everything it must not forget is in the map (open and explored directions)."""
+
+    def __init__(self, profile: Profile, maps: MapAccess, matcher: Matcher, rng: np.random.Generator) -> None:
+        self._profile, self._maps, self._matcher, self._rng = profile, maps, matcher, rng
+        self._departure: Departure | None = None
+        self._travel: PathFollower | None = None
+        self._here: int | None = None
+        self._last_heading_rad = 0.0
+        self._failures: dict[int, int] = {}
+        self._lost = 0
+        self.progress = Progress()
+
+    def decide(self, observation: Observation) -> Decision:
+        """One step."""
+        if not self._maps.graph.nodes:
+            return self._first(observation)
+        if self._departure is not None:
+            return self._depart(observation, self._departure)
+        if self._travel is not None:
+            return self._go_on(self._travel)
+        return self._choose()
+
+    def _first(self, observation: Observation) -> Decision:
+        """The only node: random heading (thesis section 4.2)."""
+        node_id = add_place(self._maps, observation, {}, self._profile, None)
+        self._here = node_id
+        self._last_heading_rad = float(self._rng.uniform(-math.pi, math.pi))
+        return self._leave(node_id, 0.0, (Note("node_added", "first place of the map", {"node": node_id}),))
+
+    def _leave(self, node_id: int, yaw_rad: float, notes: tuple[Note, ...]) -> Decision:
+        """Start a departure from a node the robot stands at, or hold when it has no frontier."""
+        node = self._maps.graph.nodes[node_id]
+        sector = best_sector(node, self._last_heading_rad - yaw_rad)
+        if sector is None:
+            return Decision("hold", why=f"node {node_id} has no unexplored direction", notes=notes)
+        heading_rad = math.remainder(sector_rad(sector) + yaw_rad, math.tau)
+        self._departure = Departure(node_id, sector, heading_rad)
+        self._last_heading_rad = heading_rad
+        why = f"leaving node {node_id} by direction {sector}"
+        return Decision("go", heading_rad, method="frontier", why=why, notes=notes)
+
+    def _depart(self, observation: Observation, departure: Departure) -> Decision:
+        """Go straight until the place is new, known, blocked or out of sight."""
+        departure.steps += 1
+        matches = self._matcher.match(self._near(departure.node_id), 0)
+        origin = matches.get(departure.node_id)
+        best = ranked(matches, self._profile)
+        s_best = similarity(best[0][1], self._profile) if best else 0
+        self.progress = Progress(nearest_node=best[0][0] if best else None, similarity=s_best)
+        if origin is not None and trusted(origin, self._profile) and origin.yaw_rad is not None:
+            departure.heading_rad = math.remainder(sector_rad(departure.sector) + origin.yaw_rad, math.tau)
+        if s_best <= self._profile.s_edge_min:
+            departure.unseen_steps += 1
+            if departure.unseen_steps > self._profile.saturation_steps:
+                return self._close_departure(departure, "out of sight of the map", lost=True)
+        if is_new_place(matches, self._profile):
+            everything = self._matcher.match([], EDGE_CANDIDATES)
+            merged = {**everything, **matches}
+            if is_new_place(merged, self._profile):
+                return self._new_place(observation, departure, merged)
+            return self._known(departure, merged)
+        if _room_m(observation, departure.heading_rad) < self._profile.wall_range_m:
+            return self._close_departure(departure, "blocked by an obstacle")
+        if departure.steps > MAX_DEPARTURE_STEPS:
+            return self._close_departure(departure, "nothing new on the way")
+        why = f"leaving node {departure.node_id}, S {s_best}"
+        return Decision("go", departure.heading_rad, 0, 1.0, "frontier", why)
+
+    def _known(self, departure: Departure, matches: dict[int, NodeMatch]) -> Decision:
+        """Another node is too similar: after a few such frames this direction is known."""
+        departure.known_steps += 1
+        best = ranked(matches, self._profile)[0]
+        if departure.known_steps >= KNOWN_STEPS:
+            return self._close_departure(departure, f"leads to node {best[0]}")
+        why = f"near node {best[0]}, S {similarity(best[1], self._profile)}"
+        return Decision("go", departure.heading_rad, 0, 1.0, "frontier", why)
+
+    def _new_place(
+        self, observation: Observation, departure: Departure, matches: dict[int, NodeMatch]
+    ) -> Decision:
+        self._explored(departure)
+        node_id = add_place(self._maps, observation, matches, self._profile, departure.node_id)
+        self._departure, self._here, self._lost = None, node_id, 0
+        self._last_heading_rad = departure.heading_rad
+        edges = len(self._maps.graph.neighbours(node_id))
+        best = ranked(matches, self._profile)[0]
+        values = {
+            "node": node_id,
+            "edges": edges,
+            "nearest": best[0],
+            "s": similarity(best[1], self._profile),
+        }
+        return self._leave(node_id, 0.0, (Note("node_added", f"new place with {edges} edges", dict(values)),))
+
+    def _close_departure(self, departure: Departure, why: str, *, lost: bool = False) -> Decision:
+        """This direction is done; go back to known ground when nothing is seen."""
+        self._explored(departure)
+        self._departure, self._here = None, None
+        note = Note("direction_closed", f"node {departure.node_id} direction {departure.sector}: {why}")
+        if lost:
+            back = math.remainder(departure.heading_rad + math.pi, math.tau)
+            return Decision("go", back, 0, 1.0, "reverse", f"lost mode: {why}", (note,))
+        return Decision("hold", why=why, notes=(note,))
+
+    def _explored(self, departure: Departure) -> None:
+        node = self._maps.graph.nodes.get(departure.node_id)
+        if node is not None and not node.explored[departure.sector]:
+            self._maps.commit([UpdateNode(node=mark_explored(node, departure.sector))])
+
+    def _choose(self) -> Decision:
+        """Nearest node with something unexplored; none left: the map is complete."""
+        graph = self._maps.graph
+        frontier = {n: 0.0 for n, node in graph.nodes.items() if frontier_sectors(node)}
+        if not frontier:
+            why = f"nothing unexplored is left: {len(graph.nodes)} places, {len(graph.edges)} edges"
+            return Decision("hold", why=why, outcome="succeeded")
+        matches = self._matcher.match([], NEAR_NODES)
+        starts = visible(matches, self._profile, self._profile.s_via_min)
+        costs = graph.costs_to(frontier, edge_cost(self._profile))
+        reachable = [(leg + costs[n], n) for n, leg in starts.items() if n in costs]
+        if not reachable:
+            return self._search(matches, bool(starts))
+        self._lost = 0
+        path = graph.path(min(reachable)[1], frontier, edge_cost(self._profile))
+        self._travel = PathFollower(
+            self._profile, self._maps, path, Target(None, self._profile.travel_arrival_rad)
+        )
+        return self._go_on(self._travel)
+
+    def _go_on(self, travel: PathFollower) -> Decision:
+        state, decision = travel.step(self._matcher)
+        self.progress = travel.progress
+        end = travel.path[-1]
+        if state == "going":
+            return decision
+        self._travel = None
+        if state == "arrived":
+            match = self._matcher.match([end]).get(end)
+            yaw = match.yaw_rad if match is not None and match.yaw_rad is not None else 0.0
+            return self._leave(end, yaw, decision.notes)
+        return self._travel_failed(end, decision)
+
+    def _travel_failed(self, end: int, decision: Decision) -> Decision:
+        """Twice in vain: that node's directions are closed, so that exploration always ends."""
+        self._failures[end] = self._failures.get(end, 0) + 1
+        notes = (*decision.notes, Note("travel_failed", f"to node {end}: {decision.why}"))
+        if self._failures[end] >= MAX_TRAVEL_FAILURES:
+            node = self._maps.graph.nodes[end]
+            self._maps.commit([UpdateNode(node=_closed(node))])
+            notes += (Note("node_unreachable", f"node {end}: its directions are closed"),)
+        return Decision("hold", why=decision.why, notes=notes)
+
+    def _search(self, matches: dict[int, NodeMatch], seen: bool) -> Decision:
+        """Lost mode: towards the most similar place, else back along the last heading."""
+        self._lost += 1
+        if self._lost > 60 or seen:
+            why = (
+                "what is seen has no path to the unexplored places" if seen else "no known place found again"
+            )
+            return Decision("hold", why=why, outcome="failed", failure="no_path" if seen else "lost")
+        best = ranked(matches, self._profile)[:1]
+        if best and best[0][1].heading_rad is not None:
+            return Decision(
+                "go", best[0][1].heading_rad, 0, 1.0, "search", f"lost mode: towards node {best[0][0]}"
+            )
+        back = math.remainder(self._last_heading_rad + math.pi, math.tau)
+        return Decision("go", back, 0, 1.0, "reverse", "lost mode: back the way it came")
+
+    def _near(self, node_id: int) -> list[int]:
+        """The node left and the neighbours most similar to it."""
+        graph = self._maps.graph
+        around = sorted(graph.neighbours(node_id), key=lambda n: -_inliers(graph, node_id, n))
+        return [node_id, *around[: NEAR_NODES - 1]]
+
+    def open_directions(self) -> int:
+        """Frontiers left in the map."""
+        return open_directions(self._maps.graph)
+
+
+def _inliers(graph: object, first: int, second: int) -> int:
+    edge = graph.edge(first, second)  # type: ignore[attr-defined]
+    return edge.inliers if edge is not None else 0
+
+
+def _closed(node: Node) -> Node:
+    return node.model_copy(update={"explored": (True,) * len(node.explored)})
+
+
+def _room_m(observation: Observation, heading_rad: float) -> float:
+    """Distance reported by the sensor nearest to a direction."""
+    ranges = observation.ranges
+    offsets = [abs(math.remainder(angle - heading_rad, math.tau)) for angle in ranges.angles_rad]
+    return ranges.distances_m[offsets.index(min(offsets))]

@@ -1,0 +1,62 @@
+"""Frontiers without metres: twelve directions a node, open by distance sensor, explored by edges and departures."""
+
+import math
+
+from services.planner.graph import MapGraph
+from shared.messages.base import SECTORS
+from shared.messages.maps import Node
+from shared.messages.sensors import Ranges
+
+SECTOR_RAD = math.tau / SECTORS
+EXPLORED_HALF_RAD = math.radians(28.0)
+EXPLORED_DISPARITY_RAD = math.radians(13.0)
+"""An edge to a place farther than this leaves the ground in between unexplored."""
+
+
+def openings(ranges: Ranges, open_range_m: float) -> tuple[bool, ...]:
+    """Directions with at least `open_range_m` of room."""
+    return tuple(distance >= open_range_m for distance in ranges.distances_m)
+
+
+def sector_rad(sector: int) -> float:
+    """Centre of a sector in the node's camera frame."""
+    return math.remainder(sector * SECTOR_RAD, math.tau)
+
+
+def with_explored(node: Node, graph: MapGraph) -> Node:
+    """The node with the sectors that edges to near places cover marked explored."""
+    explored = list(node.explored)
+    for neighbour in graph.neighbours(node.node_id):
+        edge, heading = graph.edge(node.node_id, neighbour), graph.heading(node.node_id, neighbour)
+        if edge is None or heading is None or (edge.disparity_rad or math.inf) > EXPLORED_DISPARITY_RAD:
+            continue
+        for sector in range(SECTORS):
+            if abs(math.remainder(sector_rad(sector) - heading, math.tau)) < EXPLORED_HALF_RAD:
+                explored[sector] = True
+    return node.model_copy(update={"explored": tuple(explored)})
+
+
+def mark_explored(node: Node, sector: int) -> Node:
+    """The node with one more direction explored."""
+    explored = tuple(known or index == sector for index, known in enumerate(node.explored))
+    return node.model_copy(update={"explored": explored})
+
+
+def frontier_sectors(node: Node) -> list[int]:
+    """Open directions nobody has explored."""
+    return [s for s in range(SECTORS) if node.open[s] and not node.explored[s]]
+
+
+def best_sector(node: Node, preferred_rad: float) -> int | None:
+    """The frontier sector nearest to a direction in the node's frame; the lower number when equal."""
+    sectors = frontier_sectors(node)
+    return min(
+        sectors,
+        key=lambda s: (round(abs(math.remainder(sector_rad(s) - preferred_rad, math.tau)), 6), s),
+        default=None,
+    )
+
+
+def open_directions(graph: MapGraph) -> int:
+    """How many frontiers the whole map has."""
+    return sum(len(frontier_sectors(node)) for node in graph.nodes.values())

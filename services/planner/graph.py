@@ -1,0 +1,133 @@
+"""The map in the planner's memory: places, edges and paths. Pure."""
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+
+import networkx as nx
+
+from shared.messages.maps import AddNode, DeleteEdge, DeleteNode, Edge, Node, Operation, PutEdge, UpdateNode
+
+EdgeCost = Callable[[Edge], float]
+
+
+class MapGraph:
+    """Undirected graph of places (thesis section 4.2)."""
+
+    def __init__(self, nodes: Iterable[Node] = (), edges: Iterable[Edge] = ()) -> None:
+        self.nodes = {node.node_id: node for node in nodes}
+        self.edges = {(edge.a, edge.b): edge for edge in edges}
+
+    def apply(self, operations: Iterable[Operation]) -> None:
+        """Change the graph as the map store does."""
+        for operation in operations:
+            match operation:
+                case AddNode() | UpdateNode():
+                    self.nodes[operation.node.node_id] = operation.node
+                case DeleteNode():
+                    self.nodes.pop(operation.node_id, None)
+                    self.edges = {ends: e for ends, e in self.edges.items() if operation.node_id not in ends}
+                case PutEdge():
+                    self.edges[operation.edge.a, operation.edge.b] = operation.edge
+                case DeleteEdge():
+                    self.edges.pop((operation.a, operation.b), None)
+
+    def next_id(self) -> int:
+        """An id no node has had while the newest ones exist."""
+        return max(self.nodes, default=-1) + 1
+
+    def edge(self, first: int, second: int) -> Edge | None:
+        """The edge between two nodes, in either order."""
+        return self.edges.get((min(first, second), max(first, second)))
+
+    def neighbours(self, node_id: int) -> list[int]:
+        """Nodes an edge leads to, suspended ones excluded, in ascending order."""
+        return sorted(
+            b if a == node_id else a
+            for (a, b), edge in self.edges.items()
+            if node_id in (a, b) and not edge.suspended
+        )
+
+    def heading(self, node_id: int, neighbour: int) -> float | None:
+        """Direction to a neighbour in the node's camera frame, radians; None when unknown."""
+        edge = self.edge(node_id, neighbour)
+        if edge is None:
+            return None
+        return edge.heading_ab_rad if edge.a == node_id else edge.heading_ba_rad
+
+    def costs_to(self, targets: Mapping[int, float], cost: EdgeCost) -> dict[int, float]:
+        """Cost from every node to the cheapest target; `targets` holds what each adds. Dijkstra."""
+        return dict(self._with_goal(targets, cost)[1])
+
+    def path(self, source: int, targets: Mapping[int, float], cost: EdgeCost) -> list[int]:
+        """Cheapest nodes from `source` to a target, both included; empty when there is none."""
+        paths, _ = self._with_goal(targets, cost)
+        return paths.get(source, [])
+
+    def _with_goal(
+        self, targets: Mapping[int, float], cost: EdgeCost
+    ) -> tuple[dict[int, list[int]], dict[int, float]]:
+        goal = "goal"
+        graph: nx.Graph = nx.Graph()
+        graph.add_nodes_from(sorted(self.nodes))
+        for (a, b), edge in sorted(self.edges.items()):
+            if not edge.suspended:
+                graph.add_edge(a, b, weight=cost(edge))
+        for node_id, extra in sorted(targets.items()):
+            if node_id in self.nodes:
+                graph.add_edge(node_id, goal, weight=extra)
+        if goal not in graph:
+            return {}, {}
+        distances, paths = nx.single_source_dijkstra(graph, goal)
+        reached = [node for node in paths if node != goal]
+        return {n: list(reversed(paths[n][1:])) for n in reached}, {n: distances[n] for n in reached}
+
+    def components(self) -> int:
+        """Number of connected parts, suspended edges excluded."""
+        graph: nx.Graph = nx.Graph()
+        graph.add_nodes_from(self.nodes)
+        graph.add_edges_from(ends for ends, edge in self.edges.items() if not edge.suspended)
+        return int(nx.number_connected_components(graph))
+
+
+def fewest_nodes(_edge: Edge) -> float:
+    """The thesis's cost: every edge counts one (section 4.1)."""
+    return 1.0
+
+
+def least_disparity(edge: Edge) -> float:
+    """Sum of angular disparities: grows with distance, prefers edges the robot has driven without trouble."""
+    disparity = edge.disparity_rad if edge.disparity_rad is not None else 0.5
+    trust = 1.0 if edge.traversals else 1.3
+    return trust * disparity + 0.03 + 0.3 * edge.failures
+
+
+def edge_between(
+    first: int, second: int, heading_rad: float | None, yaw_rad: float | None
+) -> dict[str, int | float | None]:
+    """Ends and headings of the edge between `first` (the current frame) and `second`.
+
+    Args:
+        first: id of the current frame's node.
+        second: id of the other node.
+        heading_rad: direction first -> second in first's camera frame; None when unknown.
+        yaw_rad: rotation from first's camera to second's; None when unknown.
+    """
+    back_rad = None
+    if heading_rad is not None and yaw_rad is not None:
+        back_rad = math.remainder(heading_rad + math.pi - yaw_rad, math.tau)
+    if first < second:
+        return {
+            "a": first,
+            "b": second,
+            "heading_ab_rad": heading_rad,
+            "heading_ba_rad": back_rad,
+            "yaw_ab_rad": yaw_rad,
+        }
+    turned_rad = -yaw_rad if yaw_rad is not None else None
+    return {
+        "a": second,
+        "b": first,
+        "heading_ab_rad": back_rad,
+        "heading_ba_rad": heading_rad,
+        "yaw_ab_rad": turned_rad,
+    }

@@ -1,0 +1,84 @@
+"""Making a place and its edges from the current frame (thesis equations 4.1 and 4.2)."""
+
+from services.planner.frontiers import openings, with_explored
+from services.planner.graph import MapGraph, edge_between
+from services.planner.ports import MapAccess, Observation
+from services.planner.profiles import Profile
+from services.planner.similarity import heading_of, ranked, similarity, trusted
+from shared.messages.maps import AddNode, Edge, Node, Operation, PutEdge, UpdateNode
+from shared.messages.matching import NodeMatch
+
+
+def is_new_place(matches: dict[int, NodeMatch], profile: Profile) -> bool:
+    """Node rule 4.2: the nearest place is similar, but not too similar."""
+    best = ranked(matches, profile)[:1]
+    return bool(best) and profile.s_node_max > similarity(best[0][1], profile) > profile.s_edge_min
+
+
+def add_place(
+    maps: MapAccess,
+    observation: Observation,
+    matches: dict[int, NodeMatch],
+    profile: Profile,
+    driven_from: int | None,
+) -> int:
+    """Write the frame as a node with all edges that rule 4.1 admits, in one transaction.
+
+    Args:
+        maps: where to write.
+        observation: the frame and the distances around.
+        matches: the frame against the places of the map.
+        profile: thresholds.
+        driven_from: node the robot came from; its edge counts as driven.
+
+    Returns:
+        The new node's id.
+    """
+    node_id = maps.graph.next_id()
+    edges = [
+        _edge(node_id, other, match, profile, driven=other == driven_from)
+        for other, match in matches.items()
+        if other in maps.graph.nodes and _admitted(match, profile)
+    ]
+    features = observation.features
+    node = Node(
+        node_id=node_id,
+        stamp_ns=features.stamp_ns,
+        frame_seq=features.seq,
+        pipeline=features.pipeline,
+        keypoints=len(features.lonlat_rad),
+        open=openings(observation.ranges, profile.open_range_m),
+    )
+    grown = MapGraph([*maps.graph.nodes.values(), node], [*maps.graph.edges.values(), *edges])
+    node = with_explored(node, grown)
+    known = [with_explored(maps.graph.nodes[e.b if e.a == node_id else e.a], grown) for e in edges]
+    changed = [UpdateNode(node=n) for n in known if n != maps.graph.nodes[n.node_id]]
+    operations: list[Operation] = [AddNode(node=node, features=features)]
+    operations += [PutEdge(edge=edge) for edge in edges]
+    operations += changed
+    maps.commit(operations)
+    return node_id
+
+
+def _admitted(match: NodeMatch, profile: Profile) -> bool:
+    """Edge rule 4.1; verified similarity also asks for trusted geometry."""
+    if similarity(match, profile) <= profile.s_edge_min:
+        return False
+    return profile.similarity == "raw" or (trusted(match, profile) and match.heading_rad is not None)
+
+
+def _edge(node_id: int, other: int, match: NodeMatch, profile: Profile, *, driven: bool) -> Edge:
+    found = heading_of(match, profile)
+    return Edge.model_validate(
+        {
+            **edge_between(node_id, other, found[0] if found is not None else None, match.yaw_rad),
+            "raw_matches": match.raw_matches,
+            "inliers": match.inliers,
+            "confidence": match.confidence,
+            "disparity_rad": match.disparity_rad,
+            "s_min": profile.s_edge_min,
+            "s_max": profile.s_node_max,
+            "traversals": int(driven),
+            "why": "driven" if driven else "seen",
+        }
+    )

@@ -1,0 +1,80 @@
+"""Thresholds and rules that belong together, by name.
+
+The thesis's 60 / 80 / 90 / 110 of 150 are bound to SuperPoint and SuperGlue; other pipelines have their own.
+"""
+
+import math
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field, PositiveFloat, PositiveInt
+
+
+class Profile(BaseModel):
+    """How the planner decides.
+
+    Attributes:
+        similarity: S counts verified matches (inliers) or raw ones (thesis).
+        s_edge_min, s_node_max: map thresholds of equations 4.1 and 4.2.
+        s_via_min, s_via_max: thresholds of equation 4.3; s_final ends a mission by count alone.
+        s_slow, s_max: of the velocity law, equation 6.5.
+        heading_method: a name of `services.planner.heading`.
+        exploration: "frontier" or the thesis's "strategies".
+        path_cost: "disparity" or the thesis's "nodes".
+        suspend_after: bad frames in a row before an edge is given up; delete_edges: for good (equation 6.4).
+        arrival_rad: angular disparity at which a place is reached; 0 uses s_final.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: str
+    similarity: Literal["verified", "raw"] = "verified"
+    s_edge_min: PositiveInt = 30
+    s_node_max: PositiveInt = 90
+    s_via_min: PositiveInt = 22
+    s_via_max: PositiveInt = 100
+    s_final: PositiveInt = 1_000_000
+    s_slow: PositiveInt = 150
+    s_max: PositiveInt = 300
+    heading_method: str = "epipolar"
+    exploration: Literal["frontier", "strategies"] = "frontier"
+    path_cost: Literal["disparity", "nodes"] = "disparity"
+    suspend_after: PositiveInt = 5
+    delete_edges: bool = False
+    arrival_rad: float = Field(default=math.radians(1.0), ge=0.0)
+    travel_arrival_rad: PositiveFloat = math.radians(3.0)
+    heading_std_max_rad: PositiveFloat = math.radians(6.0)
+    saturation_steps: PositiveInt = 5
+    exploration_noise_rad: float = math.radians(50.0)
+    admissible_noise_rad: float = math.radians(90.0)
+    open_range_m: PositiveFloat = 1.0
+    wall_range_m: PositiveFloat = 0.45
+
+
+DEFAULT = Profile(name="default")
+
+THESIS = Profile(
+    name="thesis",
+    similarity="raw",
+    s_edge_min=40,
+    s_node_max=90,
+    s_via_min=30,
+    s_via_max=85,
+    s_final=105,
+    s_slow=85,
+    s_max=150,
+    heading_method="histogram",
+    exploration="strategies",
+    path_cost="nodes",
+    suspend_after=1,
+    delete_edges=True,
+    arrival_rad=0.0,
+)
+
+PROFILES = {profile.name: profile for profile in (DEFAULT, THESIS)}
+
+
+def profile_named(name: str) -> Profile:
+    """Return the profile or raise ValueError listing the choices."""
+    if name not in PROFILES:
+        raise ValueError(f"planner profile must be one of {sorted(PROFILES)}, got {name!r}")
+    return PROFILES[name]

@@ -1,0 +1,163 @@
+"""Planner loop: one decision per frame, requests in between."""
+
+import logging
+import threading
+import time
+
+from services.planner.control import MissionControl, MissionError
+from services.planner.ports import Decision, Observation
+from services.planner.profiles import Profile, profile_named
+from services.planner.settings import PlannerSettings
+from shared.bus import Bus
+from shared.messages import Event, Features, Heading, MissionRequest, MissionStatus, Ranges
+from shared.messages.missions import EventValue
+from shared.queries import QueryError, Request
+from shared.topics import EVENT, FEATURES, HEADING, MAP_DELTA, MISSION, RANGES, STATUS
+from shared.wire import WireError
+
+log = logging.getLogger(__name__)
+
+PERIOD_S = 0.1
+HEARTBEAT_S = 1.0
+
+
+class Planner:
+    """Reads features and distances, answers each frame of a running mission with one heading."""
+
+    def __init__(self, settings: PlannerSettings, bus: Bus) -> None:
+        self._settings, self._bus = settings, bus
+        self._profile: Profile = profile_named(settings.profile)
+        robot = settings.robot
+        self._features_in = bus.subscribe(FEATURES, robot=robot)
+        self._ranges_in = bus.subscribe(RANGES, robot=robot)
+        self._deltas = bus.subscribe(MAP_DELTA, map="*")
+        self._requests = bus.requests(MISSION, robot=robot)
+        self._headings = bus.publisher(HEADING, robot=robot)
+        self._statuses = bus.publisher(STATUS, robot=robot)
+        self._events = bus.publisher(EVENT, robot=robot)
+        self.control = MissionControl(settings, self._profile, bus)
+        self._features: Features | None = None
+        self._ranges: Ranges | None = None
+        self._answered: Heading | None = None
+        self._event_count = 0
+        self._heartbeat_s = 0.0
+
+    def turn(self, now_s: float) -> None:
+        """Requests first, then the newest frame."""
+        while (request := self._requests.take()) is not None:
+            self._handle(request)
+        for delta in self._deltas.take_all():
+            if self.control.map is not None and delta.map == self.control.map.name:
+                self.control.follow_store(delta.revision, "" if delta.reset else delta.author)
+        self._ranges = self._ranges_in.take() or self._ranges
+        self._features = self._features_in.take() or self._features
+        if (
+            self._features is not None
+            and self._ranges is not None
+            and self._ready(self._features, self._ranges)
+        ):
+            self._answer(Observation(self._features, self._ranges))
+        if now_s - self._heartbeat_s > HEARTBEAT_S:
+            self._publish_status(now_s)
+
+    def _ready(self, features: Features, ranges: Ranges) -> bool:
+        """In lockstep both must be of one frame; the simulator repeats them until they are answered."""
+        return not features.lockstep or features.seq == ranges.seq
+
+    def _answer(self, observation: Observation) -> None:
+        features = observation.features
+        answered = self._answered
+        if answered is not None and (answered.seq, answered.stamp_ns) == (features.seq, features.stamp_ns):
+            self._headings.put(answered)
+            self._features = None
+            return
+        if self.control.state != "running":
+            return
+        decision = self.control.step(observation)
+        self._answered = self._heading(features, decision)
+        self._headings.put(self._answered)
+        self._features = None
+        self._tell(features, decision)
+        self._publish_status(time.monotonic())
+
+    def _heading(self, features: Features, decision: Decision) -> Heading:
+        return Heading(
+            seq=features.seq,
+            stamp_ns=features.stamp_ns,
+            robot=self._settings.robot,
+            mission_id=self.control.status().mission_id,
+            epoch=self.control.epoch,
+            ttl_ms=self._settings.heading_ttl_ms,
+            action=decision.action,
+            heading_rad=decision.heading_rad,
+            s_cv=decision.s_cv,
+            s_slow=self._profile.s_slow,
+            s_max=self._profile.s_max,
+            speed_fraction=decision.speed_fraction,
+            method=decision.method,
+            why=decision.why[:400],
+        )
+
+    def _tell(self, features: Features, decision: Decision) -> None:
+        """Publish every decision with its reason."""
+        self._event(
+            features,
+            "heading" if decision.action == "go" else "hold",
+            decision.why,
+            {
+                "heading_rad": decision.heading_rad,
+                "method": decision.method,
+                "s_cv": decision.s_cv,
+                "via_index": self.control.status().via_index,
+            },
+        )
+        for note in decision.notes:
+            self._event(features, note.kind, note.reason, note.values)
+        if decision.outcome:
+            self._event(features, decision.outcome, decision.why, {"failure": decision.failure})
+
+    def _event(
+        self, features: Features, kind: str, reason: str, values: dict[str, float | int | str | bool | None]
+    ) -> None:
+        self._event_count += 1
+        self._events.put(
+            Event(
+                seq=self._event_count,
+                stamp_ns=features.stamp_ns,
+                robot=self._settings.robot,
+                mission_id=self.control.status().mission_id,
+                step=self.control.step_count,
+                kind=kind,
+                reason=reason[:400],
+                values=tuple(EventValue(name=name, value=value) for name, value in values.items()),
+            )
+        )
+
+    def _handle(self, request: Request[MissionRequest, MissionStatus]) -> None:
+        try:
+            status = self.control.handle(request.message)
+        except (MissionError, QueryError, WireError) as error:
+            request.refuse(str(error))
+            return
+        request.reply(status)
+        self._statuses.put(status)
+
+    def _publish_status(self, now_s: float) -> None:
+        self._heartbeat_s = now_s
+        self._statuses.put(self.control.status())
+
+
+def run(settings: PlannerSettings, bus: Bus, stop: threading.Event) -> None:
+    """Claim the robot, then serve until `stop`; a service that is away is waited for."""
+    planner = Planner(settings, bus)
+    claimed = False
+    while not stop.is_set():
+        bus.wait(PERIOD_S)
+        try:
+            if not claimed:
+                planner.control.claim()
+                claimed = True
+                bus.announce("planner")
+            planner.turn(time.monotonic())
+        except (QueryError, WireError) as error:
+            bus.counters.count("unanswered", str(error))
