@@ -1,0 +1,1 @@
+"""Detectors and descriptors, one plugin per file, file name = plugin name."""

@@ -1,0 +1,40 @@
+"""BEBLID (Suarez et al. 2020): boosted binary descriptor, 64 bytes (THESIS row 9), on ORB's corners."""
+
+from typing import Any
+
+import cv2
+import numpy.typing as npt
+
+from services.features.extractors.opencv_keypoints import describe_chosen, detections_from_keypoints
+from services.features.extractors.orb import create_orb
+from services.features.interfaces import Detections, Distance, Image, IndexArray
+from services.features.pipelines import Profile
+
+ORB_SCALE = 1.0
+"""Sampling window for ORB key points, from OpenCV's documentation of BEBLID."""
+
+WIDTH = 64
+
+
+class Beblid:
+    """ORB detector, BEBLID descriptor."""
+
+    distance: Distance = "hamming"
+
+    def __init__(self, profile: Profile) -> None:
+        self._orb = create_orb(profile)
+        self._beblid = cv2.xfeatures2d.BEBLID.create(ORB_SCALE, cv2.xfeatures2d.BEBLID_SIZE_512_BITS)
+        self._upright = profile.upright
+
+    def detect(self, gray: Image) -> Detections:
+        """Find oriented FAST corners."""
+        return detections_from_keypoints(self._orb.detect(gray, None))
+
+    def describe(
+        self, gray: Image, detections: Detections, chosen: IndexArray
+    ) -> tuple[IndexArray, npt.NDArray[Any]]:
+        """Describe the chosen ones, 64 bytes each."""
+        if self._upright:
+            for index in chosen:
+                detections.handle[index].angle = 0.0
+        return describe_chosen(self._beblid, gray, detections, chosen, WIDTH)

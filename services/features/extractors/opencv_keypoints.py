@@ -1,0 +1,41 @@
+"""OpenCV key points <-> continuous pixels; OpenCV counts from the centre of the first pixel."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from services.features.interfaces import Detections, Image, IndexArray
+
+
+def detections_from_keypoints(keypoints: Sequence[Any]) -> Detections:
+    """Wrap cv2.KeyPoint objects."""
+    pixels = np.array([k.pt for k in keypoints], dtype=np.float64).reshape(-1, 2) + 0.5
+    scores = np.array([k.response for k in keypoints], dtype=np.float32)
+    return Detections(pixels, scores, tuple(keypoints))
+
+
+def describe_chosen(
+    descriptor: Any, gray: Image, detections: Detections, chosen: IndexArray, width: int
+) -> tuple[IndexArray, npt.NDArray[Any]]:
+    """Let `descriptor` describe the chosen key points; it may drop some, so each carries its index along.
+
+    Args:
+        descriptor: a cv2.Feature2D.
+        gray: the view they were found in.
+        detections: as returned by detections_from_keypoints.
+        chosen: indices of those to describe.
+        width: D, the width of an empty answer.
+    """
+    keypoints = []
+    for index in chosen:
+        keypoint = detections.handle[index]
+        keypoint.class_id = int(index)
+        keypoints.append(keypoint)
+    if not keypoints:
+        return chosen, np.zeros((0, width), np.uint8)
+    described, descriptors = descriptor.compute(gray, keypoints)
+    if not described:
+        return chosen[:0], np.zeros((0, width), np.uint8)
+    return np.array([k.class_id for k in described], dtype=np.intp), np.asarray(descriptors)

@@ -1,0 +1,46 @@
+"""ORB (Rublee et al. 2011): oriented FAST corners, 256 comparisons as 32 bytes (THESIS row 9)."""
+
+from typing import Any
+
+import cv2
+import numpy.typing as npt
+
+from services.features.extractors.opencv_keypoints import describe_chosen, detections_from_keypoints
+from services.features.interfaces import Detections, Distance, Image, IndexArray
+from services.features.pipelines import Profile
+
+CANDIDATES = 8
+"""Corners looked for per keypoint kept, so that spreading them has a choice."""
+
+FAST_THRESHOLD = 5
+"""Grey levels; OpenCV's 20 leaves plain walls empty."""
+
+WIDTH = 32
+
+
+def create_orb(profile: Profile) -> Any:
+    """OpenCV's ORB with thresholds for indoor walls; also the detector of BEBLID."""
+    return cv2.ORB.create(nfeatures=CANDIDATES * profile.keypoints, fastThreshold=FAST_THRESHOLD)
+
+
+class Orb:
+    """ORB detector and descriptor."""
+
+    distance: Distance = "hamming"
+
+    def __init__(self, profile: Profile) -> None:
+        self._orb = create_orb(profile)
+        self._upright = profile.upright
+
+    def detect(self, gray: Image) -> Detections:
+        """Find oriented FAST corners."""
+        return detections_from_keypoints(self._orb.detect(gray, None))
+
+    def describe(
+        self, gray: Image, detections: Detections, chosen: IndexArray
+    ) -> tuple[IndexArray, npt.NDArray[Any]]:
+        """Describe the chosen ones, 32 bytes each."""
+        if self._upright:
+            for index in chosen:
+                detections.handle[index].angle = 0.0
+        return describe_chosen(self._orb, gray, detections, chosen, WIDTH)

@@ -1,0 +1,61 @@
+"""SIFT with the square-root (Hellinger) normalisation, kept as bytes.
+
+Lowe 2004 for detector and descriptor; Arandjelovic and Zisserman 2012 for RootSIFT: d' = sqrt(d / |d|_1),
+a unit vector whose Euclidean distance is the Hellinger distance of d. Bytes hold 512 d', clipped at 255.
+"""
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from services.features.extractors.opencv_keypoints import describe_chosen, detections_from_keypoints
+from services.features.interfaces import Detections, Distance, Image, IndexArray
+from services.features.pipelines import Profile
+
+CONTRAST = 0.01
+"""Well below OpenCV's 0.04: plain plaster walls carry faint texture only."""
+
+BYTE_SCALE = 512.0
+WIDTH = 128
+
+
+class Sift:
+    """Root SIFT."""
+
+    distance: Distance = "euclidean"
+
+    def __init__(self, profile: Profile) -> None:
+        self._sift = cv2.SIFT.create(nfeatures=0, contrastThreshold=CONTRAST, edgeThreshold=10.0, sigma=1.6)
+        self._upright = profile.upright
+
+    def detect(self, gray: Image) -> Detections:
+        """Find extrema of the difference of Gaussians."""
+        return detections_from_keypoints(one_per_place(self._sift.detect(gray, None)))
+
+    def describe(
+        self, gray: Image, detections: Detections, chosen: IndexArray
+    ) -> tuple[IndexArray, npt.NDArray[np.uint8]]:
+        """Describe the chosen ones as bytes."""
+        if self._upright:
+            for index in chosen:
+                detections.handle[index].angle = 0.0
+        kept, raw = describe_chosen(self._sift, gray, detections, chosen, WIDTH)
+        return kept, root_bytes(raw)
+
+
+def one_per_place(keypoints: Sequence[cv2.KeyPoint]) -> list[cv2.KeyPoint]:
+    """Keep the first of the key points that differ only by orientation: they are one place to match."""
+    seen: dict[tuple[float, float, float], cv2.KeyPoint] = {}
+    for keypoint in keypoints:
+        seen.setdefault((*keypoint.pt, keypoint.size), keypoint)
+    return list(seen.values())
+
+
+def root_bytes(raw: npt.NDArray[np.generic]) -> npt.NDArray[np.uint8]:
+    """Square-root normalise (N, 128) SIFT histograms and scale them to bytes."""
+    histograms = np.asarray(raw, dtype=np.float32)
+    total = np.maximum(histograms.sum(axis=1, keepdims=True), 1e-6)
+    scaled = np.rint(BYTE_SCALE * np.sqrt(histograms / total))
+    return np.asarray(np.minimum(scaled, 255.0), dtype=np.uint8)

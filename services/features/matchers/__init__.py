@@ -1,0 +1,1 @@
+"""Ways to pair descriptors, one plugin per file, file name = plugin name."""

@@ -1,0 +1,31 @@
+"""Mutual nearest neighbours that are clearly nearer than the second nearest (Lowe 2004, section 7.1)."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from services.features.interfaces import Distance, FeatureSet, IndexArray
+from services.features.matching import find_neighbours
+from services.features.pipelines import Profile
+
+
+class MutualRatio:
+    """Both are each other's nearest, and first distance < ratio x second distance."""
+
+    def __init__(self, profile: Profile, distance: Distance) -> None:
+        self._distance = distance
+        # Squared Euclidean distances of +1/-1 vectors are proportional to the Hamming distance itself.
+        self._ratio = profile.ratio if distance == "hamming" else profile.ratio**2
+
+    def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[IndexArray]:
+        """(M, 2) index pairs per other, in the order of the query."""
+        pairs = []
+        for found in find_neighbours(
+            query.descriptors, [other.descriptors for other in others], self._distance
+        ):
+            if found is None:
+                pairs.append(np.zeros((0, 2), dtype=np.intp))
+                continue
+            rows = np.flatnonzero(found.mutual & (found.first < self._ratio * found.second))
+            pairs.append(np.stack([rows, found.nearest[rows]], axis=1))
+        return pairs

@@ -1,0 +1,81 @@
+"""One MATCH question, answered in two steps so that each can be timed: pair, then verify. Pure."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from services.features.comparison import answer, shortlist
+from services.features.interfaces import FeatureSet, IndexArray
+from services.features.map_cache import Place
+from services.features.pipeline import Pipeline
+from services.features.verification import Candidate, feature_set, verify
+from shared.messages.features import Features
+from shared.messages.matching import MatchRequest, NodeMatch
+
+
+class RequestError(ValueError):
+    """A question that cannot be answered as asked; the text says why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Paired:
+    """Raw matches of a question: the candidates by id, their pairs, and who was shortlisted."""
+
+    query: FeatureSet
+    seq: int
+    candidates: Mapping[int, Candidate]
+    pairs: Mapping[int, IndexArray]
+    shortlisted: list[int]
+
+
+def pair(pipeline: Pipeline, request: MatchRequest, current: Features, places: Mapping[int, Place]) -> Paired:
+    """Match the descriptors of the current frame with every candidate.
+
+    Raises:
+        RequestError: something was made by another pipeline, or a node is not in the map.
+    """
+    _require_pipeline("frame", current, pipeline)
+    wanted = sorted(places) if request.best_k else sorted(set(request.node_ids))
+    missing = sorted(set(request.node_ids) - places.keys())
+    if missing:
+        raise RequestError(f"map {request.map!r} has no node {missing[:8]}")
+    for node_id in wanted:
+        if places[node_id].pipeline != pipeline.identity:
+            raise RequestError(_mismatch(f"node {node_id}", places[node_id].pipeline, pipeline))
+    candidates = {node_id: Candidate(node_id, places[node_id].features) for node_id in wanted}
+    for number, target in enumerate(request.targets, start=1):
+        _require_pipeline(f"target {number}", target, pipeline)
+        candidates[-number] = Candidate(-number, feature_set(target))
+    query = feature_set(current)
+    found = pipeline.matcher.match(query, [candidate.features for candidate in candidates.values()])
+    pairs = dict(zip(candidates, found, strict=True))
+    of_map = {node_id: rows for node_id, rows in pairs.items() if node_id >= 0}
+    return Paired(query, current.seq, candidates, pairs, shortlist(of_map, request.best_k))
+
+
+def verify_paired(pipeline: Pipeline, request: MatchRequest, paired: Paired) -> tuple[NodeMatch, ...]:
+    """Verify the nodes asked for, the targets and the shortlist; most similar first."""
+    wanted = {*request.node_ids, *paired.shortlisted, *(n for n in paired.candidates if n < 0)}
+    results = {
+        node_id: verify(
+            paired.query,
+            paired.candidates[node_id],
+            paired.pairs[node_id],
+            paired.seq,
+            pipeline.verification,
+            request.with_matches,
+        )
+        for node_id in sorted(wanted)
+    }
+    return answer(results, request.node_ids, paired.shortlisted, request.best_k)
+
+
+def _require_pipeline(what: str, features: Features, pipeline: Pipeline) -> None:
+    if features.pipeline != pipeline.identity:
+        raise RequestError(_mismatch(what, features.pipeline, pipeline))
+
+
+def _mismatch(what: str, made_by: str, pipeline: Pipeline) -> str:
+    return (
+        f"{what} was made by pipeline {made_by!r}, this service runs {pipeline.identity!r}: "
+        "extract it again or start the service with that pipeline"
+    )

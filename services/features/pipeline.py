@@ -1,0 +1,43 @@
+"""One pipeline put together from its plugins: frame -> features message, and matches of two. Pure."""
+
+from services.features.decoding import decode_picture
+from services.features.extraction import extract
+from services.features.pipelines import Profile
+from services.features.registry import create_extractor, create_matcher, create_representation
+from services.features.thumbnail import make_thumbnail
+from services.features.verification import two_view_settings
+from shared.messages.features import Features
+from shared.messages.sensors import Frame
+
+
+class Pipeline:
+    """The plugins of one profile, ready to use."""
+
+    def __init__(self, profile: Profile, thumbnail_width_px: int = 320, thumbnail_quality: int = 70) -> None:
+        self.profile = profile
+        self.identity = profile.identity
+        self.extractor = create_extractor(profile)
+        self.representation = create_representation(profile)
+        self.matcher = create_matcher(profile, self.extractor.distance)
+        self.verification = two_view_settings(profile.verification_deg)
+        self._thumbnail = (thumbnail_width_px, thumbnail_quality)
+
+    def features_of(self, frame: Frame) -> Features:
+        """Extract a frame's visual words; the number, time and robot of the frame go with them.
+
+        Raises:
+            BadPictureError: the frame holds no usable picture.
+        """
+        picture = decode_picture(frame)
+        words = extract(picture, self.extractor, self.representation, self.profile)
+        return Features(
+            seq=frame.seq,
+            stamp_ns=frame.stamp_ns,
+            robot=frame.robot,
+            lockstep=frame.lockstep,
+            pipeline=self.identity,
+            lonlat_rad=words.lonlat_rad,
+            scores=words.scores,
+            descriptors=words.descriptors,
+            thumbnail=make_thumbnail(picture, *self._thumbnail),
+        )

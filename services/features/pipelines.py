@@ -1,0 +1,60 @@
+"""Named pipelines: which plugins work together, with which figures. Pure data, nothing heavy is imported."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Profile:
+    """One pipeline.
+
+    Attributes:
+        extractor: plugin of `extractors`.
+        representation: plugin of `representations`.
+        matcher: plugin of `matchers`.
+        keypoints: most keypoints kept per frame, which is S_max (THESIS row 11).
+        ratio: largest distance of the best candidate relative to the second best.
+        crop_deg: angle cut away above and below (THESIS row 4), degrees.
+        resize: rows and columns the whole picture is resized to (THESIS row 2); None = as it comes.
+        cells: columns and rows of the grid over which keypoints are spread; (1, 1) = the strongest only.
+        upright: describe keypoints without turning them; the robot's camera always stands upright.
+        verification_deg: largest angle off the epipolar plane of a verified match, degrees.
+    """
+
+    extractor: str
+    representation: str = "equirectangular"
+    matcher: str = "mutual_ratio"
+    keypoints: int = 300
+    ratio: float = 0.85
+    crop_deg: float = 25.0
+    resize: tuple[int, int] | None = (400, 800)
+    cells: tuple[int, int] = (16, 4)
+    upright: bool = True
+    verification_deg: float = 0.7
+
+    @property
+    def identity(self) -> str:
+        """What must be equal for two frames to be compared; travels as `Features.pipeline`."""
+        return f"{self.extractor}-{self.representation}-{self.keypoints}"
+
+
+PROFILES: dict[str, Profile] = {
+    "sift": Profile("sift"),
+    "thesis": Profile("sift", keypoints=150),
+    "orb": Profile("orb"),
+    "beblid": Profile("beblid"),
+    "sift_tangent": Profile("sift", representation="tangent"),
+    "orb_tangent": Profile("orb", representation="tangent"),
+    "beblid_tangent": Profile("beblid", representation="tangent"),
+    "sift_planar": Profile("sift", representation="planar"),
+}
+
+
+def find_profile(name: str) -> Profile:
+    """Return the profile of this name.
+
+    Raises:
+        ValueError: there is none; the text lists those there are.
+    """
+    if name not in PROFILES:
+        raise ValueError(f"pipeline must be one of {sorted(PROFILES)}, got {name!r}")
+    return PROFILES[name]

@@ -1,0 +1,1 @@
+"""Ways to cut a sphere into pictures, one plugin per file, file name = plugin name."""

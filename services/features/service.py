@@ -1,0 +1,136 @@
+"""Feature service: the Zenoh loop around `pipeline` and `matching_requests`. One thread does everything."""
+
+import logging
+import time
+from threading import Event
+
+import cv2
+
+from services.features.decoding import BadPictureError
+from services.features.frame_cache import FrameCache, FrameKey
+from services.features.map_cache import MapWords
+from services.features.map_reader import MapReader
+from services.features.matching_requests import RequestError, pair, verify_paired
+from services.features.pipeline import Pipeline
+from services.features.pipelines import find_profile
+from services.features.settings import FeaturesSettings
+from shared.bus import Bus, Request
+from shared.messages.features import ExtractRequest, Features
+from shared.messages.matching import MatchReply, MatchRequest
+from shared.messages.sensors import Frame
+from shared.topics import EXTRACT, FEATURES, FRAME, MATCH
+
+log = logging.getLogger(__name__)
+
+IDLE_S = 0.5
+
+
+class FeatureService:
+    """Extracts the newest frame and answers questions, in that order."""
+
+    def __init__(self, settings: FeaturesSettings, bus: Bus) -> None:
+        cv2.setNumThreads(settings.threads)
+        self._bus = bus
+        self._pipeline = Pipeline(
+            find_profile(settings.pipeline), settings.thumbnail_width_px, settings.thumbnail_quality
+        )
+        self._frames = FrameCache(settings.frames_kept)
+        self._maps = MapReader(bus, settings.map_timeout_s)
+        self._incoming = bus.subscribe(FRAME, robot=settings.robot)
+        self._outgoing = bus.publisher(FEATURES, robot=settings.robot)
+        self._matches = bus.requests(MATCH, robot=settings.robot)
+        self._extracts = bus.requests(EXTRACT)
+
+    def work(self) -> None:
+        """Handle everything that has arrived; a frame that comes meanwhile goes first again."""
+        while self._step():
+            pass
+
+    def _step(self) -> bool:
+        self._maps.follow()
+        if (frame := self._incoming.take()) is not None:
+            self._on_frame(frame)
+        elif (match := self._matches.take()) is not None:
+            self._on_match(match)
+        elif (picture := self._extracts.take()) is not None:
+            self._on_extract(picture)
+        else:
+            return False
+        return True
+
+    def _on_frame(self, frame: Frame) -> None:
+        key = FrameKey.of(frame)
+        verdict = self._frames.judge(key, frame.lockstep)
+        if verdict == "stale":
+            self._bus.counters.count("stale", f"frame {frame.seq} came after a newer one")
+            return
+        features = self._frames.same(key)
+        if features is None:
+            try:
+                features = self._pipeline.features_of(frame)
+            except BadPictureError as error:
+                self._bus.counters.count("malformed", f"frame {frame.seq}: {error}")
+                return
+            self._frames.put(key, features)
+        self._outgoing.put(features)
+
+    def _on_match(self, request: Request[MatchRequest, MatchReply]) -> None:
+        try:
+            reply = self._match(request.message)
+        except RequestError as error:
+            request.refuse(str(error))
+            return
+        request.reply(reply)
+
+    def _match(self, request: MatchRequest) -> MatchReply:
+        current = self._current(request)
+        needs_map = bool(request.node_ids or request.best_k)
+        words = (
+            self._maps.words(request.map, request.node_ids, request.map_revision)
+            if needs_map
+            else MapWords(0)
+        )
+        start_s = time.perf_counter()
+        paired = pair(self._pipeline, request, current, words.places)
+        paired_s = time.perf_counter()
+        results = verify_paired(self._pipeline, request, paired)
+        return MatchReply(
+            seq=current.seq,
+            stamp_ns=current.stamp_ns,
+            map=request.map,
+            map_revision=words.revision,
+            pipeline=self._pipeline.identity,
+            max_similarity=self._pipeline.profile.keypoints,
+            results=results,
+            match_ms=(paired_s - start_s) * 1e3,
+            verify_ms=(time.perf_counter() - paired_s) * 1e3,
+        )
+
+    def _current(self, request: MatchRequest) -> Features:
+        if request.features is not None:
+            return request.features
+        features = self._frames.get(request.seq)
+        if features is None:
+            raise RequestError(
+                f"frame {request.seq} is not kept (kept: {self._frames.span()}): ask about a newer one"
+            )
+        return features
+
+    def _on_extract(self, request: Request[ExtractRequest, Features]) -> None:
+        try:
+            features = self._pipeline.features_of(request.message.frame)
+        except BadPictureError as error:
+            self._bus.counters.count("bad_picture", str(error))
+            request.refuse(str(error))
+            return
+        request.reply(features)
+
+
+def run(settings: FeaturesSettings, bus: Bus, stop: Event) -> None:
+    """Serve until `stop` is set."""
+    service = FeatureService(settings, bus)
+    bus.announce("features")
+    log.info("ready, pipeline %s", find_profile(settings.pipeline).identity)
+    while not stop.is_set():
+        service.work()
+        bus.wait(IDLE_S)

@@ -1,0 +1,35 @@
+"""Settings of the feature service; importing them loads no image library."""
+
+from pydantic import Field, PositiveFloat, field_validator
+from pydantic_settings import SettingsConfigDict
+
+from services.features.pipelines import find_profile
+from shared.settings import ServiceSettings
+
+
+class FeaturesSettings(ServiceSettings):
+    """Read from the environment, e.g. FEATURES_PIPELINE=thesis.
+
+    Attributes:
+        pipeline: profile name, see `pipelines`.
+        threads: cores OpenCV may use.
+        frames_kept: newest frames whose features a MATCH can name by number.
+        map_timeout_s: longest wait for the map store.
+        thumbnail_width_px: width of the picture sent along for people; half as high.
+        thumbnail_quality: JPEG quality of it, percent.
+    """
+
+    model_config = SettingsConfigDict(env_prefix="FEATURES_")
+
+    pipeline: str = "sift"
+    threads: int = Field(default=2, ge=1, le=64)
+    frames_kept: int = Field(default=8, ge=1, le=1024)
+    map_timeout_s: PositiveFloat = 5.0
+    thumbnail_width_px: int = Field(default=320, ge=16, le=1024)
+    thumbnail_quality: int = Field(default=70, ge=1, le=100)
+
+    @field_validator("pipeline")
+    @classmethod
+    def _known(cls, name: str) -> str:
+        find_profile(name)
+        return name

@@ -1,0 +1,104 @@
+"""A router on a free port, the feature service in a thread, and a stand-in for the map store."""
+
+import socket
+import threading
+from collections.abc import Iterator
+
+import pytest
+import zenoh
+
+from services.features.service import run
+from services.features.settings import FeaturesSettings
+from shared.bus import Bus, open_bus, wait_until
+from shared.bus_config import router_config
+from shared.messages.features import Features
+from shared.messages.maps import AddNode, MapDelta, MapReply, MapRequest, Node, NodeFeatures
+from shared.topics import MAP, MAP_DELTA
+
+
+class StandInStore:
+    """Answers MAP read_features and publishes deltas, as the map store would."""
+
+    def __init__(self, bus: Bus, name: str) -> None:
+        self.name, self.revision, self.reads = name, 0, 0
+        self.nodes: dict[int, Features] = {}
+        self._bus = bus
+        self._deltas = bus.publisher(MAP_DELTA, map=name)
+        self._requests = bus.requests(MAP, map="*")
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._serve)
+        self._thread.start()
+
+    def _serve(self) -> None:
+        while not self._stop.is_set():
+            self._bus.wait(0.05)
+            while (request := self._requests.take()) is not None:
+                if request.name != self.name:
+                    request.refuse(f"no map {request.name!r}")
+                    continue
+                assert request.message == MapRequest(action="read_features")
+                self.reads += 1
+                features = tuple(NodeFeatures(node_id=n, features=f) for n, f in self.nodes.items())
+                request.reply(MapReply(map=self.name, revision=self.revision, features=features))
+
+    def add(self, node_id: int, features: Features, tell: bool = True) -> None:
+        """Add a node; `tell` sends the delta."""
+        self.nodes[node_id] = features
+        self.revision += 1
+        if tell:
+            operation = AddNode(node=Node(node_id=node_id), features=features)
+            self._deltas.put(MapDelta(map=self.name, revision=self.revision, operations=(operation,)))
+
+    def reset(self) -> None:
+        """Say that the map was replaced."""
+        self.revision += 1
+        self._deltas.put(MapDelta(map=self.name, revision=self.revision, reset=True))
+
+    def close(self) -> None:
+        self._stop.set()
+        self._thread.join()
+
+
+@pytest.fixture
+def endpoint() -> Iterator[str]:
+    """A router on a port that was free a moment ago."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        address = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    router = zenoh.open(router_config(address))
+    yield address
+    router.close()
+
+
+@pytest.fixture
+def bus(endpoint: str) -> Iterator[Bus]:
+    """The test's own session."""
+    with open_bus(endpoint) as mine:
+        yield mine
+
+
+@pytest.fixture
+def store(endpoint: str) -> Iterator[StandInStore]:
+    """A map store with one empty map, `flat`."""
+    with open_bus(endpoint) as mine:
+        stand_in = StandInStore(mine, "flat")
+        yield stand_in
+        stand_in.close()
+
+
+@pytest.fixture
+def service(endpoint: str, bus: Bus) -> Iterator[None]:
+    """The feature service, alive on the bus."""
+    stop = threading.Event()
+    settings = FeaturesSettings(endpoint=endpoint, map_timeout_s=2.0)
+
+    def serve() -> None:
+        with open_bus(endpoint) as mine:
+            run(settings, mine, stop)
+
+    thread = threading.Thread(target=serve)
+    thread.start()
+    assert wait_until(lambda: bus.alive("features") == ["features"], timeout_s=10.0)
+    yield
+    stop.set()
+    thread.join()

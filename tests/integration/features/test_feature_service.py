@@ -1,0 +1,154 @@
+"""The feature service on a real bus: frames in, features out, questions answered or refused."""
+
+import cv2
+import numpy as np
+import pytest
+
+from shared.bus import Bus, wait_until
+from shared.messages.features import ExtractRequest, Features
+from shared.messages.matching import MatchReply, MatchRequest
+from shared.messages.sensors import Frame
+from shared.queries import RefusedError
+from shared.topics import EXTRACT, FEATURES, FRAME, MATCH
+from tests.unit.services.features.room import render_room
+
+PLACES_M = ((0.4, 0.0), (0.8, 0.3), (-1.0, 0.2), (-1.5, -0.6))
+
+
+def frame_at(x_m: float, y_m: float, seq: int = 0, stamp_ns: int = 1, lockstep: bool = True) -> Frame:
+    picture = render_room(x_m, y_m, 0.0, 256)
+    data = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, 92])[1].tobytes()
+    return Frame(
+        robot="r1",
+        seq=seq,
+        stamp_ns=stamp_ns,
+        lockstep=lockstep,
+        encoding="jpeg",
+        width_px=512,
+        height_px=256,
+        data=data,
+    )
+
+
+def extract(bus: Bus, frame: Frame) -> Features:
+    return bus.ask(EXTRACT, ExtractRequest(frame=frame), 5.0)
+
+
+def match(bus: Bus, **fields: object) -> MatchReply:
+    return bus.ask(MATCH, MatchRequest(**{"map": "flat", **fields}), 5.0, robot="r1")
+
+
+def send_until_features(bus: Bus, frame: Frame) -> Features:
+    inbox = bus.subscribe(FEATURES, robot="r1")
+    publisher = bus.publisher(FRAME, robot="r1")
+    got: list[Features] = []
+
+    def arrived() -> bool:
+        publisher.put(frame)
+        features = inbox.wait(0.5)
+        if features is not None and features.seq == frame.seq:
+            got.append(features)
+        return bool(got)
+
+    assert wait_until(arrived, timeout_s=10.0)
+    return got[0]
+
+
+@pytest.mark.usefixtures("service")
+def test_a_frame_becomes_features_and_the_same_frame_again_the_same_features(bus: Bus) -> None:
+    frame = frame_at(0.0, 0.0, seq=4, stamp_ns=77)
+    first, again = send_until_features(bus, frame), send_until_features(bus, frame)
+    assert (first.seq, first.stamp_ns, first.robot, first.lockstep) == (4, 77, "r1", True)
+    assert len(first.lonlat_rad) > 100
+    assert cv2.imdecode(np.frombuffer(first.thumbnail, np.uint8), cv2.IMREAD_COLOR).shape == (160, 320, 3)
+    np.testing.assert_array_equal(first.descriptors, again.descriptors)
+
+
+@pytest.mark.usefixtures("service")
+def test_extract_of_a_goal_picture_equals_the_features_of_the_same_frame(bus: Bus) -> None:
+    frame = frame_at(0.0, 0.0, seq=4)
+    np.testing.assert_array_equal(extract(bus, frame).lonlat_rad, send_until_features(bus, frame).lonlat_rad)
+
+
+@pytest.mark.usefixtures("service")
+def test_match_finds_the_places_in_order_and_follows_deltas(bus: Bus, store) -> None:
+    for node_id, place in enumerate(PLACES_M[:3]):
+        store.add(node_id, extract(bus, frame_at(*place)), tell=False)
+    current = extract(bus, frame_at(0.0, 0.0))
+    reply = match(bus, features=current, node_ids=(2,), best_k=1, targets=(store.nodes[1],))
+    assert [result.node_id for result in reply.results] == [0, -1, 2]
+    assert (reply.map_revision, reply.max_similarity, reply.pipeline) == (3, 300, current.pipeline)
+    nearest = reply.results[0]
+    assert nearest.status == "ok"
+    assert abs(nearest.heading_rad) < np.deg2rad(2.0)
+    assert nearest.inliers == nearest.inlier_mask.sum()
+
+    store.add(3, extract(bus, frame_at(*PLACES_M[3])))
+    reply = match(bus, features=current, node_ids=(3,), map_revision=4, with_matches=False)
+    assert [result.node_id for result in reply.results] == [3]
+    assert reply.results[0].matches_rad is None
+    assert (reply.map_revision, store.reads) == (4, 1)
+
+    store.nodes.pop(0)
+    store.reset()
+    assert wait_until(lambda: match(bus, features=current, best_k=9).map_revision == 5, timeout_s=5.0)
+    assert {result.node_id for result in match(bus, features=current, best_k=9).results} == {1, 2, 3}
+
+
+@pytest.mark.usefixtures("service")
+def test_a_lost_delta_or_a_node_not_seen_yet_makes_it_read_the_map_again(bus: Bus, store) -> None:
+    current = extract(bus, frame_at(0.0, 0.0))
+    assert match(bus, features=current, best_k=2).results == ()
+    store.add(7, current, tell=False)
+    assert match(bus, features=current, node_ids=(7,)).results[0].status == "no_baseline"
+    store.add(8, current, tell=False)
+    assert match(bus, features=current, best_k=2, map_revision=2).map_revision == 2
+    assert store.reads == 3
+
+
+@pytest.mark.usefixtures("service")
+def test_the_same_question_has_the_same_answer(bus: Bus, store) -> None:
+    for node_id, place in enumerate(PLACES_M):
+        store.add(node_id, extract(bus, frame_at(*place)), tell=False)
+    send_until_features(bus, frame_at(0.1, 0.1, seq=9))
+    replies = [match(bus, seq=9, best_k=3) for _ in range(2)]
+    timeless = [reply.model_copy(update={"match_ms": 0.0, "verify_ms": 0.0}) for reply in replies]
+    assert timeless[0].model_dump() == timeless[1].model_dump()
+
+
+@pytest.mark.usefixtures("service", "store")
+def test_what_cannot_be_answered_is_refused_with_the_reason(bus: Bus) -> None:
+    current = extract(bus, frame_at(0.0, 0.0))
+    foreign = current.model_copy(update={"pipeline": "orb-equirectangular-150"})
+    with pytest.raises(RefusedError, match="frame 5 is not kept"):
+        match(bus, seq=5, best_k=1)
+    with pytest.raises(RefusedError, match="map 'cellar' is not known to the map store"):
+        match(bus, map="cellar", features=current, best_k=1)
+    with pytest.raises(RefusedError, match=r"map 'flat' has no node \[3\]"):
+        match(bus, features=current, node_ids=(3,))
+    with pytest.raises(RefusedError, match=r"target 1 was made by pipeline 'orb-.*runs 'sift-equi"):
+        match(bus, features=current, targets=(foreign,))
+
+
+@pytest.mark.usefixtures("service")
+def test_match_without_a_map_store_says_so(bus: Bus) -> None:
+    with pytest.raises(RefusedError, match="the map store is not up"):
+        match(bus, features=extract(bus, frame_at(0.0, 0.0)), best_k=1)
+
+
+@pytest.mark.usefixtures("service")
+def test_junk_is_refused_and_the_service_goes_on(bus: Bus) -> None:
+    good = frame_at(0.0, 0.0)
+    for data, reason in (
+        (b"no picture", "not a JPEG"),
+        (good.data[: len(good.data) // 2], "cut short"),
+        (render_jpeg(64), "announces 512 x 256, its JPEG is 64 x 32"),
+    ):
+        with pytest.raises(RefusedError, match=reason):
+            extract(bus, good.model_copy(update={"data": data}))
+    bus.publisher(FRAME, robot="r1").put(good.model_copy(update={"data": b"junk", "seq": 1}))
+    assert send_until_features(bus, good.model_copy(update={"seq": 2})).seq == 2
+
+
+def render_jpeg(width: int) -> bytes:
+    return cv2.imencode(".jpg", np.zeros((width // 2, width, 3), np.uint8))[1].tobytes()
