@@ -54,7 +54,7 @@ def stop_on_signals() -> threading.Event:
 def run_service(
     service: str, settings: ServiceSettings, loop: Callable[[Bus, threading.Event], None]
 ) -> None:
-    """Run `loop(bus, stop)` with logging, signals and a bus that closes. The loop announces itself when ready."""
+    """Run `loop(bus, stop)` with logging, signals and a bus that closes; it announces itself when ready."""
     configure_logging(service, settings.log_level)
     stop = stop_on_signals()
     with open_bus(settings.endpoint) as bus:

@@ -36,7 +36,7 @@ class DriveLimits(BaseModel):
 def compute_command(
     heading: Heading, ranges: Ranges, memory: Passing, rng: np.random.Generator, limits: DriveLimits
 ) -> tuple[Command, Passing]:
-    """Obstacles first, then the estimate, then the velocity law (thesis figure 4.8, equations 6.5 and 6.6)."""
+    """Obstacles first, then the estimate, then the velocity law (figure 4.8, equations 6.5 and 6.6)."""
     if heading.action == "hold":
         return stop_command(heading, "hold: " + heading.why[:100], limits), memory
     steering, memory = _steer(heading, ranges, memory, rng, limits)

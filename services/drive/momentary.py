@@ -1,4 +1,4 @@
-"""The thesis's obstacle avoidance, section 4.3: away from what is near, blended with the estimate, no memory."""
+"""The thesis's obstacle avoidance, section 4.3: away from what is near, without memory."""
 
 import math
 
@@ -10,7 +10,7 @@ from services.drive.steering import Steering
 def obstacle_heading(
     angles_rad: tuple[float, ...], distances_m: tuple[float, ...], range_m: float
 ) -> float | None:
-    """Direction of the obstacles nearer than `range_m`: angle of the sum of their unit vectors; None if none."""
+    """Direction of the obstacles nearer than `range_m`: sum of their unit vectors; None if none."""
     near = [angle for angle, distance in zip(angles_rad, distances_m, strict=True) if distance < range_m]
     if not near:
         return None

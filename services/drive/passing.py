@@ -1,4 +1,4 @@
-"""Getting round furniture: follow its border on one side until the way ahead is free and all turning is undone.
+"""Getting round furniture: follow its border until the way ahead is free and all turning is undone.
 
 The rule is Pledge's (Abelson and diSessa, Turtle Geometry, 1981) with a compass that is the planner's
 heading: the deflection from the wished heading is counted, also beyond half a turn, and the border is left

@@ -21,8 +21,8 @@ class DriveSettings(ServiceSettings):
 
     model_config = SettingsConfigDict(env_prefix="DRIVE_")
 
-        profile: ProfileName = "default"
-        seed: int = 0
+    profile: ProfileName = "default"
+    seed: int = 0
 
     def limits(self) -> DriveLimits:
         """The limits of the chosen profile."""

@@ -45,7 +45,7 @@ class MissionControl:
         return self._record.epoch
 
     def claim(self) -> None:
-        """Take over from a planner before; goes on with its mission. Raises QueryError while the store is away."""
+        """Take over from a planner before; goes on with its mission. QueryError while the store is away."""
         request = MissionRecordRequest(action="claim", record=self._record)
         self._record = self._bus.ask(
             MISSION_RECORD, request, self._settings.map_timeout_s, robot=self._settings.robot

@@ -1,4 +1,4 @@
-"""Frontiers without metres: twelve directions a node, open by distance sensor, explored by edges and departures."""
+"""Frontiers without metres: twelve directions a node, open by sensor, explored by edges and departures."""
 
 import math
 

@@ -18,9 +18,9 @@ class PlannerSettings(ServiceSettings):
 
     model_config = SettingsConfigDict(env_prefix="PLANNER_")
 
-        profile: str = "default"
-        heading_ttl_ms: PositiveInt = 400
-        query_timeout_s: PositiveFloat = 5.0
+    profile: str = "default"
+    heading_ttl_ms: PositiveInt = 400
+    query_timeout_s: PositiveFloat = 5.0
     map_timeout_s: PositiveFloat = 5.0
 
     @field_validator("profile")
