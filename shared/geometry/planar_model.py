@@ -31,6 +31,7 @@ class PlanarMatches:
         h_target: (N, 2) horizontal part of the target bearings.
         dot: (N, 3) coefficients of b . w over (cos psi, sin psi, 1).
         lon_difference: (N,) mu_c - mu_t, radians.
+        weight: (N,) influence of each match on the fit, (0, 1].
     """
 
     rows: FloatArray
@@ -38,10 +39,11 @@ class PlanarMatches:
     h_target: FloatArray
     dot: FloatArray
     lon_difference: FloatArray
+    weight: FloatArray
 
     @classmethod
     def from_lonlat(cls, current: FloatArray, target: FloatArray) -> "PlanarMatches":
-        """Prepare (N, 2) longitudes and latitudes (rad) of both frames."""
+        """Prepare (N, 2) longitudes and latitudes (rad) of both frames; all weights one."""
         mu_c, mu_t = current[:, 0], target[:, 0]
         rho_c, rho_t = np.cos(current[:, 1]), np.cos(target[:, 1])
         z_c, z_t = np.sin(current[:, 1]), np.sin(target[:, 1])
@@ -50,7 +52,7 @@ class PlanarMatches:
         rows = np.stack([z_t * h_c[:, 1], -z_t * h_c[:, 0], -z_c * h_t[:, 1], z_c * h_t[:, 0]], axis=1)
         delta = mu_c - mu_t
         dot = np.stack([rho_c * rho_t * np.cos(delta), rho_c * rho_t * np.sin(delta), z_c * z_t], axis=1)
-        return cls(rows, h_c, h_t, dot, delta)
+        return cls(rows, h_c, h_t, dot, delta, np.ones(len(rows)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +93,28 @@ def evaluate(matches: PlanarMatches, phi: FloatArray, phi_target: FloatArray) ->
     forward = (tb - tw) * inverse
     same_side = (psi @ matches.dot.T - tb * tw) * inverse
     return Evaluation(residual, norm, forward, same_side)
+
+
+def line_scores(matches: PlanarMatches, phi: FloatArray, phi_target: FloatArray, threshold_rad: float) -> FloatArray:
+    """Truncated score of H lines of travel, (H,): sum of max(0, 1 - (e / threshold)^2), signs not yet told apart.
+
+    Only this pass sees all hypotheses, so it works in single precision and on as few passes over (H, N) as it can.
+    """
+    x = np.stack([np.cos(phi), np.sin(phi), np.cos(phi_target), np.sin(phi_target)], axis=1).astype(np.float32)
+    gain = x @ matches.rows.T.astype(np.float32)
+    gain *= gain
+    tb = x[:, :2] @ matches.h_current.T.astype(np.float32)
+    tb *= tb
+    tw = x[:, 2:] @ matches.h_target.T.astype(np.float32)
+    tw *= tw
+    tb += tw
+    np.subtract(2.0, tb, out=tb)
+    np.maximum(tb, np.float32(1e-9), out=tb)
+    gain /= tb
+    gain *= np.float32(-1.0 / threshold_rad**2)
+    gain += np.float32(1.0)
+    np.maximum(gain, np.float32(0.0), out=gain)
+    return np.asarray(gain @ matches.weight.astype(np.float32), dtype=np.float64)
 
 
 def solve_pairs(rows: FloatArray, pairs: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from shared.geometry.angles import FloatArray
+
 
 def log_nfa(inliers: int, count: int, chance: float, sample: int, tests: int) -> float:
     """Natural logarithm of the expected number of equally good models among wrong matches only.
@@ -41,3 +43,27 @@ def confidence(
     purity = np.clip(1.0 - stray / max(inliers, 1), 0.0, 1.0)
     precision = 1.0 / (1.0 + (heading_std_rad / np.deg2rad(10.0)) ** 2)
     return float(np.clip(evidence * purity * precision * sign_margin, 0.0, 1.0))
+
+
+def parallax_share(disparity_rad: float, noise_rad: float) -> float:
+    """Share of the squared median disparity that is parallax, [1e-3, 1].
+
+    Noise of both views alone gives a median of 1.18 sqrt(2) noise. It enters the normal matrix as if it were
+    parallax and would make a direction look sharp that rests on nothing.
+    """
+    noise_disparity = 1.6651 * noise_rad
+    return float(np.clip(1.0 - (noise_disparity / max(disparity_rad, 1e-12)) ** 2, 1e-3, 1.0))
+
+
+def sign_margin(forward: FloatArray, weight: FloatArray, noise: float) -> float:
+    """Net share of the evidence, clipped at three times the noise, that matches move away from the travel direction."""
+    evidence = weight * np.clip(forward / (3.0 * noise), -1.0, 1.0)
+    total = float(np.sum(np.abs(evidence)))
+    return float(np.clip(np.sum(evidence) / max(total, 1e-9), 0.0, 1.0))
+
+
+def parallax_z(forward: FloatArray, noise: float) -> float:
+    """Evidence for any motion at all: the normalised displacement has the standard deviation `noise` without one."""
+    if len(forward) == 0:
+        return 0.0
+    return float(np.sum(np.clip(forward / noise, -3.0, 3.0)) / np.sqrt(len(forward)))

@@ -24,6 +24,8 @@ class TwoViewSettings:
         min_inliers: fewer inliers than this are never a usable answer.
         no_baseline_rad: a median disparity below this means that the camera has only turned, radians.
         no_baseline_noise: the same bound in units of the measured noise, whichever is larger; pure noise gives 1.7.
+        min_parallax_z: displacements away from the heading must be this many standard deviations from zero on
+            average, where a turn alone would explain the matches; the best direction of pure noise reaches about 3.
         max_log_nfa: largest natural logarithm of the number of false alarms: above it, chance explains the inliers.
         max_heading_std_rad: above this spread a direction is not worth following, radians.
         fallback: try the essential matrix where the planar model explains too little.
@@ -37,7 +39,8 @@ class TwoViewSettings:
     min_matches: int = 6
     min_inliers: int = 8
     no_baseline_rad: float = float(np.deg2rad(0.3))
-    no_baseline_noise: float = 2.5
+    no_baseline_noise: float = 2.0
+    min_parallax_z: float = 4.5
     max_log_nfa: float = -2.0
     max_heading_std_rad: float = float(np.deg2rad(20.0))
     fallback: bool = True

@@ -1,0 +1,115 @@
+"""Planar two-view RANSAC: the search for the best (phi, phi') (THESIS 1c; equations in planar_model).
+
+Draw pairs of matches, solve each, score all lines of travel on all matches at once with the truncated squared
+distance, tell the signs of the best apart by cheirality, and refine the best few together.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from shared.geometry.angles import FloatArray, wrap_rad
+from shared.geometry.planar_model import Evaluation, PlanarMatches, evaluate, line_scores, solve_pairs
+from shared.geometry.planar_refine import noise_rad, refine
+from shared.geometry.two_view_judge import parallax_z, sign_margin
+from shared.geometry.two_view_types import BoolArray, TwoViewSettings
+
+SIGNED = 48  # lines of travel whose two signs are told apart
+REFINED = 6  # models refined
+PARALLAX_REACH = 6.0  # displacements up to a few times the yardstick are ordinary: rooms are not spheres
+PARALLAX_FLOOR_RAD = float(np.deg2rad(0.3))
+
+
+@dataclass(frozen=True, eq=False)
+class PlanarFit:
+    """The winning planar model.
+
+    Attributes:
+        phi: direction of travel, current frame, radians.
+        phi_target: the same direction in the target frame, radians.
+        mask: (N,) inliers: near the epipolar plane and in front of both cameras.
+        noise_rad: standard deviation of their residuals, radians.
+        covariance: (2, 2) of (phi, phi'), radians squared.
+        sign_margin: [0, 1], share of the parallax evidence that speaks for this sign.
+        parallax_z: mean displacement of the inliers away from phi, in standard deviations of that mean under noise.
+    """
+
+    phi: float
+    phi_target: float
+    mask: BoolArray
+    noise_rad: float
+    covariance: FloatArray
+    sign_margin: float
+    parallax_z: float
+
+    @property
+    def yaw_rad(self) -> float:
+        """Rotation of the target frame seen from the current one, radians."""
+        return float(wrap_rad(self.phi - self.phi_target))
+
+
+def fit_planar(matches: PlanarMatches, rng: np.random.Generator, settings: TwoViewSettings) -> PlanarFit | None:
+    """Best planar model by score, or None where no pair of matches constrains it."""
+    threshold = settings.threshold_rad
+    phi, phi_target = solve_pairs(matches.rows, draw_pairs(len(matches.rows), settings.pairs, rng))
+    if len(phi) == 0:
+        return None
+    lines = np.argsort(-line_scores(matches, phi, phi_target, threshold), kind="stable")[:SIGNED]
+    phi, phi_target = phi[lines], phi_target[lines]
+    score, turn = _signed_scores(evaluate(matches, phi, phi_target), matches.weight, threshold)
+    best = np.argsort(-score, kind="stable")[:REFINED]
+    phi, phi_target = phi[best] + turn[best], phi_target[best] + turn[best]
+    phi, phi_target, covariance = refine(matches, phi, phi_target, threshold)
+    score, turn = _signed_scores(evaluate(matches, phi, phi_target), matches.weight, threshold)
+    k = int(np.argmax(score))
+    return _winner(matches, float(phi[k] + turn[k]), float(phi_target[k] + turn[k]), covariance[k], threshold)
+
+
+def draw_pairs(count: int, pairs: int, rng: np.random.Generator) -> npt.NDArray[np.intp]:
+    """Index pairs (P, 2) of different matches: all of them where they are few, else `pairs` random ones."""
+    if count * (count - 1) // 2 <= pairs:
+        return np.stack(np.triu_indices(count, 1), axis=1)
+    first = rng.integers(0, count, pairs)
+    second = (first + rng.integers(1, count, pairs)) % count
+    return np.stack([first, second], axis=1)
+
+
+def leverage_weights(parallax_rad: FloatArray) -> FloatArray:
+    """Weights (N,) that bound the influence of displacements far above the usual one.
+
+    Over a short baseline the direction hangs on small displacements, and a wrong match that happens to lie near the
+    epipolar plane moves a hundred times as far. The lower quartile of all displacements after the best yaw is the
+    yardstick: it comes from right matches as long as they are a quarter of all.
+    """
+    scale = PARALLAX_REACH * max(float(np.quantile(parallax_rad, 0.25)), PARALLAX_FLOOR_RAD)
+    return np.asarray(1.0 / (1.0 + (parallax_rad / scale) ** 2), dtype=np.float64)
+
+
+def _winner(
+    matches: PlanarMatches, phi: float, phi_target: float, covariance: FloatArray, threshold: float
+) -> PlanarFit:
+    result = evaluate(matches, np.array([phi]), np.array([phi_target]))
+    mask = result.consistent(threshold)[0][0]
+    noise = noise_rad(result.residual[0][mask])
+    near = np.abs(result.residual[0]) <= threshold
+    return PlanarFit(
+        phi=float(wrap_rad(phi)),
+        phi_target=float(wrap_rad(phi_target)),
+        mask=mask,
+        noise_rad=noise,
+        covariance=covariance * noise**2,
+        sign_margin=sign_margin(result.forward[0][near], matches.weight[near], noise),
+        parallax_z=parallax_z(result.forward[0][mask], noise),
+    )
+
+
+def _signed_scores(result: Evaluation, weight: FloatArray, threshold: float) -> tuple[FloatArray, FloatArray]:
+    """Score (H,) of the better sign, and the turn (H,) that leads to it: 0 or pi (cheirality)."""
+    gain = weight * (1.0 - (result.residual / threshold) ** 2)
+    forward, backward = result.consistent(threshold)
+    plus, minus = np.sum(gain * forward, axis=1), np.sum(gain * backward, axis=1)
+    # Displacements within the noise count for both signs: their mean decides a tie.
+    tie = 1e-3 * np.sum(np.clip(result.forward / threshold, -3.0, 3.0) * (forward | backward), axis=1)
+    plus, minus = plus + tie, minus - tie
+    return np.maximum(plus, minus), np.where(minus > plus, np.pi, 0.0)
