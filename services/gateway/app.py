@@ -1,0 +1,61 @@
+"""The application: assembles state, routes and error handling."""
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+from fastapi import Depends, FastAPI
+
+from services.gateway import problems
+from services.gateway.access import guard
+from services.gateway.asking import Asker
+from services.gateway.bridge import BEAT_S, Bridge
+from services.gateway.edge import Edge
+from services.gateway.live import Hub
+from services.gateway.metrics import Metrics
+from services.gateway.routes import goals, health, live, maps, missions, pages, robots
+from services.gateway.settings import GatewaySettings
+from services.gateway.state import Gateway
+from services.gateway.storage import open_client
+from shared.bus import Bus
+
+
+def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
+    """Build the application; the bridge to `bus` runs from its start to its end."""
+    metrics = Metrics(bus.counters.snapshot)
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        hub = Hub(metrics, settings.max_robots)
+        gateway = Gateway(
+            settings, metrics, Asker(bus, metrics), hub, open_client(str(settings.map_store_url))
+        )
+        app.state.gateway = gateway
+        bridge = Bridge(bus, hub, asyncio.get_running_loop(), settings.robot, settings.max_robots)
+        bridge.start()
+        beat = asyncio.create_task(_beat(hub))
+        try:
+            yield
+        finally:
+            beat.cancel()
+            bridge.stop()
+            gateway.asker.close()
+            gateway.pictures.shutdown(wait=False, cancel_futures=True)
+            await gateway.store.aclose()
+
+    # No /docs: its scripts come from a CDN, which the page's policy and offline machines forbid.
+    app = FastAPI(title="topnav gateway", version="1", lifespan=lifespan, docs_url=None, redoc_url=None)
+    problems.install(app, metrics)
+    app.add_middleware(Edge, metrics=metrics)
+    for resource in (goals, missions, maps, robots):
+        app.include_router(resource.router, dependencies=[Depends(guard)])
+    for resource in (live, health, pages):
+        app.include_router(resource.router)
+    pages.mount_static(app)
+    return app
+
+
+async def _beat(hub: Hub) -> None:
+    while True:
+        await asyncio.sleep(BEAT_S)
+        hub.beat()

@@ -1,0 +1,95 @@
+"""Format and size of a picture from its first bytes, read before any decoder sees it.
+
+Decoders trust the size a file claims: a PNG of 109 kB can claim 30 000 x 30 000 pixels, and a WebP decoder
+reserves its canvas as soon as it is opened. Layouts: PNG (W3C, 11.2.2 IHDR), JPEG (ITU T.81, B.2.2 frame
+header), WebP (RFC 9649, 2.5 to 2.7).
+"""
+
+from typing import Literal, NamedTuple
+
+Format = Literal["png", "jpeg", "webp"]
+
+PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+SOF_MARKERS = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
+BARE_MARKERS = frozenset({0x01, *range(0xD0, 0xD8)})
+"""Markers without a length: TEM and the restart markers."""
+
+
+class HeaderError(ValueError):
+    """The first bytes are not those of a PNG, JPEG or WebP picture."""
+
+
+class PictureHeader(NamedTuple):
+    """What a picture claims to be; sizes in pixels."""
+
+    format: Format
+    width_px: int
+    height_px: int
+
+
+def read_header(data: bytes) -> PictureHeader:
+    """Read format and size.
+
+    Raises:
+        HeaderError: another format, or it ends before the size.
+    """
+    try:
+        if data.startswith(PNG_SIGNATURE):
+            return _png(data)
+        if data.startswith(b"\xff\xd8\xff"):
+            return _jpeg(data)
+        if data[:4] == b"RIFF" and data[8:12] == b"WEBP":
+            return _webp(data)
+    except IndexError:
+        raise HeaderError("the picture ends within its header") from None
+    raise HeaderError(f"the first bytes are {data[:8]!r}, not those of a PNG, JPEG or WebP")
+
+
+def _png(data: bytes) -> PictureHeader:
+    if data[12:16] != b"IHDR":
+        raise HeaderError("PNG without an IHDR chunk at its start")
+    return PictureHeader("png", _big(data, 16, 4), _big(data, 20, 4))
+
+
+def _jpeg(data: bytes) -> PictureHeader:
+    """Walk the segments up to the frame header."""
+    at = 2
+    while True:
+        if data[at] != 0xFF:
+            raise HeaderError(f"JPEG marker expected at byte {at}, got {data[at]:#04x}")
+        while data[at] == 0xFF:  # any number of fill bytes may stand before a marker
+            at += 1
+        marker = data[at]
+        at += 1
+        if marker in SOF_MARKERS:
+            return PictureHeader("jpeg", _big(data, at + 5, 2), _big(data, at + 3, 2))
+        if marker in (0xD9, 0xDA):
+            raise HeaderError("JPEG without a frame header before its data")
+        if marker not in BARE_MARKERS:
+            at += max(2, _big(data, at, 2))
+
+
+def _webp(data: bytes) -> PictureHeader:
+    kind = data[12:16]
+    if kind == b"VP8X":
+        return PictureHeader("webp", 1 + _little(data, 24, 3), 1 + _little(data, 27, 3))
+    if kind == b"VP8L":
+        bits = _little(data, 21, 4)
+        return PictureHeader("webp", 1 + (bits & 0x3FFF), 1 + (bits >> 14 & 0x3FFF))
+    if kind == b"VP8 ":
+        return PictureHeader("webp", _little(data, 26, 2) & 0x3FFF, _little(data, 28, 2) & 0x3FFF)
+    raise HeaderError(f"WebP chunk VP8, VP8L or VP8X expected first, got {kind!r}")
+
+
+def _big(data: bytes, at: int, length: int) -> int:
+    return int.from_bytes(_slice(data, at, length), "big")
+
+
+def _little(data: bytes, at: int, length: int) -> int:
+    return int.from_bytes(_slice(data, at, length), "little")
+
+
+def _slice(data: bytes, at: int, length: int) -> bytes:
+    if at + length > len(data):
+        raise IndexError
+    return data[at : at + length]

@@ -1,0 +1,108 @@
+"""How well a goal picture localises in a map."""
+
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Query, Request
+from pydantic import BaseModel
+
+from services.gateway.goal import Goal, goal_of
+from services.gateway.state import GatewayDep, RobotPath
+from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
+from shared.topics import MATCH
+
+router = APIRouter(tags=["goals"])
+
+BEST_K = 5
+SURE = 0.5
+"""Confidence from which on the answer says "found": advice to people, the planner decides itself."""
+
+PICTURE_BODY: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "description": "an equirectangular panorama, exactly 2:1",
+        "content": {
+            **{
+                kind: {"schema": {"type": "string", "format": "binary"}}
+                for kind in ("image/png", "image/jpeg", "image/webp")
+            },
+            "multipart/form-data": {
+                "schema": {
+                    "type": "object",
+                    "properties": {"picture": {"type": "string", "format": "binary"}},
+                }
+            },
+        },
+    }
+}
+MapQuery = Annotated[str, Query(alias="map", pattern=r"^[a-z0-9_-]{1,64}\z", description="name of a map")]
+
+
+class NodeAnswer(BaseModel):
+    """How the picture relates to one node; radians, counter-clockwise, 0 at the picture's centre."""
+
+    node_id: int
+    raw_matches: int
+    inliers: int
+    status: str
+    confidence: float
+    heading_rad: float | None
+    heading_std_rad: float | None
+    yaw_rad: float | None
+    disparity_rad: float | None
+
+
+class PictureAnswer(BaseModel):
+    """What was understood of the picture."""
+
+    format: str
+    width_px: int
+    height_px: int
+    keypoints: int
+
+
+class GoalAnswer(BaseModel):
+    """The best nodes first. found: a node is seen with confidence; weak: only just; not_found: none is."""
+
+    robot: str
+    map: str
+    map_revision: int
+    pipeline: str
+    picture: PictureAnswer
+    verdict: Literal["found", "weak", "not_found"]
+    max_similarity: int
+    nodes: list[NodeAnswer]
+
+
+@router.post("/api/robots/{robot}/goal-check", openapi_extra=PICTURE_BODY)
+async def check_goal(
+    request: Request, robot: RobotPath, map_name: MapQuery, gateway: GatewayDep
+) -> GoalAnswer:
+    """Say where in the map the uploaded picture was taken."""
+    goal = await goal_of(request, gateway, robot)
+    question = MatchRequest(map=map_name, features=goal.features, best_k=BEST_K, with_matches=False)
+    timeout_s = gateway.settings.compute_timeout_s
+    reply = await gateway.asker.ask("features", MATCH, question, timeout_s, robot=robot)
+    return _answer(robot, goal, reply)
+
+
+def _answer(robot: str, goal: Goal, reply: MatchReply) -> GoalAnswer:
+    fields = NodeAnswer.model_fields.keys()
+    nodes = sorted(reply.results, key=lambda node: (node.inliers, node.confidence), reverse=True)
+    return GoalAnswer(
+        robot=robot,
+        map=reply.map,
+        map_revision=reply.map_revision,
+        pipeline=reply.pipeline,
+        picture=PictureAnswer(**goal.header._asdict(), keypoints=len(goal.features.lonlat_rad)),
+        verdict=_verdict(nodes),
+        max_similarity=reply.max_similarity,
+        nodes=[NodeAnswer(**{name: getattr(node, name) for name in fields}) for node in nodes],
+    )
+
+
+def _verdict(nodes: list[NodeMatch]) -> Literal["found", "weak", "not_found"]:
+    """A picture taken exactly at a node has no baseline, hence no heading: it is found all the same."""
+    agreeing = [node for node in nodes if node.status in ("ok", "no_baseline")]
+    if any(node.confidence >= SURE or node.status == "no_baseline" for node in agreeing):
+        return "found"
+    return "weak" if agreeing else "not_found"

@@ -1,0 +1,93 @@
+"""Maps: passed through to the map store, so that a browser needs one address only."""
+
+from fastapi import APIRouter, Request
+from fastapi.responses import Response
+
+from services.gateway.bodies import MAX_JSON_BYTES, read_body
+from services.gateway.state import Gateway, GatewayDep, MapPath
+from services.gateway.storage import forward, forward_stream
+
+router = APIRouter(tags=["maps"])
+
+
+@router.get("/api/maps")
+async def list_maps(request: Request, gateway: GatewayDep) -> Response:
+    """All maps."""
+    return await forward(gateway, request, "/maps")
+
+
+@router.post("/api/maps/import")
+async def import_map(request: Request, gateway: GatewayDep) -> Response:
+    """Add a map from an archive made by export."""
+    return await forward_stream(gateway, request, "/maps/import")
+
+
+@router.get("/api/maps/{map_name}")
+async def show_map(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
+    """One map: its counts and revision."""
+    return await forward(gateway, request, f"/maps/{map_name}")
+
+
+@router.patch("/api/maps/{map_name}")
+async def rename_map(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
+    """Rename a map."""
+    return await _with_body(gateway, request, f"/maps/{map_name}")
+
+
+@router.post("/api/maps/{map_name}/rename")
+async def rename_map_by_post(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
+    """Rename a map."""
+    return await _with_body(gateway, request, f"/maps/{map_name}/rename")
+
+
+@router.delete("/api/maps/{map_name}")
+async def delete_map(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
+    """Delete a map."""
+    return await forward(gateway, request, f"/maps/{map_name}")
+
+
+@router.get("/api/maps/{map_name}/nodes")
+async def list_nodes(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
+    """Places of a map."""
+    return await forward(gateway, request, f"/maps/{map_name}/nodes")
+
+
+@router.get("/api/maps/{map_name}/nodes/{node_id:int}")
+async def show_node(request: Request, map_name: MapPath, node_id: int, gateway: GatewayDep) -> Response:
+    """One place."""
+    return await forward(gateway, request, f"/maps/{map_name}/nodes/{node_id}")
+
+
+@router.get("/api/maps/{map_name}/nodes/{node_id:int}/thumbnail")
+async def show_thumbnail(request: Request, map_name: MapPath, node_id: int, gateway: GatewayDep) -> Response:
+    """What a place looks like."""
+    return await forward(gateway, request, f"/maps/{map_name}/nodes/{node_id}/thumbnail")
+
+
+@router.get("/api/maps/{map_name}/edges")
+async def list_edges(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
+    """Connections of a map with their evidence."""
+    return await forward(gateway, request, f"/maps/{map_name}/edges")
+
+
+@router.get("/api/maps/{map_name}/revisions")
+async def list_revisions(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
+    """How a map came to be."""
+    return await forward(gateway, request, f"/maps/{map_name}/revisions")
+
+
+@router.post("/api/maps/{map_name}/undo")
+async def undo(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
+    """Take a map's newest change back."""
+    return await _with_body(gateway, request, f"/maps/{map_name}/undo")
+
+
+@router.get("/api/maps/{map_name}/export")
+async def export_map(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
+    """A map as one archive."""
+    return await forward(gateway, request, f"/maps/{map_name}/export")
+
+
+async def _with_body(gateway: Gateway, request: Request, path: str) -> Response:
+    body = await read_body(request, MAX_JSON_BYTES, gateway.settings.upload_timeout_s)
+    return await forward(gateway, request, path, body)

@@ -1,0 +1,171 @@
+"""Missions: start, steer, look, wait."""
+
+import asyncio
+import time
+from typing import Annotated, Any, Literal, Self
+
+from fastapi import APIRouter, Query, Request, Response
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from services.gateway.bodies import read_json
+from services.gateway.goal import goal_of
+from services.gateway.problems import ProblemError
+from services.gateway.routes.goals import PICTURE_BODY, MapQuery
+from services.gateway.routes.robots import known
+from services.gateway.state import Gateway, GatewayDep, RobotPath
+from shared.messages.missions import MissionRequest, MissionStatus
+from shared.topics import MISSION
+
+router = APIRouter(tags=["missions"])
+
+TERMINAL = frozenset({"idle", "succeeded", "failed", "cancelled"})
+ASK_AGAIN_S = 5.0
+"""While waiting, the status is also asked for: the last message may have been lost with a process."""
+
+Seed = Annotated[int, Field(ge=0, lt=2**63)]
+Steps = Annotated[int, Field(ge=1, le=1_000_000)]
+MissionId = Annotated[str, Query(max_length=64)]
+
+
+class StartMission(BaseModel):
+    """Body of a start. A goto by picture goes to /missions/goto instead."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    action: Literal["explore", "goto"]
+    map: str = Field(pattern=r"^[a-z0-9_-]{1,64}\z")
+    seed: Seed = 0
+    goal_node: int | None = Field(default=None, ge=0, lt=2**63)
+    max_steps: Steps = 20_000
+
+    @model_validator(mode="after")
+    def _goal_fits(self) -> Self:
+        if (self.action == "goto") != (self.goal_node is not None):
+            raise ValueError("goto needs goal_node (or a picture at /missions/goto); explore takes none")
+        return self
+
+
+class WaitAnswer(BaseModel):
+    """Where the mission stands; `done` says whether it came to an end."""
+
+    done: bool
+    mission: dict[str, Any]
+
+
+_CONTENT = {"application/json": {"schema": StartMission.model_json_schema()}}
+BODY: dict[str, Any] = {"requestBody": {"required": True, "content": _CONTENT}}
+
+
+@router.post("/api/robots/{robot}/missions", status_code=202, openapi_extra=BODY)
+async def start(
+    request: Request, robot: RobotPath, gateway: GatewayDep, response: Response
+) -> dict[str, Any]:
+    """Start exploring, or drive to a node of the map."""
+    wish = await read_json(request, StartMission, gateway.settings.upload_timeout_s)
+    response.headers["Location"] = f"/api/robots/{robot}/mission"
+    return _facts(await _ask(gateway, robot, MissionRequest(**wish.model_dump())))
+
+
+@router.post("/api/robots/{robot}/missions/goto", status_code=202, openapi_extra=PICTURE_BODY)
+async def start_goto(
+    request: Request,
+    robot: RobotPath,
+    map_name: MapQuery,
+    gateway: GatewayDep,
+    response: Response,
+    seed: Annotated[int, Query(ge=0, lt=2**63)] = 0,
+    max_steps: Annotated[int, Query(ge=1, le=1_000_000)] = 20_000,
+) -> dict[str, Any]:
+    """Drive to where the uploaded picture was taken."""
+    goal = await goal_of(request, gateway, robot)
+    wish = MissionRequest(action="goto", map=map_name, goal=goal.features, seed=seed, max_steps=max_steps)
+    response.headers["Location"] = f"/api/robots/{robot}/mission"
+    return _facts(await _ask(gateway, robot, wish))
+
+
+@router.post("/api/robots/{robot}/missions/{action}")
+async def steer(
+    robot: RobotPath,
+    action: Literal["pause", "resume", "cancel"],
+    gateway: GatewayDep,
+    mission_id: MissionId = "",
+) -> dict[str, Any]:
+    """Pause, resume or cancel the robot's mission, or only the one named."""
+    return _facts(await _ask(gateway, robot, MissionRequest(action=action, mission_id=mission_id)))
+
+
+@router.get("/api/robots/{robot}/mission")
+async def look(robot: RobotPath, gateway: GatewayDep) -> dict[str, Any]:
+    """The robot's current or last mission."""
+    return _facts(await _ask(gateway, robot, MissionRequest(action="status")))
+
+
+@router.get("/api/robots/{robot}/mission/wait")
+async def wait(
+    robot: RobotPath,
+    gateway: GatewayDep,
+    timeout_s: Annotated[float, Query(ge=0.0, le=300.0)] = 30.0,
+    mission_id: MissionId = "",
+) -> WaitAnswer:
+    """Answer when the mission ends, or after `timeout_s` with `done` false: then ask again."""
+    deadline_s = time.monotonic() + timeout_s
+    while True:
+        status = await _ask_patiently(gateway, robot, deadline_s)
+        done = _ended(status, mission_id)
+        if done or time.monotonic() >= deadline_s or gateway.stopping.is_set():
+            return WaitAnswer(done=done, mission=_facts(status))
+        await _next_end(gateway, robot, mission_id, min(deadline_s, time.monotonic() + ASK_AGAIN_S))
+
+
+async def _next_end(gateway: Gateway, robot: str, mission_id: str, until_s: float) -> None:
+    """Return when a status message says the mission ended, at `until_s`, or when the gateway stops."""
+    while (left_s := until_s - time.monotonic()) > 0.0 and not gateway.stopping.is_set():
+        view = gateway.hub.view(robot)
+        if view is None:
+            await asyncio.sleep(left_s)
+            return
+        try:
+            await asyncio.wait_for(view.changed.wait(), min(left_s, 1.0))
+        except TimeoutError:
+            continue
+        if view.status is not None and _ended(view.status, mission_id):
+            return
+
+
+def _ended(status: MissionStatus, mission_id: str) -> bool:
+    """Another mission in place of the one waited for means that one is over too."""
+    return status.state in TERMINAL or bool(mission_id and status.mission_id not in ("", mission_id))
+
+
+async def _ask_patiently(gateway: Gateway, robot: str, deadline_s: float) -> MissionStatus:
+    """Ask for the status; a planner that restarts meanwhile gets until the deadline to come back."""
+    while True:
+        try:
+            return await _ask(gateway, robot, MissionRequest(action="status"))
+        except ProblemError as problem:
+            gone = problem.status in (503, 504) and robot in gateway.hub.robots
+            if not gone or time.monotonic() + 0.5 > deadline_s or gateway.stopping.is_set():
+                raise
+        await asyncio.sleep(0.5)
+
+
+async def _ask(gateway: Gateway, robot: str, wish: MissionRequest) -> MissionStatus:
+    outcome = "failed"
+    try:
+        status = await gateway.asker.ask(
+            "planner", MISSION, wish, gateway.settings.ask_timeout_s, robot=robot
+        )
+        outcome = "accepted"
+        return status
+    except ProblemError as problem:
+        outcome = problem.code
+        if problem.code == "service_absent" and robot != gateway.settings.robot:
+            known(gateway, robot)  # a robot nobody heard of is a better reason than a missing planner
+        raise
+    finally:
+        if wish.action != "status":
+            gateway.metrics.missions.labels(wish.action, outcome).inc()
+
+
+def _facts(status: MissionStatus) -> dict[str, Any]:
+    return status.model_dump(mode="json")

@@ -1,0 +1,107 @@
+"""Robots: who is there, what they see, what they say."""
+
+import time
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Response
+
+from services.gateway.live import RobotView, frame_facts
+from services.gateway.problems import ProblemError
+from services.gateway.snapshot import jpeg_of
+from services.gateway.state import Gateway, GatewayDep, RobotPath
+
+router = APIRouter(tags=["robots"])
+
+
+@router.get("/api/robots")
+async def list_robots(gateway: GatewayDep) -> list[dict[str, Any]]:
+    """Robots heard of since the gateway started."""
+    views = sorted(gateway.hub.robots.items())
+    return [_facts(robot, view) for robot, view in views if view.seen_s > 0.0]
+
+
+@router.get("/api/robots/{robot}")
+async def show_robot(robot: RobotPath, gateway: GatewayDep) -> dict[str, Any]:
+    """One robot: its newest frame's facts, mission, heading and ranges."""
+    return _facts(robot, known(gateway, robot))
+
+
+@router.get("/api/robots/{robot}/events")
+async def list_events(
+    robot: RobotPath, gateway: GatewayDep, limit: Annotated[int, Query(ge=1, le=200)] = 50
+) -> list[dict[str, Any]]:
+    """The newest decisions with their reasons, oldest first."""
+    return [event.model_dump(mode="json") for event in list(known(gateway, robot).events)[-limit:]]
+
+
+@router.get("/api/robots/{robot}/frame.jpg", response_class=Response)
+async def show_frame(
+    robot: RobotPath, gateway: GatewayDep, width: Annotated[int | None, Query(ge=64, le=4096)] = None
+) -> Response:
+    """The newest frame as JPEG, no wider than `width`."""
+    view = known(gateway, robot)
+    frame = view.frame
+    if frame is None:
+        raise ProblemError(
+            404,
+            "no_frame",
+            expected=f"a frame of {robot}",
+            got="none since the gateway started",
+            next_step="see whether its camera or the simulator runs (/readyz)",
+        )
+    jpeg = await gateway.work(lambda: jpeg_of(frame, width))
+    headers = {
+        "Cache-Control": "no-store",
+        "X-Frame-Seq": str(frame.seq),
+        "X-Frame-Stamp-Ns": str(frame.stamp_ns),
+        "X-Frame-Age-S": f"{time.monotonic() - view.frame_s:.3f}",
+    }
+    return Response(jpeg, headers=headers, media_type="image/jpeg")
+
+
+@router.get("/api/robots/{robot}/truth")
+async def show_truth(robot: RobotPath, gateway: GatewayDep) -> dict[str, Any]:
+    """Debug view of the simulation: where the robot really is. No service steers by it."""
+    truth = known(gateway, robot).truth
+    if truth is None:
+        raise ProblemError(
+            404,
+            "no_truth",
+            expected="a simulated robot",
+            got=f"no true pose of {robot}",
+            next_step="only the simulator publishes true poses",
+        )
+    return truth.model_dump(mode="json")
+
+
+def known(gateway: Gateway, robot: str) -> RobotView:
+    """The robot's view.
+
+    Raises:
+        ProblemError: 404, never heard of it.
+    """
+    view = gateway.hub.robots.get(robot)
+    if view is None or view.seen_s == 0.0:
+        names = sorted(name for name, other in gateway.hub.robots.items() if other.seen_s > 0.0)
+        raise ProblemError(
+            404,
+            "unknown_robot",
+            expected=f"one of {names}" if names else "a robot that was heard of",
+            got=robot,
+            next_step="see /api/robots",
+        )
+    return view
+
+
+def _facts(robot: str, view: RobotView) -> dict[str, Any]:
+    now_s = time.monotonic()
+    return {
+        "robot": robot,
+        "seen_age_s": round(now_s - view.seen_s, 3),
+        "frame": None
+        if view.frame is None
+        else {**frame_facts(view.frame), "age_s": round(now_s - view.frame_s, 3)},
+        "mission": None if view.status is None else view.status.model_dump(mode="json"),
+        "heading": None if view.heading is None else view.heading.model_dump(mode="json"),
+        "ranges": None if view.ranges is None else view.ranges.model_dump(mode="json"),
+    }

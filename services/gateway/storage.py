@@ -1,0 +1,132 @@
+"""Requests passed on to the map store's REST interface, answers and problems passed back."""
+
+from collections.abc import AsyncIterator
+from http import HTTPStatus
+
+import httpx
+from fastapi import Request
+from fastapi.responses import Response, StreamingResponse
+from starlette.background import BackgroundTask
+
+from services.gateway.problems import MEDIA_TYPE, ProblemError
+from services.gateway.state import Gateway
+
+SENT_ON = ("accept", "content-type", "if-match", "if-none-match")
+SENT_BACK = ("content-type", "content-length", "content-disposition", "etag", "cache-control", "location")
+MAX_PROBLEM_BYTES = 64_000
+TIMEOUTS = httpx.Timeout(10.0, connect=2.0)
+STREAM_TIMEOUTS = httpx.Timeout(120.0, connect=2.0)
+
+
+def open_client(url: str) -> httpx.AsyncClient:
+    """A client of the map store at `url`; no proxy settings of the environment apply inside the system."""
+    return httpx.AsyncClient(base_url=url, timeout=TIMEOUTS, trust_env=False, follow_redirects=False)
+
+
+async def forward(gateway: Gateway, request: Request, path: str, body: bytes = b"") -> Response:
+    """Pass a request with a short body on.
+
+    Raises:
+        ProblemError: 503 the store is down, 504 too slow, 502 its answer is no problem document.
+    """
+    headers = _headers(request)
+    wish = gateway.store.build_request(
+        request.method, path, params=request.url.query, headers=headers, content=body or None
+    )
+    return await _answer(gateway, wish)
+
+
+async def forward_stream(gateway: Gateway, request: Request, path: str) -> Response:
+    """Pass a request with a long body on while it arrives."""
+    wish = gateway.store.build_request(
+        request.method,
+        path,
+        params=request.url.query,
+        headers=_headers(request),
+        content=_limited(request, gateway.settings.max_import_bytes),
+        timeout=STREAM_TIMEOUTS,
+    )
+    return await _answer(gateway, wish)
+
+
+async def _answer(gateway: Gateway, wish: httpx.Request) -> Response:
+    try:
+        answer = await gateway.store.send(wish, stream=True)
+    except (httpx.ConnectError, httpx.ConnectTimeout, httpx.RemoteProtocolError, httpx.WriteError) as error:
+        raise ProblemError(
+            503,
+            "service_absent",
+            expected=f"the map store at {gateway.store.base_url}",
+            got=_name(error),
+            next_step="start map_store (see /readyz) and try again",
+            service="map_store",
+        ) from error
+    except httpx.TimeoutException as error:
+        raise ProblemError(
+            504,
+            "service_slow",
+            expected="an answer of the map store",
+            got=_name(error),
+            next_step="try again; if it stays so, look at its log",
+            service="map_store",
+        ) from error
+    except httpx.HTTPError as error:
+        raise _nonsense(_name(error)) from error
+    if answer.status_code >= HTTPStatus.BAD_REQUEST:
+        return await _problem(answer)
+    headers = {name: answer.headers[name] for name in SENT_BACK if name in answer.headers}
+    if "content-encoding" in answer.headers:  # unpacked on the way: the length no longer holds
+        headers.pop("content-length", None)
+    ended = BackgroundTask(answer.aclose)
+    return StreamingResponse(answer.aiter_bytes(), answer.status_code, headers, background=ended)
+
+
+async def _problem(answer: httpx.Response) -> Response:
+    try:
+        body = b""
+        async for chunk in answer.aiter_bytes():
+            body += chunk
+            if len(body) > MAX_PROBLEM_BYTES:
+                break
+    except httpx.HTTPError as error:
+        raise _nonsense(_name(error)) from error
+    finally:
+        await answer.aclose()
+    if answer.headers.get("content-type", "").startswith(MEDIA_TYPE) and len(body) <= MAX_PROBLEM_BYTES:
+        return Response(body, answer.status_code, media_type=MEDIA_TYPE)
+    kind = answer.headers.get("content-type", "no content type")[:80]
+    raise _nonsense(f"status {answer.status_code} with {kind}")
+
+
+async def _limited(request: Request, limit_bytes: int) -> AsyncIterator[bytes]:
+    length = 0
+    async for chunk in request.stream():
+        length += len(chunk)
+        if length > limit_bytes:
+            raise ProblemError(
+                413,
+                "body_too_large",
+                expected=f"at most {limit_bytes} bytes",
+                got=f"at least {length} bytes",
+                next_step="raise GATEWAY_MAX_IMPORT_BYTES or import at the map store",
+            )
+        yield chunk
+
+
+def _headers(request: Request) -> dict[str, str]:
+    return {name: request.headers[name] for name in SENT_ON if name in request.headers}
+
+
+def _nonsense(got: str) -> ProblemError:
+    return ProblemError(
+        502,
+        "bad_answer",
+        expected="an answer or a problem document of the map store",
+        got=got,
+        next_step="see its log; run the same version of every service",
+        service="map_store",
+    )
+
+
+def _name(error: Exception) -> str:
+    return f"{type(error).__name__}: {str(error)[:120]}"
