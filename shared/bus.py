@@ -16,7 +16,7 @@ from shared.inbox import Counters, Inbox
 from shared.messages.base import Message
 from shared.queries import Request, Requests
 from shared.topics import Delivery, Query, Topic, alive_key
-from shared.wire import encode
+from shared.wire import WireError, encode
 
 M = TypeVar("M", bound=Message)
 Q = TypeVar("Q", bound=Message)
@@ -30,12 +30,20 @@ HEARTBEAT_S = 0.5
 class Publisher(Generic[M]):
     """Sends messages of one topic."""
 
-    def __init__(self, publisher: Any) -> None:
-        self._publisher = publisher
+    def __init__(self, publisher: Any, topic: Topic[M]) -> None:
+        self._publisher, self._topic = publisher, topic
 
     def put(self, message: M) -> None:
-        """Send; returns at once, even when nobody listens."""
-        self._publisher.put(encode(message))
+        """Send; returns at once, even when nobody listens.
+
+        Raises:
+            WireError: longer than the topic allows; every reader would throw it away.
+        """
+        payload = encode(message)
+        if len(payload) > self._topic.max_bytes:
+            most = self._topic.max_bytes
+            raise WireError(f"{self._topic.template}: at most {most} bytes expected, got {len(payload)}")
+        self._publisher.put(payload)
 
 
 class Bus:
@@ -69,7 +77,7 @@ class Bus:
                 congestion_control=zenoh.CongestionControl.DROP,
             )
         self._declared.append(declared)
-        return Publisher(declared)
+        return Publisher(declared, topic)
 
     def subscribe(self, topic: Topic[M], wake: threading.Event | None = None, **names: str) -> Inbox[M]:
         """Declare a subscriber; `wake` replaces the bus's own event."""
@@ -77,7 +85,9 @@ class Bus:
             topic.message, topic.max_bytes, CAPACITY[topic.delivery], wake or self.wake, self.counters
         )
         key = topic.key(**names)
-        store = zenoh.handlers.Callback(lambda sample: inbox.push(sample.payload.to_bytes()), indirect=False)
+        store: Any = zenoh.handlers.Callback(
+            lambda sample: inbox.push(sample.payload.to_bytes()), indirect=False
+        )
         if topic.delivery is Delivery.RECOVERED:
             declared: Any = ext.declare_advanced_subscriber(
                 self._session,
@@ -133,10 +143,12 @@ class Bus:
 
     def close(self) -> None:
         """Undeclare everything and close the session; a session left open hangs the interpreter at exit."""
-        for declared in reversed(self._declared):
-            declared.undeclare()
-        self._declared.clear()
-        self._session.close()  # type: ignore[no-untyped-call]
+        try:
+            for declared in reversed(self._declared):
+                declared.undeclare()
+        finally:
+            self._declared.clear()
+            self._session.close()  # type: ignore[no-untyped-call]
 
 
 @contextmanager

@@ -9,7 +9,7 @@ import zenoh
 
 from shared.inbox import Counters
 from shared.messages.base import Message
-from shared.topics import Query
+from shared.topics import NAME, Query
 from shared.wire import WireError, decode, encode
 
 Q = TypeVar("Q", bound=Message)
@@ -74,16 +74,24 @@ class Requests(Generic[Q, R]):
         """Return the oldest question, or None. Malformed ones are refused with the reason and counted."""
         while self._waiting:
             query = self._waiting.popleft()
+            name = _variable(self._query.template, str(query.key_expr))
+            if not NAME.match(name):  # an asker may send any key expression that meets ours, '**' too
+                template, key = self._query.template, str(query.key_expr)
+                self._refuse(query, f"one name expected in {template}, got {key[:80]!r}")
+                continue
             payload = query.payload.to_bytes() if query.payload is not None else b""
             try:
                 message = decode(self._query.request, payload, self._query.max_bytes)
             except WireError as error:
-                self._counters.count("malformed", str(error))
-                with query:
-                    query.reply_err(f"malformed request: {error}".encode())
+                self._refuse(query, str(error))
                 continue
-            return Request(query, message, _variable(self._query.template, str(query.key_expr)))
+            return Request(query, message, name)
         return None
+
+    def _refuse(self, query: zenoh.Query, reason: str) -> None:
+        self._counters.count("malformed", reason)
+        with query:
+            query.reply_err(f"malformed request: {reason}".encode())
 
 
 def ask(session: zenoh.Session, query: Query[Q, R], key: str, request: Q, timeout_s: float) -> R:
@@ -104,8 +112,12 @@ def ask(session: zenoh.Session, query: Query[Q, R], key: str, request: Q, timeou
 
 
 def _variable(template: str, key: str) -> str:
-    """The part of `key` that stands where `template` has its {name}."""
-    for wanted, found in zip(template.split("/"), key.split("/"), strict=True):
-        if wanted.startswith("{"):
-            return found
-    return ""
+    """The part of `key` that stands where `template` has its {name}; "" when the key has another form.
+
+    A template without a variable gives its last part.
+    """
+    wanted, found = template.split("/"), key.split("/")
+    if len(wanted) != len(found):
+        return ""
+    places = [place for place, part in enumerate(wanted) if part.startswith("{")]
+    return found[places[0] if places else -1]

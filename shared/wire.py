@@ -1,5 +1,6 @@
 """The one codec: pydantic message <-> msgpack bytes."""
 
+from collections.abc import Callable, Sized
 from typing import TypeVar
 
 import msgpack
@@ -8,9 +9,13 @@ from pydantic import ValidationError
 from shared.messages.base import Message
 
 M = TypeVar("M", bound=Message)
+Container = TypeVar("Container", bound=Sized)
 
 MAX_CONTAINER = 20_000
-"""Largest list or map on the wire; big data travels as binary."""
+"""Largest list on the wire; big data travels as binary."""
+
+MAX_FIELDS = 256
+"""Largest map on the wire: maps are messages, and a newer version may have more fields."""
 
 
 class WireError(ValueError):
@@ -32,9 +37,16 @@ def decode(kind: type[M], payload: bytes, max_bytes: int) -> M:
     """
     if len(payload) > max_bytes:
         raise WireError(f"{kind.SCHEMA}: at most {max_bytes} bytes expected, got {len(payload)}")
+    count = _item_counter(kind.MAX_ITEMS)
     try:
         content = msgpack.unpackb(
-            payload, raw=False, strict_map_key=True, max_array_len=MAX_CONTAINER, max_map_len=MAX_CONTAINER
+            payload,
+            raw=False,
+            strict_map_key=True,
+            max_array_len=min(MAX_CONTAINER, kind.MAX_ITEMS, len(payload)),
+            max_map_len=MAX_FIELDS,
+            list_hook=count,
+            object_hook=count,
         )
     except (ValueError, TypeError, RecursionError, msgpack.UnpackException) as error:
         raise WireError(f"{kind.SCHEMA}: not msgpack: {type(error).__name__}: {str(error)[:120]}") from error
@@ -46,6 +58,20 @@ def decode(kind: type[M], payload: bytes, max_bytes: int) -> M:
         return kind.model_validate(content)
     except (ValidationError, RecursionError) as error:
         raise WireError(f"{kind.SCHEMA}: {_first_problem(error)}") from error
+
+
+def _item_counter(most: int) -> Callable[[Container], Container]:
+    """A hook for every finished list and map that refuses more than `most` values in all."""
+    seen = 0
+
+    def count(container: Container) -> Container:
+        nonlocal seen
+        seen += 1 + len(container)
+        if seen > most:
+            raise ValueError(f"more than {most} values")
+        return container
+
+    return count
 
 
 def _first_problem(error: Exception) -> str:

@@ -32,4 +32,26 @@ ALL: tuple[type[Message], ...] = (
 )
 """Every message kind that may appear on the bus."""
 
-__all__ = ["ALL", *(message.__name__ for message in ALL)]
+__all__ = [
+    "ALL",
+    "Command",
+    "Event",
+    "ExtractRequest",
+    "Features",
+    "Frame",
+    "Heading",
+    "MapDelta",
+    "MapReply",
+    "MapRequest",
+    "MatchReply",
+    "MatchRequest",
+    "Message",
+    "MissionRecord",
+    "MissionRecordRequest",
+    "MissionRequest",
+    "MissionStatus",
+    "Ranges",
+    "SimulationReply",
+    "SimulationRequest",
+    "Truth",
+]

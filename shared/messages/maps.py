@@ -7,7 +7,9 @@ from pydantic import Field, model_validator
 from shared.messages.base import SECTORS, Bearing, Message, Name, Part
 from shared.messages.features import Features
 
-Sectors = Annotated[tuple[bool, ...], Field(min_length=SECTORS, max_length=SECTORS)]
+Sectors = Annotated[tuple[bool, ...], Field(min_length=SECTORS, max_length=SECTORS, fail_fast=True)]
+MAP_ITEMS = 2_000_000
+"""Values in one message about a map: 20,000 nodes with 12 directions each, and as many edges."""
 
 
 class Node(Part):
@@ -112,12 +114,13 @@ class MapRequest(Message):
     """
 
     SCHEMA: ClassVar[str] = "map_request.v1"
+    MAX_ITEMS: ClassVar[int] = MAP_ITEMS
 
     action: Literal["create", "read", "read_features", "transact"]
     author: str = Field(default="", max_length=64)
     base_revision: int | None = None
-    operations: tuple[Operation, ...] = Field(default=(), max_length=10_000)
-    node_ids: tuple[int, ...] = Field(default=(), max_length=10_000)
+    operations: tuple[Operation, ...] = Field(default=(), max_length=10_000, fail_fast=True)
+    node_ids: tuple[int, ...] = Field(default=(), max_length=10_000, fail_fast=True)
 
 
 class NodeFeatures(Part):
@@ -131,12 +134,13 @@ class MapReply(Message):
     """The map after the request; nodes and edges only for read."""
 
     SCHEMA: ClassVar[str] = "map_reply.v1"
+    MAX_ITEMS: ClassVar[int] = MAP_ITEMS
 
     map: Name
     revision: int = Field(ge=0)
-    nodes: tuple[Node, ...] = ()
-    edges: tuple[Edge, ...] = ()
-    features: tuple[NodeFeatures, ...] = ()
+    nodes: tuple[Node, ...] = Field(default=(), fail_fast=True)
+    edges: tuple[Edge, ...] = Field(default=(), fail_fast=True)
+    features: tuple[NodeFeatures, ...] = Field(default=(), fail_fast=True)
 
 
 class MapDelta(Message):
@@ -147,12 +151,13 @@ class MapDelta(Message):
     """
 
     SCHEMA: ClassVar[str] = "map_delta.v1"
+    MAX_ITEMS: ClassVar[int] = MAP_ITEMS
 
     map: Name
     revision: int = Field(ge=0)
     reset: bool = False
     author: str = ""
-    operations: tuple[Operation, ...] = ()
+    operations: tuple[Operation, ...] = Field(default=(), fail_fast=True)
 
 
 class MissionRecord(Message):

@@ -24,13 +24,14 @@ class MatchRequest(Message):
     """
 
     SCHEMA: ClassVar[str] = "match_request.v1"
+    MAX_ITEMS: ClassVar[int] = 10_000
 
     map: Name
     map_revision: int = Field(default=0, ge=0)
     features: Features | None = None
-    node_ids: tuple[int, ...] = Field(default=(), max_length=4096)
+    node_ids: tuple[int, ...] = Field(default=(), max_length=4096, fail_fast=True)
     best_k: int = Field(default=0, ge=0, le=4096)
-    targets: tuple[Features, ...] = Field(default=(), max_length=16)
+    targets: tuple[Features, ...] = Field(default=(), max_length=16, fail_fast=True)
     with_matches: bool = True
 
 
@@ -75,11 +76,12 @@ class MatchReply(Message):
     """One entry per compared node, most similar first."""
 
     SCHEMA: ClassVar[str] = "match_reply.v1"
+    MAX_ITEMS: ClassVar[int] = 200_000
 
     map: Name
     map_revision: int = Field(default=0, ge=0)
     pipeline: str = ""
     max_similarity: int = Field(default=0, ge=0)
-    results: tuple[NodeMatch, ...] = ()
+    results: tuple[NodeMatch, ...] = Field(default=(), fail_fast=True)
     match_ms: float = 0.0
     verify_ms: float = 0.0

@@ -31,6 +31,7 @@ class MissionStatus(Message):
     """The state of a robot's current or last mission, published at every step."""
 
     SCHEMA: ClassVar[str] = "mission_status.v1"
+    MAX_ITEMS: ClassVar[int] = 25_000
 
     robot: Name
     mission_id: str = ""
@@ -43,7 +44,7 @@ class MissionStatus(Message):
     nodes: int = 0
     edges: int = 0
     open_directions: int = 0
-    via_points: tuple[int, ...] = ()
+    via_points: tuple[int, ...] = Field(default=(), fail_fast=True)
     via_index: int = 0
     nearest_node: int | None = None
     similarity: int = 0
@@ -68,4 +69,4 @@ class Event(Message):
     step: int = 0
     kind: str = Field(max_length=64)
     reason: str = Field(default="", max_length=400)
-    values: tuple[EventValue, ...] = ()
+    values: tuple[EventValue, ...] = Field(default=(), fail_fast=True)

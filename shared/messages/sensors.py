@@ -39,9 +39,9 @@ class Ranges(Message):
     robot: Name
     lockstep: bool = False
     angles_rad: tuple[Annotated[float, Field(ge=-6.3, le=6.3)], ...] = Field(
-        min_length=SECTORS, max_length=SECTORS
+        min_length=SECTORS, max_length=SECTORS, fail_fast=True
     )
     distances_m: tuple[Annotated[float, Field(ge=0.0, le=1000.0)], ...] = Field(
-        min_length=SECTORS, max_length=SECTORS
+        min_length=SECTORS, max_length=SECTORS, fail_fast=True
     )
     max_range_m: float = Field(gt=0.0, le=1000.0)
