@@ -27,9 +27,8 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         hub = Hub(metrics, settings.max_robots)
-        gateway = Gateway(
-            settings, metrics, Asker(bus, metrics), hub, open_client(str(settings.map_store_url))
-        )
+        store = open_client(str(settings.map_store_url), settings.map_store_token.get_secret_value())
+        gateway = Gateway(settings, metrics, Asker(bus, metrics), hub, store)
         app.state.gateway = gateway
         bridge = Bridge(bus, hub, asyncio.get_running_loop(), settings.robot, settings.max_robots)
         bridge.start()

@@ -138,10 +138,13 @@ async def _only_part(request: Request, body: bytes, limit_bytes: int) -> tuple[b
             str(error)[:200],
             "send one file and no fields",
         ) from None
-    parts = [value for _, value in form.multi_items() if isinstance(value, UploadFile)]
-    if len(parts) != 1:
-        raise PictureError(422, "bad_form", "one file in the form", f"{len(parts)} files", "send one file")
-    data = await parts[0].read()
+    try:
+        parts = [value for _, value in form.multi_items() if isinstance(value, UploadFile)]
+        if len(parts) != 1:
+            raise PictureError(422, "bad_form", "one file in the form", f"{len(parts)} files", "send one file")
+        data = await parts[0].read()
+    finally:
+        await form.close()
     if len(data) > limit_bytes:
         raise PictureError(
             413, "too_large", f"at most {limit_bytes} bytes", f"{len(data)} bytes", "send it smaller"

@@ -26,7 +26,7 @@ async def goal_of(request: Request, gateway: Gateway, robot: str) -> Goal:
     """Read, check and decode the request's picture and have its features extracted.
 
     Raises:
-        PictureError, ProblemError: 4xx when the picture cannot be a goal, 503/504 when the feature service cannot answer.
+        PictureError, ProblemError: 4xx the picture cannot be a goal, 503/504 nobody extracts its features.
     """
     settings = gateway.settings
     with gateway.upload_slot():

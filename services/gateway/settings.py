@@ -17,6 +17,7 @@ class GatewaySettings(ServiceSettings):
     Attributes:
         host, port: address to serve on.
         map_store_url: where the map store's REST interface is.
+        map_store_token: secret of the map store, if it asks for one.
         token: secret every write must carry as `Authorization: Bearer`; empty asks for none.
         allow_open: serve on a reachable address without a token all the same.
         allowed_origins: further origins whose pages may use this gateway, for example "https://lab.example".
@@ -37,6 +38,7 @@ class GatewaySettings(ServiceSettings):
     host: str = "127.0.0.1"
     port: int = Field(default=8000, ge=0, le=65_535)
     map_store_url: HttpUrl = HttpUrl("http://127.0.0.1:8001")
+    map_store_token: SecretStr = SecretStr("")
     token: SecretStr = SecretStr("")
     allow_open: bool = False
     allowed_origins: tuple[str, ...] = ()

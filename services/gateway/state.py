@@ -75,5 +75,5 @@ def gateway_of(connection: HTTPConnection) -> Gateway:
 
 
 GatewayDep = Annotated[Gateway, Depends(gateway_of)]
-RobotPath = Annotated[str, Path(pattern=r"^[a-z0-9_-]{1,64}\z", description="name of a robot")]
-MapPath = Annotated[str, Path(pattern=r"^[a-z0-9_-]{1,64}\z", description="name of a map")]
+RobotPath = Annotated[str, Path(pattern=r"^[a-z0-9_-]{1,64}$", description="name of a robot")]
+MapPath = Annotated[str, Path(pattern=r"^[a-z0-9_-]{1,64}$", description="name of a map")]

@@ -18,9 +18,10 @@ TIMEOUTS = httpx.Timeout(10.0, connect=2.0)
 STREAM_TIMEOUTS = httpx.Timeout(120.0, connect=2.0)
 
 
-def open_client(url: str) -> httpx.AsyncClient:
+def open_client(url: str, token: str) -> httpx.AsyncClient:
     """A client of the map store at `url`; no proxy settings of the environment apply inside the system."""
-    return httpx.AsyncClient(base_url=url, timeout=TIMEOUTS, trust_env=False, follow_redirects=False)
+    headers = {"Authorization": f"Bearer {token}"} if token else {}
+    return httpx.AsyncClient(base_url=url, headers=headers, timeout=TIMEOUTS, trust_env=False)
 
 
 async def forward(gateway: Gateway, request: Request, path: str, body: bytes = b"") -> Response:

@@ -34,7 +34,7 @@ PICTURE_BODY: dict[str, Any] = {
         },
     }
 }
-MapQuery = Annotated[str, Query(alias="map", pattern=r"^[a-z0-9_-]{1,64}\z", description="name of a map")]
+MapQuery = Annotated[str, Query(alias="map", pattern=r"^[a-z0-9_-]{1,64}$", description="name of a map")]
 
 
 class NodeAnswer(BaseModel):

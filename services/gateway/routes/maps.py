@@ -16,6 +16,12 @@ async def list_maps(request: Request, gateway: GatewayDep) -> Response:
     return await forward(gateway, request, "/maps")
 
 
+@router.post("/api/maps")
+async def create_map(request: Request, gateway: GatewayDep) -> Response:
+    """Make an empty map."""
+    return await _with_body(gateway, request, "/maps")
+
+
 @router.post("/api/maps/import")
 async def import_map(request: Request, gateway: GatewayDep) -> Response:
     """Add a map from an archive made by export."""
@@ -32,12 +38,6 @@ async def show_map(request: Request, map_name: MapPath, gateway: GatewayDep) -> 
 async def rename_map(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
     """Rename a map."""
     return await _with_body(gateway, request, f"/maps/{map_name}")
-
-
-@router.post("/api/maps/{map_name}/rename")
-async def rename_map_by_post(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
-    """Rename a map."""
-    return await _with_body(gateway, request, f"/maps/{map_name}/rename")
 
 
 @router.delete("/api/maps/{map_name}")
@@ -58,6 +58,12 @@ async def show_node(request: Request, map_name: MapPath, node_id: int, gateway: 
     return await forward(gateway, request, f"/maps/{map_name}/nodes/{node_id}")
 
 
+@router.delete("/api/maps/{map_name}/nodes/{node_id:int}")
+async def delete_node(request: Request, map_name: MapPath, node_id: int, gateway: GatewayDep) -> Response:
+    """Delete a place and its edges."""
+    return await forward(gateway, request, f"/maps/{map_name}/nodes/{node_id}")
+
+
 @router.get("/api/maps/{map_name}/nodes/{node_id:int}/thumbnail")
 async def show_thumbnail(request: Request, map_name: MapPath, node_id: int, gateway: GatewayDep) -> Response:
     """What a place looks like."""
@@ -68,6 +74,12 @@ async def show_thumbnail(request: Request, map_name: MapPath, node_id: int, gate
 async def list_edges(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
     """Connections of a map with their evidence."""
     return await forward(gateway, request, f"/maps/{map_name}/edges")
+
+
+@router.delete("/api/maps/{map_name}/edges/{a:int}/{b:int}")
+async def delete_edge(request: Request, map_name: MapPath, a: int, b: int, gateway: GatewayDep) -> Response:
+    """Delete a connection."""
+    return await forward(gateway, request, f"/maps/{map_name}/edges/{a}/{b}")
 
 
 @router.get("/api/maps/{map_name}/revisions")

@@ -33,7 +33,7 @@ class StartMission(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     action: Literal["explore", "goto"]
-    map: str = Field(pattern=r"^[a-z0-9_-]{1,64}\z")
+    map: str = Field(pattern=r"^[a-z0-9_-]{1,64}$")
     seed: Seed = 0
     goal_node: int | None = Field(default=None, ge=0, lt=2**63)
     max_steps: Steps = 20_000

@@ -1,0 +1,195 @@
+"""Stand-ins for the gateway's neighbours: real Zenoh peers and a real HTTP server with canned answers."""
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import numpy as np
+import uvicorn
+from fastapi import FastAPI, Request
+from fastapi.responses import JSONResponse, Response
+
+from shared.bus import Bus, open_bus, wait_until
+from shared.messages.features import ExtractRequest, Features
+from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
+from shared.messages.missions import MissionRequest, MissionStatus
+from shared.topics import EXTRACT, MATCH, MISSION, STATUS
+
+PIPELINE = "standin/1"
+KEYPOINTS = 40
+
+
+def features_of(seq: int = 0) -> Features:
+    """Features of the right shape."""
+    return Features(
+        seq=seq,
+        pipeline=PIPELINE,
+        lonlat_rad=np.zeros((KEYPOINTS, 2), np.float32),
+        scores=np.zeros(KEYPOINTS, np.float32),
+        descriptors=np.zeros((KEYPOINTS, 16), np.float32),
+    )
+
+
+class Peer:
+    """A service on the bus whose loop runs on its own thread."""
+
+    def __init__(self, endpoint: str, name: str, setup: Callable[[Bus], Callable[[], None]]) -> None:
+        self.stop = threading.Event()
+        self._endpoint, self._name, self._setup = endpoint, name, setup
+        self._ready = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+
+    def __enter__(self) -> "Peer":
+        self._thread.start()
+        assert self._ready.wait(5.0)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop.set()
+        self._thread.join(5.0)
+
+    def _run(self) -> None:
+        with open_bus(self._endpoint) as bus:
+            turn = self._setup(bus)
+            bus.announce(self._name)
+            self._ready.set()
+            while not self.stop.is_set():
+                bus.wait(0.02)
+                turn()
+
+
+class FeatureService:
+    """Answers EXTRACT and MATCH, remembers what it was asked."""
+
+    def __init__(self) -> None:
+        self.extracted: list[ExtractRequest] = []
+        self.matched: list[MatchRequest] = []
+        self.results: tuple[NodeMatch, ...] = (
+            NodeMatch(node_id=3, raw_matches=20, inliers=9, status="inconsistent"),
+            NodeMatch(
+                node_id=7, raw_matches=90, inliers=71, status="ok", heading_rad=0.5, yaw_rad=0.1, confidence=0.9
+            ),
+        )
+
+    def setup(self, bus: Bus) -> Callable[[], None]:
+        extract, match = bus.requests(EXTRACT), bus.requests(MATCH, robot="*")
+
+        def turn() -> None:
+            while (asked := extract.take()) is not None:
+                self.extracted.append(asked.message)
+                asked.reply(features_of())
+            while (question := match.take()) is not None:
+                self.matched.append(question.message)
+                if question.message.map == "nowhere":
+                    question.refuse("no map 'nowhere'")
+                    continue
+                question.reply(
+                    MatchReply(map=question.message.map, pipeline=PIPELINE, max_similarity=150, results=self.results)
+                )
+
+        return turn
+
+
+class Planner:
+    """Answers MISSION and publishes the status."""
+
+    def __init__(self, robot: str = "r1") -> None:
+        self.asked: list[MissionRequest] = []
+        self.status = MissionStatus(robot=robot)
+        self._wanted: list[MissionStatus] = []
+
+    def say(self, **changes: object) -> None:
+        """Publish a changed status, as the planner does when a mission ends."""
+        self._wanted.append(self.status.model_copy(update=changes))
+
+    def setup(self, bus: Bus) -> Callable[[], None]:
+        requests = bus.requests(MISSION, robot=self.status.robot)
+        statuses = bus.publisher(STATUS, robot=self.status.robot)
+
+        def turn() -> None:
+            while self._wanted:
+                self.status = self._wanted.pop(0)
+                statuses.put(self.status)
+            while (request := requests.take()) is not None:
+                self._answer(request.message)
+                if request.message.goal_node == 404:
+                    request.refuse("map 'flat' has no node 404")
+                else:
+                    request.reply(self.status)
+
+        return turn
+
+    def _answer(self, wish: MissionRequest) -> None:
+        self.asked.append(wish)
+        states = {"pause": "paused", "cancel": "cancelled"}
+        if wish.action in ("explore", "goto"):
+            changes = {"mission_id": "m1", "action": wish.action, "map": wish.map, "state": "running"}
+            self.status = self.status.model_copy(update=changes)
+        elif wish.action != "status":
+            self.status = self.status.model_copy(update={"state": states.get(wish.action, "running")})
+
+
+def store_app(seen: list[tuple[str, str]], nodes: int = 0, thumbnail: bytes = b"jpeg") -> FastAPI:
+    """A map store with one map `flat`; other names give its kind of problem."""
+    app = FastAPI()
+
+    def problem(status: int) -> JSONResponse:
+        body = {"type": "urn:topnav:problem:missing", "title": "Not Found", "status": status, "detail": "no map"}
+        return JSONResponse(body, status, media_type="application/problem+json")
+
+    @app.middleware("http")
+    async def note(request: Request, call_next):  # type: ignore[no-untyped-def]
+        seen.append((request.method, str(request.url.path) + (f"?{request.url.query}" if request.url.query else "")))
+        return await call_next(request)
+
+    @app.get("/maps")
+    def maps() -> list[dict[str, object]]:
+        return [{"name": "flat", "revision": 9, "nodes": nodes, "edges": nodes}]
+
+    @app.post("/maps/import", status_code=201)
+    async def load(request: Request) -> dict[str, int]:
+        return {"bytes": len(await request.body())}
+
+    @app.api_route("/maps/{name}", methods=["GET", "PATCH", "DELETE"])
+    async def one(name: str, request: Request) -> Response:
+        if name != "flat":
+            return problem(404)
+        return JSONResponse({"name": name, "revision": 9, "sent": (await request.body()).decode()})
+
+    @app.get("/maps/{name}/nodes/{node_id}/thumbnail")
+    def picture(name: str, node_id: int) -> Response:
+        return Response(thumbnail, media_type="image/jpeg", headers={"Cache-Control": "private, no-cache"})
+
+    @app.get("/maps/{name}/export")
+    def export(name: str) -> Response:
+        headers = {"Content-Disposition": f'attachment; filename="{name}.zip"'}
+        return Response(b"PK" + bytes(3_000_000), media_type="application/zip", headers=headers)
+
+    @app.get("/maps/{name}/broken")
+    @app.post("/maps/{name}/undo")
+    def undo(name: str) -> Response:
+        return JSONResponse({"map": name, "revision": 10, "undone": 9}) if name == "flat" else Response("oops", 500)
+
+    @app.get("/maps/{name}/nodes")
+    def list_nodes(name: str) -> list[dict[str, object]]:
+        return [{"node_id": n, "open": [False] * 12, "explored": [False] * 12, "thumbnail": True} for n in range(nodes)]
+
+    @app.get("/maps/{name}/edges")
+    def list_edges(name: str) -> list[dict[str, object]]:
+        ring = [(n, (n + 1) % nodes) for n in range(nodes)] if nodes > 2 else []
+        return [{"a": min(e), "b": max(e), "inliers": 60, "confidence": 0.8, "suspended": e[0] == 1} for e in ring]
+
+    return app
+
+
+@contextmanager
+def served(app: FastAPI, port: int = 0) -> Iterator[int]:
+    """Serve an application on a free port of loopback."""
+    config = uvicorn.Config(app, host="127.0.0.1", port=port, log_config=None, ws="none", http="h11", lifespan="off")
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=server.run, daemon=True)
+    thread.start()
+    assert wait_until(lambda: server.started, 5.0)
+    yield int(server.servers[0].sockets[0].getsockname()[1])
+    server.should_exit = True
+    thread.join(5.0)

@@ -1,0 +1,73 @@
+"""Goal pictures: through the gateway to the feature service and back."""
+
+import io
+
+import httpx
+import numpy as np
+import pytest
+from PIL import Image
+
+from tests.integration.gateway.standins import FeatureService, Planner
+
+
+def picture(kind: str = "PNG", width: int = 256) -> bytes:
+    out = io.BytesIO()
+    pixels = np.zeros((width // 2, width, 3), np.uint8)
+    pixels[:, :, 0] = 200  # red
+    Image.fromarray(pixels).save(out, kind)
+    return out.getvalue()
+
+
+@pytest.mark.parametrize("kind", ["PNG", "JPEG", "WEBP"])
+def test_a_raw_picture_is_localised_best_node_first(http: httpx.Client, features: FeatureService, kind: str) -> None:
+    answer = http.post(
+        "/api/robots/r1/goal-check?map=flat",
+        content=picture(kind),
+        headers={"content-type": f"image/{kind.lower()}"},
+    )
+    assert answer.status_code == 200, answer.text
+    body = answer.json()
+    assert body["verdict"] == "found"
+    assert [node["node_id"] for node in body["nodes"]] == [7, 3]
+    assert body["nodes"][0]["inliers"] == 71
+    assert body["nodes"][0]["heading_rad"] == 0.5
+    assert body["picture"] == {"format": kind.lower(), "width_px": 256, "height_px": 128, "keypoints": 40}
+    frame = features.extracted[-1].frame
+    assert (frame.encoding, frame.width_px, frame.height_px) == ("bgr8", 256, 128)
+    assert frame.data[2] > 190 > 20 > frame.data[0]  # red comes last
+    question = features.matched[-1]
+    assert (question.map, question.best_k, question.with_matches) == ("flat", 5, False)
+    assert question.features is not None
+
+
+def test_a_form_with_one_file_is_the_same(http: httpx.Client) -> None:
+    answer = http.post("/api/robots/r1/goal-check?map=flat", files={"picture": ("goal.png", picture(), "image/png")})
+    assert answer.status_code == 200, answer.text
+
+
+def test_large_pictures_reach_the_features_at_2048(http: httpx.Client, features: FeatureService) -> None:
+    content = picture("PNG", 4096)
+    answer = http.post("/api/robots/r1/goal-check?map=flat", content=content, headers={"content-type": "image/png"})
+    assert answer.json()["picture"]["width_px"] == 4096
+    assert features.extracted[-1].frame.width_px == 2048
+
+
+def test_a_map_nobody_has_is_refused_in_the_services_words(http: httpx.Client) -> None:
+    answer = http.post(
+        "/api/robots/r1/goal-check?map=nowhere", content=picture(), headers={"content-type": "image/png"}
+    )
+    assert answer.status_code == 409
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert "no map 'nowhere'" in answer.json()["detail"]
+
+
+def test_goto_by_picture_hands_the_features_to_the_planner(http: httpx.Client, planner: Planner) -> None:
+    answer = http.post(
+        "/api/robots/r1/missions/goto?map=flat&seed=4", content=picture(), headers={"content-type": "image/png"}
+    )
+    assert answer.status_code == 202, answer.text
+    assert (answer.json()["mission_id"], answer.json()["state"]) == ("m1", "running")
+    wish = planner.asked[-1]
+    assert (wish.action, wish.map, wish.seed) == ("goto", "flat", 4)
+    assert wish.goal is not None
+    assert wish.goal.pipeline == "standin/1"
