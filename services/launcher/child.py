@@ -1,8 +1,8 @@
 """Runs between fork and exec of every service: ties its life to the launcher's.
 
 Called as a script, `child.py LAUNCHER_PID COMMAND...`. The kernel kills the service when the launcher dies,
-even by kill -9, so no orphan ever holds a port or drives a wheel. A script of its own because Python code after
-a fork is not safe in a launcher that has Zenoh's threads.
+even by kill -9, so no orphan ever holds a port or drives a wheel. A script of its own because Python code
+after a fork is not safe in a launcher that has Zenoh's threads.
 """
 
 import ctypes

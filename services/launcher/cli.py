@@ -5,7 +5,6 @@ import sys
 from pathlib import Path
 from typing import Annotated, Any
 
-import click
 import typer
 from rich.console import Console
 
@@ -23,6 +22,7 @@ register(app, COMMANDS)
 DataDir = Annotated[Path, typer.Option(envvar="TOPNAV_DATA_DIR", help="Maps, logs and state live here.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
 DEFAULT_DATA_DIR = Path("data")
+COMPOSE_FILE = Path(__file__).resolve().parents[2] / "docker-compose.yml"
 
 
 @app.command()
@@ -40,18 +40,18 @@ def up(
     ] = False,
     data_dir: DataDir = DEFAULT_DATA_DIR,
     timeout_s: Annotated[float, typer.Option(help="How long the start may take.")] = 120.0,
+    file: Annotated[Path, typer.Option("--file", "-f", help="Which processes there are.")] = COMPOSE_FILE,
 ) -> None:
     """Start the processes of docker-compose.yml on this machine."""
     from services.launcher.stack_settings import StackSettings
-    from services.launcher.up import run_detached, run_foreground, variables_with_dotenv
+    from services.launcher.up import run_detached, run_foreground
 
-    variables = variables_with_dotenv()
     choices: dict[str, Any] = {"world": world, "lockstep": lockstep, "seed": seed, "profile": profile}
     settings = StackSettings(data_dir.resolve(), **choices)
     if detach:
-        run_detached(settings, timeout_s)
+        run_detached(settings, file.resolve(), timeout_s)
     else:
-        run_foreground(settings, variables, timeout_s)
+        run_foreground(settings, file.resolve(), timeout_s)
 
 
 @app.command()
@@ -109,13 +109,9 @@ def main() -> None:
     from services.launcher.wait import LaunchError
 
     try:
-        code = app(standalone_mode=False)
-    except click.ClickException as error:
-        error.show()
-        sys.exit(error.exit_code)
-    except (click.Abort, KeyboardInterrupt):
+        app()  # reports wrong options itself and raises SystemExit
+    except KeyboardInterrupt:
         sys.exit(130)
     except (LaunchError, AlreadyRunningError, CommandMissingError, ValueError, OSError) as error:
         sys.stderr.write(f"topnav: {error}\n")
         sys.exit(1)
-    sys.exit(code if isinstance(code, int) else 0)

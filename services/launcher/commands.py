@@ -1,9 +1,9 @@
 """Commands that live elsewhere, imported when called so that `topnav --help` stays fast."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
 
-import click
 import typer
 from typer.main import get_command
 
@@ -45,8 +45,8 @@ def register(app: typer.Typer, commands: dict[str, LazyCommand]) -> None:
         )(_forward(name, command))
 
 
-def load(name: str, command: LazyCommand) -> click.Command:
-    """Import the module of a command.
+def load(name: str, command: LazyCommand) -> typer.Typer:
+    """Import the Typer app of a command.
 
     Raises:
         CommandMissingError: the module is not there, or lacks `app`.
@@ -61,11 +61,13 @@ def load(name: str, command: LazyCommand) -> click.Command:
         raise CommandMissingError(
             f"topnav {name}: {command.module} must define a Typer named `app`"
         ) from None
-    return get_command(app)
+    if not isinstance(app, typer.Typer):
+        raise CommandMissingError(f"topnav {name}: {command.module}.app must be a Typer, got {type(app)}")
+    return app
 
 
-def _forward(name: str, command: LazyCommand):  # type: ignore[no-untyped-def]  # Typer reads the inner signature
+def _forward(name: str, command: LazyCommand) -> Callable[[typer.Context], None]:
     def run(context: typer.Context) -> None:
-        load(name, command).main(args=list(context.args), prog_name=f"topnav {name}", standalone_mode=False)
+        get_command(load(name, command)).main(args=list(context.args), prog_name=f"topnav {name}")
 
     return run

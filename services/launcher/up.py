@@ -23,17 +23,18 @@ from services.launcher.wait import LaunchError
 POLL_S = 0.1
 
 
-def variables_with_dotenv(folder: Path = COMPOSE_FILE.parent) -> dict[str, str]:
+def variables_with_dotenv(folder: Path) -> dict[str, str]:
     """Return the environment on top of `.env` beside the Compose file, as `docker compose` does."""
     return {k: v for k, v in dotenv_values(folder / ".env").items() if v is not None} | dict(os.environ)
 
 
-def run_foreground(settings: StackSettings, variables: Mapping[str, str], timeout_s: float) -> None:
+def run_foreground(settings: StackSettings, compose_file: Path, timeout_s: float) -> None:
     """Run until SIGINT or SIGTERM. Raises LaunchError when the stack does not come up."""
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
     console, changes = Console(), Changes()
+    variables = variables_with_dotenv(compose_file.parent)
 
     def watch(services: Mapping[str, ServiceStatus]) -> None:
         for line in changes.lines(services):
@@ -47,6 +48,7 @@ def run_foreground(settings: StackSettings, variables: Mapping[str, str], timeou
         settings.profile,
         Ports.from_variables(variables),
         variables=variables,
+        compose_file=compose_file,
         watch=watch,
     )
     launcher.start(wait=False)
@@ -72,7 +74,7 @@ def _wait_healthy(launcher: Launcher, stop: threading.Event, timeout_s: float) -
             return
 
 
-def run_detached(settings: StackSettings, timeout_s: float) -> None:
+def run_detached(settings: StackSettings, compose_file: Path, timeout_s: float) -> None:
     """Start `topnav up --foreground` in the background and wait until all is healthy.
 
     Raises:
@@ -86,7 +88,7 @@ def run_detached(settings: StackSettings, timeout_s: float) -> None:
     log_path = folder.logs / "launcher.log"
     with log_path.open("wb") as log:
         child = subprocess.Popen(
-            [sys.executable, "-m", "services.launcher", *_arguments(settings, timeout_s)],
+            [sys.executable, "-m", "services.launcher", *_arguments(settings, compose_file, timeout_s)],
             cwd=COMPOSE_FILE.parent,
             stdin=subprocess.DEVNULL,
             stdout=log,
@@ -118,8 +120,9 @@ def _follow(
     raise LaunchError(f"the stack did not come up: {last} (see {log_path.parent})")
 
 
-def _arguments(settings: StackSettings, timeout_s: float) -> list[str]:
+def _arguments(settings: StackSettings, compose_file: Path, timeout_s: float) -> list[str]:
     arguments = ["up", "--foreground", "--data-dir", str(settings.data_dir), "--timeout-s", str(timeout_s)]
+    arguments += ["--file", str(compose_file)]
     for name in ("world", "seed", "profile"):
         value = getattr(settings, name)
         arguments += [f"--{name}", str(value)] if value is not None else []

@@ -1,0 +1,45 @@
+"""Fixtures that any test may use."""
+
+import socket
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import zenoh
+
+from shared.bus_config import router_config
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture
+def repository() -> Path:
+    """Folder of the whole project."""
+    return REPOSITORY
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    """Random numbers that are the same in every run."""
+    return np.random.default_rng(seed=7)
+
+
+@pytest.fixture
+def free_port() -> Callable[[], int]:
+    """Call it for a TCP port on loopback that nobody uses now."""
+
+    def pick() -> int:
+        with socket.socket() as one:
+            one.bind(("127.0.0.1", 0))
+            return int(one.getsockname()[1])
+
+    return pick
+
+
+@pytest.fixture
+def router_endpoint(free_port: Callable[[], int]) -> Iterator[str]:
+    """Endpoint of a Zenoh router that lives as long as the test."""
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    with zenoh.open(router_config(endpoint)):
+        yield endpoint
