@@ -1,0 +1,125 @@
+"""Static light, computed once per vertex: direct light with soft shadows, ambient light with occlusion. Pure numpy.
+
+The lamps never move, so the renderer only multiplies the texture by this (see shaders/baked): frames cost a
+fraction of what lights and shadow maps cost, and look the same from everywhere. Shadows come from rays marched
+through a grid of filled cells, whose cost does not grow with the number of things in a room.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from simulator.parts import Light, Part, rotation_of
+
+FloatArray = npt.NDArray[np.float32]
+CELL_M = 0.06
+OCCLUDER_M = 0.05  # thinner and smaller things cast no shadow
+SHARE_M = 0.09  # vertices this near with the same normal share one computation
+SAMPLES = 2
+HEMISPHERE = 12
+REACH_M = 0.6
+SKIP_M = 0.1  # a surface does not shade itself
+CLEAR_SHARE = 0.004
+GAMMA = 1 / 2.2
+
+
+def bake(
+    vertices: FloatArray, normals: FloatArray, parts: tuple[Part, ...], lights: tuple[Light, ...],
+    ambient: tuple[float, float, float], occlusion: float, rng: np.random.Generator,
+) -> FloatArray:  # fmt: skip
+    """Light at each vertex as a factor for gamma-encoded texture values.
+
+    Direct light of an area light, sampled at SAMPLES points: power * max(cos_surface, 0) * cos_light / (0.35 + d^2).
+    Ambient light is lost by up to `occlusion` where short rays over the hemisphere hit something.
+
+    Args:
+        vertices: (n, 3) world positions, metres.
+        normals: (n, 3) outward unit normals.
+        parts: everything that may cast a shadow.
+        lights: area lights.
+        ambient: even light, linear RGB.
+        occlusion: 0 to 1.
+        rng: places the light samples.
+
+    Returns:
+        (n, 3) factors, about 0.2 to 1.3.
+    """
+    keys = np.concatenate([np.round(vertices / SHARE_M), np.round(normals * 2.0)], axis=1).astype(np.int32)
+    _, first, back = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    start, facing = vertices[first], normals[first]
+    grid = _FilledGrid(parts, vertices)
+    total = np.zeros((len(start), 3), np.float32)
+    for light in lights:
+        offsets = rng.uniform(-0.45, 0.45, (SAMPLES, 3)) * np.array(light.size_m)
+        for point in np.array(light.centre_m) + offsets:
+            total += _direct(start, facing, grid, light, point.astype(np.float32)) / SAMPLES
+    total += np.array(ambient, np.float32) * (1.0 - occlusion * (1.0 - _openness(start, facing, grid)))[:, None]
+    # Soft shoulder: bright spots under lamps keep their texture.
+    factors = (1.25 * (1.0 - np.exp(-total / 0.8))) ** GAMMA
+    return np.asarray(factors[back.reshape(-1)], np.float32)
+
+
+def _direct(start: FloatArray, normals: FloatArray, grid: "_FilledGrid", light: Light, point: FloatArray) -> FloatArray:
+    delta = point - start
+    squared = (delta**2).sum(axis=1)
+    unit = delta / np.sqrt(squared)[:, None]
+    cosine = np.maximum((unit * normals).sum(axis=1), 0.0)
+    if light.facing is not None:
+        cosine = cosine * np.maximum(-(unit @ np.array(light.facing, np.float32)), 0.0)
+    strength = cosine / (0.35 + squared)
+    lit = np.flatnonzero(strength > CLEAR_SHARE)
+    visible = np.zeros(len(start), np.float32)
+    visible[lit] = ~grid.hit(start[lit] + 0.02 * normals[lit], point)
+    return np.asarray((strength * visible)[:, None] * np.array(light.power, np.float32), np.float32)
+
+
+def _openness(start: FloatArray, normals: FloatArray, grid: "_FilledGrid") -> FloatArray:
+    """Share of HEMISPHERE directions, cosine-weighted, that are free for REACH_M."""
+    k = np.arange(HEMISPHERE) + 0.5
+    radius, angle = np.sqrt(k / HEMISPHERE), np.pi * (1 + 5**0.5) * k
+    local = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.sqrt(1 - radius**2)], axis=-1).astype(np.float32)
+    helper = np.where(np.abs(normals[:, :1]) > 0.9, np.array([[0, 1, 0]], np.float32), np.array([[1, 0, 0]], np.float32))
+    tangent = np.cross(helper, normals)
+    tangent /= np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), 1e-6)
+    bitangent = np.cross(normals, tangent)
+    free = np.zeros(len(start), np.float32)
+    origin = start + 0.02 * normals
+    for a, b, c in local:
+        free += ~grid.hit(origin, origin + (a * tangent + b * bitangent + c * normals) * np.float32(REACH_M))
+    return free / HEMISPHERE
+
+
+class _FilledGrid:
+    """Cells of the world that parts fill."""
+
+    def __init__(self, parts: tuple[Part, ...], vertices: FloatArray) -> None:
+        margin = REACH_M + 2 * CELL_M  # rays may leave the building a little
+        self._low = vertices.min(axis=0) - margin
+        shape = np.ceil((vertices.max(axis=0) + margin - self._low) / CELL_M).astype(int) + 1
+        self._filled = np.zeros(shape, bool)
+        shrink = {"ellipsoid": 0.8, "cylinder": 0.9, "cushion": 0.96}
+        for part in parts:
+            if part.casts_shadow and part.shape != "leaf" and np.median(part.size_m) > OCCLUDER_M:
+                self._fill(part, np.array(part.size_m) / 2 * shrink.get(part.shape, 1.0))
+
+    def _fill(self, part: Part, half: npt.NDArray[np.float64]) -> None:
+        """Fill every cell that holds a sample point of the part; samples are denser than cells."""
+        axes = [np.linspace(-h, h, max(2, int(np.ceil(2 * h / (0.7 * CELL_M))) + 1)) for h in half]
+        points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3) @ rotation_of(part).T + np.array(part.centre_m)
+        i, j, k = np.clip(((points - self._low) / CELL_M).astype(int), 0, np.array(self._filled.shape) - 1).T
+        self._filled[i, j, k] = True
+
+    def hit(self, start: FloatArray, end: FloatArray) -> npt.NDArray[np.bool_]:
+        """Whether each segment from start (n, 3) to end meets a filled cell, but for SKIP_M at its beginning; (n,) bool."""
+        delta = end - start
+        length = np.linalg.norm(delta, axis=1)
+        order = np.argsort(length)
+        unit = delta / np.maximum(length, 1e-6)[:, None] / CELL_M
+        base = (start - self._low) / CELL_M
+        blocked = np.zeros(len(start), bool)
+        for step in np.arange(SKIP_M, float(length.max(initial=0.0)) - CELL_M, CELL_M):
+            # Rays sorted by length: those that have ended are at the front.
+            live = order[np.searchsorted(length[order], step + CELL_M) :]
+            live = live[~blocked[live]]
+            cells = (base[live] + unit[live] * np.float32(step)).astype(np.int32)
+            blocked[live] = self._filled[cells[:, 0], cells[:, 1], cells[:, 2]]
+        return blocked

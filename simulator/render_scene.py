@@ -1,0 +1,128 @@
+"""What the camera sees: the world's parts as a few large meshes in SAPIEN, and six cameras that make a panorama."""
+
+import math
+import os
+from pathlib import Path
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+import sapien
+from sapien import render
+
+from simulator.lighting import bake
+from simulator.meshes import Mesh, joined, mesh_of
+from simulator.panorama import BORDER_PX, CubeToEquirect, Image, face_fov_rad, face_rotations
+from simulator.parts import Material, Part
+from simulator.scene_parts import expand
+from simulator.settings import CameraSettings
+from simulator.textures.catalogue import draw
+from simulator.world_file import WorldFile
+
+SHADERS = Path(__file__).parent / "shaders" / "baked"
+Pose2 = tuple[float, float, float]
+
+
+def set_up_renderer() -> None:
+    """Choose our one-pass shader and byte pictures; must come before the first camera of the process."""
+    render.set_log_level("error")
+    render.set_global_config(max_num_materials=512, max_num_textures=512)
+    render.set_camera_shader_dir(os.fspath(SHADERS))
+    render.set_picture_format("Color", "r8g8b8a8unorm")
+
+
+def flat_pose(x_m: float, y_m: float, yaw_rad: float, z_m: float = 0.0) -> sapien.Pose:
+    """Pose from position and heading."""
+    return sapien.Pose([x_m, y_m, z_m], [math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2)])
+
+
+class RenderScene:
+    """The rendered world. Light is computed on construction (a few seconds)."""
+
+    def __init__(self, world: WorldFile, camera: CameraSettings) -> None:
+        """Build meshes, textures, light and cameras."""
+        set_up_renderer()
+        self._settings = camera
+        self._scene = sapien.Scene([render.RenderSystem()])
+        self._materials: dict[Material, render.RenderMaterial] = {}
+        self._add_static(world)
+        self._mount, self._cameras = self._add_cameras()
+        self._warp = CubeToEquirect(camera.width_px, self._cameras[0].width)
+        self._faces = np.empty((6 * self._cameras[0].width, self._cameras[0].width, 4), np.uint8)
+
+    def add_body(self, parts: tuple[Part, ...]) -> sapien.Entity:
+        """Add something that moves: parts in the body's frame, lit evenly from above."""
+        entity = sapien.Entity()
+        body = render.RenderBodyComponent()
+        for material, mesh in _by_material(parts).items():
+            shade = (0.62 + 0.3 * mesh.normals[:, 2:] + 0.08 * mesh.normals[:, :1]) * np.array([[1.0, 0.98, 0.95]])
+            body.attach(self._shape(mesh, shade.astype(np.float32), material))
+        entity.add_component(body)
+        self._scene.add_entity(entity)
+        return entity
+
+    def panorama(self, pose: Pose2) -> Image:
+        """Picture from a pose (x, y, yaw); (width / 2, width, 3) BGR bytes."""
+        self._mount.set_pose(flat_pose(*pose, z_m=self._settings.height_m))
+        self._scene.update_render()
+        for camera in self._cameras:
+            camera.take_picture()
+        size = self._cameras[0].width
+        for k, camera in enumerate(self._cameras):
+            self._faces[k * size : (k + 1) * size] = camera.get_picture("Color")
+        return np.asarray(cv2.cvtColor(self._warp(self._faces), cv2.COLOR_RGBA2BGR), np.uint8)
+
+    def _add_static(self, world: WorldFile) -> None:
+        parts, lights = expand(world)
+        entity = sapien.Entity()
+        body = render.RenderBodyComponent()
+        groups = _by_material(parts)
+        whole = joined(list(groups.values()))
+        rng = np.random.default_rng(0)
+        light = bake(whole.vertices, whole.normals, parts, lights, world.lighting.ambient, world.lighting.occlusion, rng)
+        start = 0
+        for material, mesh in groups.items():
+            shade = light[start : start + len(mesh.vertices)]
+            start += len(mesh.vertices)
+            if material.glow:
+                shade = np.full_like(shade, material.glow)
+            body.attach(self._shape(mesh, shade, material))
+        entity.add_component(body)
+        self._scene.add_entity(entity)
+
+    def _shape(self, mesh: Mesh, shade: npt.NDArray[np.float32], material: Material) -> render.RenderShapeTriangleMesh:
+        return render.RenderShapeTriangleMesh(mesh.vertices, mesh.triangles, shade, mesh.uvs, self._material(material))
+
+    def _material(self, material: Material) -> render.RenderMaterial:
+        if material not in self._materials:
+            picture = draw(material.kind, material.colour, material.seed)
+            rgba = cv2.cvtColor(picture, cv2.COLOR_RGB2RGBA)
+            levels = int(math.log2(min(rgba.shape[:2]))) + 1
+            look = render.RenderMaterial()
+            look.base_color_texture = render.RenderTexture2D(rgba, "R8G8B8A8Unorm", mipmap_levels=levels)
+            self._materials[material] = look
+        return self._materials[material]
+
+    def _add_cameras(self) -> tuple[sapien.Entity, list[render.RenderCameraComponent]]:
+        mount = sapien.Entity()
+        size = 2 * round(self._settings.width_px * self._settings.face_scale / 2) + 2 * BORDER_PX
+        cameras = []
+        for rotation in face_rotations():
+            camera = render.RenderCameraComponent(size, size)
+            camera.set_fovy(face_fov_rad(size), compute_x=True)
+            camera.near, camera.far = self._settings.near_m, self._settings.far_m
+            matrix = np.eye(4)
+            matrix[:3, :3] = rotation
+            mount.add_component(camera)
+            camera.local_pose = sapien.Pose(matrix)
+            cameras.append(camera)
+        self._scene.add_entity(mount)
+        return mount, cameras
+
+
+def _by_material(parts: tuple[Part, ...]) -> dict[Material, Mesh]:
+    """One mesh per material: few draw calls are what makes frames cheap."""
+    groups: dict[Material, list[Mesh]] = {}
+    for part in parts:
+        groups.setdefault(part.material, []).append(mesh_of(part))
+    return {material: joined(meshes) for material, meshes in groups.items()}

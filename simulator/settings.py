@@ -1,0 +1,61 @@
+"""Settings of the simulated robot, its sensors and the physics. The bus loop's settings are in service_settings.py."""
+
+from typing import Self
+
+from pydantic import BaseModel, ConfigDict, Field, NonNegativeFloat, PositiveFloat, PositiveInt, model_validator
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class CameraSettings(_Frozen):
+    """Spherical camera: picture size (always 2:1) and height of its centre above the floor."""
+
+    width_px: PositiveInt = 2048
+    height_m: PositiveFloat = 0.8
+    near_m: PositiveFloat = 0.015
+    far_m: PositiveFloat = 60.0
+    face_scale: float = Field(default=0.32, ge=0.2, le=1.0, description="side of a cube face over picture width; 1 / pi keeps the resolution at face centres")
+
+    @model_validator(mode="after")
+    def _even(self) -> Self:
+        if self.width_px % 4:
+            raise ValueError(f"width_px must be a multiple of 4, got {self.width_px}")
+        return self
+
+
+class RangeSettings(_Frozen):
+    """Distance sensors: beams of `beam_rad`, each sampled by `rays`."""
+
+    count: PositiveInt = 12
+    beam_rad: PositiveFloat = 0.5235987755982988
+    rays: PositiveInt = 11
+    max_m: PositiveFloat = 4.0
+    noise_m: NonNegativeFloat = 0.01
+
+
+class RobotSettings(_Frozen):
+    """Robot body and servos."""
+
+    wheel_radius_m: PositiveFloat = 0.08
+    wheel_offset_m: PositiveFloat = 0.12
+    body_radius_m: PositiveFloat = 0.25
+    body_low_m: PositiveFloat = 0.03
+    body_top_m: PositiveFloat = 0.22
+    mast_top_m: PositiveFloat = 0.75
+    mast_radius_m: PositiveFloat = 0.02
+    steer_rate_radps: PositiveFloat = 12.0
+    steer_limit_rad: PositiveFloat = 1.9
+    wheel_limit_radps: PositiveFloat = 20.0
+    wheel_accel_radps2: PositiveFloat = 40.0
+
+
+class SimulationSettings(_Frozen):
+    """Everything `Simulation` needs besides the world."""
+
+    timestep_s: PositiveFloat = 0.01
+    camera: CameraSettings = CameraSettings()
+    ranges: RangeSettings = RangeSettings()
+    robot: RobotSettings = RobotSettings()
+    render: bool = True

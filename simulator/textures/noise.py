@@ -1,0 +1,79 @@
+"""Periodic noise and small drawing aids that the texture kinds share. Pure numpy and OpenCV."""
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+Image = npt.NDArray[np.uint8]
+FloatArray = npt.NDArray[np.float32]
+Rgb = tuple[int, int, int]
+
+
+def spectral_noise(
+    rng: np.random.Generator, height: int, width: int, exponent: float = 1.5, stretch: float = 1.0
+) -> FloatArray:
+    """Periodic noise with spectrum 1 / f^exponent, normalised to mean 0 and standard deviation 1.
+
+    Args:
+        rng: source of randomness.
+        height: rows, pixels.
+        width: columns, pixels.
+        exponent: 0 is white noise, 2 is cloud-like.
+        stretch: features are that many times longer along the rows than across them.
+
+    Returns:
+        (height, width) array that tiles without a seam.
+    """
+    white = rng.standard_normal((height, width)).astype(np.float32)
+    fy = np.fft.fftfreq(height)[:, None] * height
+    fx = np.fft.rfftfreq(width)[None, :] * width * stretch
+    radius = np.sqrt(fx * fx + fy * fy)
+    radius[0, 0] = 1.0
+    field = np.fft.irfft2(np.fft.rfft2(white) / radius**exponent, s=(height, width))
+    field -= field.mean()
+    return (field / max(float(field.std()), 1e-9)).astype(np.float32)
+
+
+def flat(height: int, width: int, colour: Rgb) -> FloatArray:
+    """One colour as a (height, width, 3) float array, 0 to 255."""
+    return np.broadcast_to(np.array(colour, np.float32), (height, width, 3)).copy()
+
+
+def modulate(image: FloatArray, field: FloatArray, strength: float) -> FloatArray:
+    """Brighten and darken an image by a (height, width) field: image * (1 + strength * field)."""
+    return image * (1.0 + strength * field[..., None])
+
+
+def finish(image: FloatArray) -> Image:
+    """Clip to 0..255 and round to bytes."""
+    return np.clip(np.rint(image), 0, 255).astype(np.uint8)
+
+
+def vary(rng: np.random.Generator, colour: Rgb, spread: float) -> Rgb:
+    """A colour near the given one: each channel scaled by 1 +- spread."""
+    scaled = np.array(colour) * rng.uniform(1.0 - spread, 1.0 + spread) * rng.uniform(0.97, 1.03, 3)
+    r, g, b = np.clip(scaled, 0, 255).astype(int).tolist()
+    return r, g, b
+
+
+def blob(rng: np.random.Generator, centre: tuple[float, float], radius: float, points: int = 14) -> npt.NDArray[np.int32]:
+    """An irregular closed outline around a centre, (points, 1, 2) integer pixels, for cv2.fillPoly."""
+    angles = np.linspace(0, 2 * np.pi, points, endpoint=False)
+    radii = radius * rng.uniform(0.65, 1.3, points)
+    xy = np.stack([centre[0] + radii * np.cos(angles), centre[1] + radii * np.sin(angles)], axis=-1)
+    return xy.astype(np.int32).reshape(-1, 1, 2)
+
+
+def smooth(image: FloatArray, sigma_px: float) -> FloatArray:
+    """Gaussian blur that wraps round the borders, so that a periodic image stays periodic."""
+    pad = int(3 * sigma_px) + 1
+    wrapped = cv2.copyMakeBorder(image, pad, pad, pad, pad, cv2.BORDER_WRAP)
+    return np.asarray(cv2.GaussianBlur(wrapped, (0, 0), sigma_px), np.float32)[pad:-pad, pad:-pad]
+
+
+def write(image: FloatArray, text: str, at: tuple[int, int], scale: float, ink: tuple[float, ...], thick: int) -> None:
+    """Draw text in place; `at` is the left end of the base line. OpenCV 5 draws text on bytes only, so a mask is blended."""
+    mask = np.zeros(image.shape[:2], np.uint8)
+    cv2.putText(mask, text, at, cv2.FONT_HERSHEY_SIMPLEX, scale, 255, thick, cv2.LINE_AA)
+    weight = mask[..., None].astype(np.float32) / 255.0
+    image[...] = image * (1.0 - weight) + np.array(ink, np.float32) * weight

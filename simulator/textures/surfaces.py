@@ -1,0 +1,82 @@
+"""Building surfaces: plaster, ceiling paint, floor boards, tiles. RGB, tileable."""
+
+import cv2
+import numpy as np
+
+from simulator.textures.noise import FloatArray, Image, Rgb, finish, flat, modulate, smooth, spectral_noise, vary
+
+
+def plaster(rng: np.random.Generator, colour: Rgb) -> Image:
+    """Rolled wall paint: broad uneven tone, roller grain, a few faint scuffs and filled holes."""
+    size = 1024
+    image = modulate(flat(size, size, colour), spectral_noise(rng, size, size, 1.6), 0.018)
+    image = modulate(image, spectral_noise(rng, size, size, 0.6), 0.014)
+    marks = np.zeros((size, size), np.float32)
+    for _ in range(70):
+        x, y = rng.integers(0, size, 2)
+        angle, length = rng.uniform(0, np.pi), rng.uniform(8, 60)
+        end = (int(x + length * np.cos(angle)), int(y + length * np.sin(angle)))
+        cv2.line(marks, (int(x), int(y)), end, float(rng.uniform(-1.0, 0.6)), int(rng.integers(1, 4)), cv2.LINE_AA)
+    for _ in range(60):
+        x, y = rng.integers(0, size, 2)
+        cv2.circle(marks, (int(x), int(y)), int(rng.integers(2, 9)), float(rng.uniform(-1.0, 1.0)), -1, cv2.LINE_AA)
+    return finish(modulate(image, smooth(marks, 1.5), 0.055))
+
+
+def ceiling(rng: np.random.Generator, colour: Rgb) -> Image:
+    """Ceiling paint: nearly even."""
+    image = modulate(flat(512, 512, colour), spectral_noise(rng, 512, 512, 1.5), 0.012)
+    return finish(modulate(image, spectral_noise(rng, 512, 512, 0.3), 0.012))
+
+
+def boards(rng: np.random.Generator, colour: Rgb) -> Image:
+    """Floor boards along x: each with its own tone, grain, knots and joints."""
+    size, rows = 2048, 32
+    image = flat(size, size, colour)
+    grain = spectral_noise(rng, size, size, 1.0, stretch=16.7)
+    broad = spectral_noise(rng, size, size, 1.5, stretch=6.67)
+    height = size // rows
+    for row in range(rows):
+        top = row * height
+        cuts = np.sort(rng.integers(0, size, int(rng.integers(3, 6))))
+        for start, end in zip(cuts, np.append(cuts[1:], cuts[0] + size), strict=True):
+            columns = np.arange(start, end) % size
+            shift = int(rng.integers(0, size))
+            strip = np.roll(grain[top : top + height], shift, axis=1)[:, columns] * 0.09
+            strip = strip + np.roll(broad[top : top + height], shift, axis=1)[:, columns] * 0.05
+            tone = np.array(vary(rng, colour, 0.16), np.float32)
+            image[top : top + height, columns] = tone * (1.0 + strip[..., None])
+            image[top : top + height, int(start) % size] *= 0.45
+        image[top] *= 0.5
+        image[top + height - 1] *= 0.72
+    _knots(rng, image, 90)
+    return finish(image)
+
+
+def _knots(rng: np.random.Generator, image: FloatArray, count: int) -> None:
+    size = image.shape[0]
+    shade = np.ones((size, size), np.float32)
+    for _ in range(count):
+        x, y = (int(v) for v in rng.integers(20, size - 20, 2))
+        axes = (int(rng.integers(6, 16)), int(rng.integers(3, 7)))
+        cv2.ellipse(shade, (x, y), (axes[0] * 2, axes[1] * 2), 0, 0, 360, 0.82, -1, cv2.LINE_AA)
+        cv2.ellipse(shade, (x, y), axes, 0, 0, 360, float(rng.uniform(0.45, 0.65)), -1, cv2.LINE_AA)
+    image *= smooth(shade, 1.6)[..., None]
+
+
+def tiles(rng: np.random.Generator, colour: Rgb) -> Image:
+    """Stone tiles, 8 x 8 in the square, cloudy and veined, with grout."""
+    size, count = 1024, 8
+    image = flat(size, size, (150, 145, 138))
+    cloud = spectral_noise(rng, size, size, 1.7)
+    fine = spectral_noise(rng, size, size, 0.8)
+    step = size // count
+    for i in range(count):
+        for j in range(count):
+            ys, xs = slice(i * step + 2, (i + 1) * step - 2), slice(j * step + 2, (j + 1) * step - 2)
+            dy, dx = (int(v) for v in rng.integers(0, size - step, 2))
+            vein = cloud[dy : dy + step - 4, dx : dx + step - 4]
+            tone = np.array(vary(rng, colour, 0.07), np.float32)
+            ridge = np.exp(-((vein / 0.07) ** 2))
+            image[ys, xs] = tone * (1.0 + 0.05 * vein - 0.13 * ridge + 0.025 * fine[ys, xs])[..., None]
+    return finish(image)

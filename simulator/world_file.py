@@ -1,0 +1,149 @@
+"""World files: the YAML that describes a world, checked on loading."""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+import yaml
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PositiveFloat, ValidationError, model_validator
+
+from simulator.furniture.catalogue import FURNITURE
+from simulator.textures.catalogue import KINDS
+
+WORLDS = Path(__file__).parent / "worlds"
+
+
+class WorldFileError(ValueError):
+    """A world file cannot be used; the message names file, place, expectation and value."""
+
+
+def _interval(value: tuple[float, float]) -> tuple[float, float]:
+    if not value[0] < value[1]:
+        raise ValueError(f"must be [low, high] with low < high, got [{value[0]}, {value[1]}]")
+    return value
+
+
+def _texture(value: str) -> str:
+    if value not in KINDS:
+        raise ValueError(f"unknown texture kind {value!r}; choose from {', '.join(sorted(KINDS))}")
+    return value
+
+
+Interval = Annotated[tuple[float, float], AfterValidator(_interval)]
+Channel = Annotated[int, Field(ge=0, le=255)]
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class Surface(_Model):
+    """Texture, colour (RGB) and seed of a floor, wall or ceiling; `tile_m` is the side of one repeat."""
+
+    texture: Annotated[str, AfterValidator(_texture)]
+    colour: tuple[Channel, Channel, Channel]
+    seed: int = Field(default=0, ge=0)
+    tile_m: PositiveFloat = 4.0
+
+
+class Room(_Model):
+    """An axis-parallel rectangle of floor with walls round it. Rooms that touch are open towards each other along the contact."""
+
+    name: str
+    x_m: Interval
+    y_m: Interval
+    floor: Surface
+    walls: Surface
+    ceiling: Surface
+    height_m: PositiveFloat | None = None
+
+
+class Opening(_Model):
+    """A passage through the walls between two rooms: the rectangle of floor inside the wall."""
+
+    x_m: Interval
+    y_m: Interval
+    height_m: PositiveFloat = 2.1
+    floor: Surface
+
+
+class Item(_Model):
+    """A piece of furniture: kind, position, heading of its front, height above the floor, seed, and options of that kind."""
+
+    kind: str
+    at_m: tuple[float, float]
+    yaw_deg: float = 0.0
+    z_m: float = 0.0
+    seed: int = Field(default=0, ge=0)
+    options: dict[str, Any] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _known(self) -> Self:
+        if self.kind not in FURNITURE:
+            raise ValueError(f"unknown furniture kind {self.kind!r}; choose from {', '.join(sorted(FURNITURE))}")
+        FURNITURE[self.kind].check(self.options)
+        return self
+
+
+class Start(_Model):
+    """Where the robot starts."""
+
+    x_m: float
+    y_m: float
+    yaw_deg: float = 0.0
+
+
+class Lighting(_Model):
+    """Even light that reaches everything, and how much of it corners lose (0 to 1)."""
+
+    ambient: tuple[float, float, float] = (0.34, 0.33, 0.32)
+    occlusion: float = Field(default=0.75, ge=0.0, le=1.0)
+
+
+class WorldFile(_Model):
+    """A whole world."""
+
+    format: Literal["topnav-world/1"]
+    name: str
+    wall_height_m: PositiveFloat = 2.6
+    wall_thickness_m: PositiveFloat = 0.075
+    lighting: Lighting = Lighting()
+    rooms: tuple[Room, ...] = Field(min_length=1)
+    openings: tuple[Opening, ...] = ()
+    furniture: tuple[Item, ...] = ()
+    start: Start
+
+    @model_validator(mode="after")
+    def _start_inside(self) -> Self:
+        s = self.start
+        if not any(r.x_m[0] < s.x_m < r.x_m[1] and r.y_m[0] < s.y_m < r.y_m[1] for r in self.rooms):
+            raise ValueError(f"start ({s.x_m}, {s.y_m}) must lie inside one of the rooms {[r.name for r in self.rooms]}")
+        return self
+
+
+def world_names() -> list[str]:
+    """Names of the worlds that come with the simulator."""
+    return sorted(path.stem for path in WORLDS.glob("*.yaml"))
+
+
+def load_world(name_or_path: str) -> WorldFile:
+    """Load a world by its name, or by the path of a YAML file.
+
+    Raises:
+        WorldFileError: no such world, not YAML, or a value that does not fit; all faults are listed.
+    """
+    path = Path(name_or_path)
+    if path.suffix not in {".yaml", ".yml"}:
+        path = WORLDS / f"{name_or_path}.yaml"
+    if not path.is_file():
+        raise WorldFileError(f"world must be one of {', '.join(world_names())} or a .yaml file; got {name_or_path!r}")
+    try:
+        data = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise WorldFileError(f"{path}: not valid YAML: {error}") from error
+    if not isinstance(data, dict):
+        raise WorldFileError(f"{path}: must be a mapping with format, name, rooms, start; got {type(data).__name__}")
+    try:
+        return WorldFile.model_validate(data)
+    except ValidationError as error:
+        faults = "; ".join(f"{'.'.join(str(part) for part in e['loc']) or 'world'}: {e['msg']}" for e in error.errors())
+        raise WorldFileError(f"{path}: {faults}") from error
