@@ -18,6 +18,9 @@ class Health(Protocol):
     def instances(self) -> frozenset[str]:
         """Name what is ready now; a restarted process brings a new name."""
 
+    def close(self) -> None:
+        """Leave nothing running."""
+
 
 class Liveliness:
     """Watches over one Zenoh session the liveliness tokens that `python -m shared.health` asks for."""
@@ -60,6 +63,9 @@ class TokenHealth:
         """Return the living instances."""
         return self._liveliness.alive(self._service)
 
+    def close(self) -> None:
+        """Do nothing: the session is closed by its owner."""
+
 
 class CommandHealth:
     """Ready while the last run of a command ended with 0. Never blocks: it runs in the background."""
@@ -93,6 +99,12 @@ class CommandHealth:
         # The count makes each success a new name: one that came after a restart is told from one before it.
         return frozenset({str(self._count)}) if self._ready else frozenset()
 
+    def close(self) -> None:
+        """End a run that is still going."""
+        if self._run is not None:
+            self._run.kill()
+            self._run.wait()
+
 
 class AlwaysReady:
     """For services without a health check: ready once started."""
@@ -100,3 +112,6 @@ class AlwaysReady:
     def instances(self) -> frozenset[str]:
         """Return one instance whose name never clashes with that of an earlier process."""
         return frozenset({str(time.monotonic_ns())})
+
+    def close(self) -> None:
+        """Do nothing."""

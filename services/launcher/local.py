@@ -8,6 +8,7 @@ from pathlib import Path
 from services.launcher.compose_file import Service
 
 LIVELINESS_TEST = ("CMD", "python", "-m", "shared.health")
+UNCHECKED_READY_AFTER_S = 0.5
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,7 @@ class ProcessSpec:
         alive_as: liveliness token that says the service is ready, or None.
         check: health command to run where there is no token, or None.
         check_interval_s: pause between two health commands.
+        ready_after_s: how long it must have run to count as healthy; for services without a health check.
         needs: service name -> whether it must be healthy, not just started.
         restart: start it again when it ends.
         stop_grace_s: time between SIGTERM and SIGKILL.
@@ -34,6 +36,7 @@ class ProcessSpec:
     alive_as: str | None
     check: tuple[str, ...] | None
     check_interval_s: float
+    ready_after_s: float
     needs: Mapping[str, bool]
     restart: bool
     stop_grace_s: float
@@ -67,6 +70,7 @@ def local_process(name: str, service: Service, hosts: Collection[str], machine: 
         alive_as=test[len(LIVELINESS_TEST)] if by_token else None,
         check=None if by_token or not test or test[0] == "NONE" else _check_command(test, machine.python),
         check_interval_s=service.healthcheck.interval if service.healthcheck else 0.0,
+        ready_after_s=0.0 if test else UNCHECKED_READY_AFTER_S,
         needs={other: need.condition == "service_healthy" for other, need in service.depends_on.items()},
         restart=service.restart != "no",
         stop_grace_s=service.stop_grace_period,

@@ -1,6 +1,5 @@
 """The thread that steps every service runner, and stops all of them in the reverse of the start order."""
 
-import signal
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -91,10 +90,7 @@ class SupervisorLoop:
     def _stop_services(self) -> None:
         for stage in reversed(self._stages):
             runners = [self._runners[name] for name in stage]
-            children = [runner.child for runner in runners if runner.child is not None]
-            for child in children:
-                child.send(signal.SIGCONT)  # a stopped process could not act on SIGTERM
-            stop_all(children, max((runner.spec.stop_grace_s for runner in runners), default=0.0))
+            stop_all({runner.child: runner.spec.stop_grace_s for runner in runners if runner.child})
             for runner in runners:
                 runner.child, runner.state = None, State.EXITED
         self._changed(self.status())

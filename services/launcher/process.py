@@ -11,6 +11,7 @@ from pathlib import Path
 
 CHILD = Path(__file__).with_name("child.py")
 LOG_BYTES = 10_000_000
+REAP_S = 5.0
 
 
 class ChildProcess:
@@ -64,16 +65,16 @@ class ChildProcess:
         return True
 
 
-def stop_all(children: Sequence[ChildProcess], grace_s: float) -> None:
-    """Send SIGTERM to all, and SIGKILL to what is left after `grace_s`, then reap them."""
+def stop_all(children: Mapping[ChildProcess, float]) -> None:
+    """Send SIGTERM to all and SIGKILL to each that is left after its grace in seconds, then reap them."""
     for child in children:
+        child.send(signal.SIGCONT)  # a stopped process could not act on SIGTERM
         child.send(signal.SIGTERM)
-    deadline_s = time.monotonic() + grace_s
-    for child in children:
-        child.wait(deadline_s - time.monotonic())
-    for child in children:
+    start_s = time.monotonic()
+    for child, grace_s in sorted(children.items(), key=lambda item: item[1]):
+        child.wait(start_s + grace_s - time.monotonic())
         child.send(signal.SIGKILL)  # also to children that a service left in its group
-        child.wait(grace_s)
+        child.wait(REAP_S)
 
 
 def rotate(path: Path, limit_bytes: int = LOG_BYTES) -> None:

@@ -110,7 +110,8 @@ class ServiceRunner:
         self._become(State.DEGRADED if self._policy.is_storm(self._exits_s, now_s) else State.RESTARTING)
 
     def _look(self, now_s: float, watch_hung: bool) -> None:
-        if self._health.instances() - self._stale:
+        young = now_s - self._started_s < self.spec.ready_after_s
+        if self._health.instances() - self._stale and not young:
             self._silent_since_s = now_s
             # In a crash storm a process that just became ready proves little: it has to last.
             settled = now_s - self._started_s >= self._policy.settle_s

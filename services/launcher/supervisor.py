@@ -10,6 +10,7 @@ import logging
 import os
 import signal
 import sys
+import threading
 import time
 from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
@@ -73,8 +74,10 @@ class Launcher:
         self._started = ""
         self._liveliness = Liveliness()
         specs = self._specs(compose_file, variables, only)
+        self._healths = [self._health(spec) for spec in specs]
         runners = {
-            spec.name: ServiceRunner(spec, self._health(spec), self._spawn, self._policy) for spec in specs
+            spec.name: ServiceRunner(spec, health, self._spawn, self._policy)
+            for spec, health in zip(specs, self._healths, strict=True)
         }
         self._uses_bus = any(spec.alive_as for spec in specs)
         self._loop = SupervisorLoop(runners, self._stages, self._changed)
@@ -122,6 +125,8 @@ class Launcher:
         """Stop all services in the reverse of the start order."""
         self._loop.stop()
         self._liveliness.close()
+        for health in self._healths:
+            health.close()
         self._state.release()
 
     def __enter__(self) -> Self:
@@ -164,9 +169,13 @@ class Launcher:
         """
         require_healthy(self.status, [service], timeout_s, self.logs, other_than)
 
-    def wait_all_healthy(self, timeout_s: float) -> None:
-        """Wait until every service is healthy; raises LaunchError, at once for one that keeps crashing."""
-        require_healthy(self.status, list(self.status()), timeout_s, self.logs)
+    def wait_all_healthy(self, timeout_s: float, stop: threading.Event | None = None) -> None:
+        """Wait until every service is healthy or `stop` is set.
+
+        Raises:
+            LaunchError: not in time; at once for a service that keeps ending.
+        """
+        require_healthy(self.status, list(self.status()), timeout_s, self.logs, stop=stop)
 
     def _specs(
         self, compose_file: Path, variables: Mapping[str, str] | None, only: Collection[str] | None

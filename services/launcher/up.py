@@ -1,6 +1,7 @@
 """`topnav up`: keep a stack running in this process, or in one left behind."""
 
 import contextlib
+import logging
 import os
 import signal
 import subprocess
@@ -19,6 +20,7 @@ from services.launcher.stack_settings import Ports, StackSettings
 from services.launcher.state import AlreadyRunningError, ServiceStatus, StackState, StateFolder
 from services.launcher.supervisor import Launcher
 from services.launcher.wait import LaunchError
+from shared.lifecycle import JsonFormatter
 
 POLL_S = 0.1
 
@@ -51,9 +53,10 @@ def run_foreground(settings: StackSettings, compose_file: Path, timeout_s: float
         compose_file=compose_file,
         watch=watch,
     )
+    _log_to(launcher.logs / "launcher.jsonl")
     launcher.start(wait=False)
     try:
-        _wait_healthy(launcher, stop, timeout_s)
+        launcher.wait_all_healthy(timeout_s, stop)
         if not stop.is_set():
             console.print(f"all healthy; console {launcher.gateway_url}, stop with Ctrl+C or 'topnav down'")
         stop.wait()
@@ -61,17 +64,12 @@ def run_foreground(settings: StackSettings, compose_file: Path, timeout_s: float
         launcher.stop()
 
 
-def _wait_healthy(launcher: Launcher, stop: threading.Event, timeout_s: float) -> None:
-    """Wait in short steps, so that a signal ends the wait."""
-    deadline_s = time.monotonic() + timeout_s
-    while not stop.is_set():
-        try:
-            launcher.wait_all_healthy(POLL_S)
-        except LaunchError:
-            if time.monotonic() > deadline_s:
-                raise
-        else:
-            return
+def _log_to(path: Path) -> None:
+    """Keep the launcher's own log beside those of the services, and the shell free of it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handler = logging.FileHandler(path)
+    handler.setFormatter(JsonFormatter("launcher"))
+    logging.basicConfig(level=logging.INFO, handlers=[handler], force=True)
 
 
 def run_detached(settings: StackSettings, compose_file: Path, timeout_s: float) -> None:

@@ -1,5 +1,6 @@
 """Waiting for services, and one clear line when it was in vain."""
 
+import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -14,27 +15,33 @@ class LaunchError(RuntimeError):
     """The stack is not as it should be."""
 
 
+class KeepsEndingError(LaunchError):
+    """A service ends again and again: waiting longer is of no use."""
+
+
 def require_healthy(
     status: Callable[[], Mapping[str, ServiceStatus]],
     names: Sequence[str],
     timeout_s: float,
     logs: Path,
     other_than: int | None = None,
+    stop: threading.Event | None = None,
 ) -> None:
-    """Wait until all of `names` are healthy (with a pid other than `other_than`).
+    """Wait until all of `names` are healthy (with a pid other than `other_than`), or `stop` is set.
 
     Raises:
-        LaunchError: one has crashed for good or keeps crashing, or the time is up.
+        KeepsEndingError: one has crashed for good or keeps crashing.
+        LaunchError: the time is up.
     """
     deadline_s = time.monotonic() + timeout_s
     while True:
         now = status()
         waiting = [n for n in names if now[n].state is not State.HEALTHY or now[n].pid == other_than]
-        if not waiting:
+        if not waiting or (stop and stop.is_set()):
             return
         crashed = [n for n in waiting if now[n].state in (State.DEGRADED, State.EXITED)]
         if crashed and other_than is None:
-            raise LaunchError(
+            raise KeepsEndingError(
                 f"{crashed[0]} keeps ending (exit {now[crashed[0]].last_exit}): {hint(crashed[0], logs)}"
             )
         if time.monotonic() > deadline_s:

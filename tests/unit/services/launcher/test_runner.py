@@ -33,8 +33,8 @@ class FakeHealth:
 class Bench:
     """A runner with everything around it in the test's hand."""
 
-    def __init__(self, restart=True):
-        spec = ProcessSpec("a", ("x",), {}, (), "a", None, 0.0, {}, restart, 1.0)
+    def __init__(self, restart=True, ready_after_s=0.0):
+        spec = ProcessSpec("a", ("x",), {}, (), "a", None, 0.0, ready_after_s, {}, restart, 1.0)
         self.children, self.health = [], FakeHealth()
         self.runner = ServiceRunner(spec, self.health, self.spawn, POLICY)
 
@@ -128,6 +128,14 @@ def test_a_silent_process_that_speaks_again_is_healthy(bench):
     bench.step(1.0)
     bench.health.alive = frozenset({"t1"})
     assert bench.step(2.0) is State.HEALTHY
+
+
+def test_a_service_without_a_health_check_must_have_run_for_a_while():
+    bench = Bench(ready_after_s=0.5)
+    bench.step(0.0)
+    bench.health.alive = frozenset({"now"})
+    assert bench.step(0.4) is State.STARTING
+    assert bench.step(0.6) is State.HEALTHY
 
 
 def test_a_service_that_must_not_restart_stays_down():

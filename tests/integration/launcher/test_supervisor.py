@@ -1,0 +1,191 @@
+"""The launcher with small real processes: crashes, kills, stops, and nothing left behind."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from services.launcher.restart import RestartPolicy
+from services.launcher.runner import State
+from services.launcher.state import AlreadyRunningError, StateFolder
+from services.launcher.supervisor import Launcher, LaunchError
+from shared.bus import wait_until
+
+QUICK = RestartPolicy(first_s=0.05, longest_s=0.1, storm_exits=3, settle_s=0.2)
+SLEEP = [sys.executable, "-c", "import time; time.sleep(600)"]
+STUBBORN = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); print('up'); time.sleep(600)"
+PARENT = "import subprocess, time; print(subprocess.Popen(['sleep', '600']).pid, flush=True); time.sleep(600)"
+
+
+def compose(tmp_path, **services):
+    """Write a Compose file; each service is a dict, or the words of a command."""
+    entries = {
+        name: {"restart": "unless-stopped", **(entry if isinstance(entry, dict) else {"command": entry})}
+        for name, entry in services.items()
+    }
+    path = tmp_path / "docker-compose.yml"
+    path.write_text(json.dumps({"services": entries}), encoding="utf-8")  # JSON is YAML
+    return path
+
+
+def gone(pid):
+    """Whether a process is no more; one that nobody has reaped yet counts as gone."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] == "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return True
+
+
+@pytest.fixture
+def launch(tmp_path):
+    """Start a launcher on a made-up Compose file."""
+    launchers = []
+
+    def start(policy=QUICK, wait=True, **services):
+        launcher = Launcher(
+            tmp_path / "data", compose_file=compose(tmp_path, **services), policy=policy, timeout_s=20.0
+        )
+        launchers.append(launcher)
+        launcher.start(wait=wait)
+        return launcher
+
+    yield start
+    for launcher in launchers:
+        launcher.stop()
+
+
+def test_a_killed_service_is_back_within_five_seconds_and_the_others_never_notice(launch):
+    stack = launch(policy=RestartPolicy(), a=SLEEP, b=SLEEP)
+    other = stack.pid("b")
+    start_s = time.monotonic()
+    old = stack.kill("a")
+    stack.wait_healthy("a", timeout_s=5.0, other_than=old)
+    assert time.monotonic() - start_s < 5.0
+    assert stack.pid("a") != old
+    assert stack.pid("b") == other
+    assert stack.status()["a"].restarts == 1
+    assert stack.status()["a"].last_exit == -signal.SIGKILL
+
+
+def test_a_crash_loop_is_degraded_and_the_rest_survives(launch):
+    stack = launch(wait=False, bad=[sys.executable, "-c", "raise SystemExit(3)"], good=SLEEP)
+    assert wait_until(lambda: stack.status()["bad"].state is State.DEGRADED, 20.0)
+    restarts = stack.status()["bad"].restarts
+    assert wait_until(lambda: stack.status()["bad"].restarts > restarts, 20.0), "it must go on trying"
+    assert stack.status()["bad"].last_exit == 3
+    assert stack.status()["good"].state is State.HEALTHY
+    assert stack.status()["good"].restarts == 0
+    stack.wait_healthy("good", 1.0)
+
+
+def test_a_stack_that_cannot_start_says_why_and_leaves_nothing(tmp_path):
+    path = compose(
+        tmp_path, good=SLEEP, bad=[sys.executable, "-c", "raise SystemExit('no camera at /dev/video7')"]
+    )
+    launcher = Launcher(tmp_path / "data", compose_file=path, policy=QUICK, timeout_s=20.0)
+    with pytest.raises(
+        LaunchError, match=r"bad keeps ending \(exit 1\): no camera at /dev/video7 \(see .*bad.jsonl\)"
+    ):
+        launcher.start()
+    assert all(status.pid is None for status in launcher.status().values())
+    assert not StateFolder(tmp_path / "data").owned()
+
+
+def test_services_start_in_order_and_wait_for_health(launch, tmp_path):
+    flag = tmp_path / "ready"
+    check = {"test": ["CMD", "test", "-e", str(flag)], "interval": "50ms"}
+    first = {"command": SLEEP, "healthcheck": check}
+    second = {"command": SLEEP, "depends_on": {"first": {"condition": "service_healthy"}}}
+    stack = launch(wait=False, second=second, first=first)
+    assert wait_until(lambda: stack.pid("first") is not None, 10.0)
+    assert stack.status()["first"].state is State.STARTING
+    assert stack.status()["second"].state is State.WAITING
+    flag.touch()
+    stack.wait_all_healthy(10.0)
+    flag.unlink()
+    assert wait_until(lambda: stack.status()["first"].state is State.SILENT, 10.0)
+
+
+def test_stop_ends_even_what_ignores_sigterm_or_is_frozen(launch):
+    stack = launch(
+        stubborn={"command": [sys.executable, "-uc", STUBBORN], "stop_grace_period": "500ms"}, frozen=SLEEP
+    )
+    assert wait_until(lambda: (stack.logs / "stubborn.jsonl").read_text() == "up\n", 10.0)
+    stack.kill("frozen", signal.SIGSTOP)
+    pids = [stack.pid(name) for name in ("stubborn", "frozen")]
+    stack.stop()
+    assert all(gone(pid) for pid in pids)
+
+
+def test_children_of_a_killed_service_do_not_outlive_it(launch):
+    stack = launch(parent=[sys.executable, "-c", PARENT])
+    log = stack.logs / "parent.jsonl"
+    assert wait_until(lambda: log.exists() and log.read_text().strip() != "", 10.0)
+    child = int(log.read_text().split()[0])
+    os.kill(stack.pid("parent"), signal.SIGKILL)
+    assert wait_until(lambda: gone(child), 5.0)
+
+
+def test_two_stacks_in_one_folder_are_refused(launch, tmp_path):
+    launch(a=SLEEP)
+    other = Launcher(tmp_path / "data", compose_file=tmp_path / "docker-compose.yml")
+    with pytest.raises(AlreadyRunningError, match="topnav down"):
+        other.start()
+
+
+def test_a_service_gets_the_environment_of_the_file_and_then_the_callers(tmp_path):
+    show = [
+        sys.executable,
+        "-c",
+        "import os, time; print(os.environ['A'], os.environ['B'], flush=True); time.sleep(600)",
+    ]
+    path = compose(tmp_path, a={"command": show, "environment": {"A": "${TOPNAV_SEED}", "B": "file"}})
+    with Launcher(tmp_path / "data", seed=7, environment={"B": "caller"}, compose_file=path) as stack:
+        log = stack.logs / "a.jsonl"
+        assert wait_until(lambda: log.read_text() == "7 caller\n", 10.0)
+
+
+def run_topnav(*arguments):
+    command = [sys.executable, "-m", "services.launcher", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+
+
+def test_up_detached_status_and_down_from_the_shell(tmp_path):
+    path, data = compose(tmp_path, a=SLEEP, b=SLEEP), ["--data-dir", str(tmp_path / "data")]
+    up = run_topnav("up", "--detach", "--file", str(path), *data)
+    assert up.returncode == 0, up.stderr
+    status = run_topnav("status", "--json", *data)
+    services = json.loads(status.stdout)["services"]
+    assert status.returncode == 0
+    assert {name: service["state"] for name, service in services.items()} == {"a": "healthy", "b": "healthy"}
+    again = run_topnav("up", "--detach", "--file", str(path), *data)
+    assert again.returncode == 1
+    assert "already running" in again.stderr
+    assert run_topnav("down", *data).stdout == "stopped\n"
+    assert all(gone(service["pid"]) for service in services.values())
+    assert run_topnav("status", *data).returncode == 1
+
+
+def test_no_service_outlives_a_launcher_that_was_killed(tmp_path):
+    path, data = compose(tmp_path, a=SLEEP, b=SLEEP), ["--data-dir", str(tmp_path / "data")]
+    assert run_topnav("up", "--detach", "--file", str(path), *data).returncode == 0
+    state = StateFolder(tmp_path / "data").read()
+    os.kill(state.launcher_pid, signal.SIGKILL)
+    pids = [service.pid for service in state.services.values()]
+    assert wait_until(lambda: all(gone(pid) for pid in pids), 5.0)
+    assert wait_until(lambda: StateFolder(tmp_path / "data").read() is None, 5.0)
+    assert "no stack runs" in run_topnav("down", *data).stdout
+
+
+def test_a_failing_up_is_one_line_and_exit_1(tmp_path):
+    path = compose(tmp_path, bad=[sys.executable, "-c", "raise SystemExit('broken')"])
+    up = run_topnav("up", "--file", str(path), "--data-dir", str(tmp_path / "data"), "--timeout-s", "1")
+    assert up.returncode == 1
+    assert up.stderr.startswith("topnav: ")
+    assert "bad.jsonl" in up.stderr
+    assert len(up.stderr.splitlines()) == 1
