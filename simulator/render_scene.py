@@ -20,6 +20,7 @@ from simulator.textures.catalogue import draw
 from simulator.world_file import WorldFile
 
 SHADERS = Path(__file__).parent / "shaders" / "baked"
+AWAY = sapien.Pose([0.0, 0.0, -500.0])
 Pose2 = tuple[float, float, float]
 
 
@@ -60,6 +61,14 @@ class RenderScene:
         entity.add_component(body)
         self._scene.add_entity(entity)
         return entity
+
+    def move(self, entity: sapien.Entity, pose: sapien.Pose | None) -> None:
+        """Put a body at a pose, or out of sight."""
+        entity.set_pose(pose if pose is not None else AWAY)
+
+    def move_flat(self, entity: sapien.Entity, pose: Pose2 | None) -> None:
+        """Put a body on the floor at (x, y, yaw), or out of sight."""
+        self.move(entity, None if pose is None else flat_pose(*pose))
 
     def panorama(self, pose: Pose2) -> Image:
         """Picture from a pose (x, y, yaw); (width / 2, width, 3) BGR bytes."""

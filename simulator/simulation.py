@@ -1,0 +1,140 @@
+"""The whole simulator without any bus: world, robot, camera, sensors, truth."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from simulator.footprints import footprints
+from simulator.freespace import BODY_BAND_M
+from simulator.physics_scene import PhysicsScene
+from simulator.ranges import measure, sensor_angles_rad
+from simulator.scene_parts import expand
+from simulator.settings import SimulationSettings
+from simulator.world_file import WorldFile
+
+Pose2 = tuple[float, float, float]
+Image = npt.NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What only evaluation may know."""
+
+    x_m: float
+    y_m: float
+    yaw_rad: float
+    hider: Pose2 | None
+    time_s: float
+    collisions: int
+
+
+class Simulation:
+    """One world with one robot, and perhaps a hider. Same seed, poses and commands give bit-identical results."""
+
+    def __init__(self, world: WorldFile, settings: SimulationSettings | None = None, seed: int = 0) -> None:
+        """Build the world; the robot stands at the world's start."""
+        self.world = world
+        self.settings = settings or SimulationSettings()
+        self._parts, _ = expand(world)
+        self._shapes = footprints(self._parts, *BODY_BAND_M)
+        self._view: _View | None = _View(world, self.settings) if self.settings.render else None
+        self._hider: Pose2 | None = None
+        self.reset(seed)
+
+    def reset(self, seed: int, pose: Pose2 | None = None) -> None:
+        """Start anew: time 0, no collisions, robot at rest at `pose` (default: the world's start). The hider stays."""
+        start = self.world.start
+        self._seed = seed
+        self._readings = 0
+        self._build(pose or (start.x_m, start.y_m, math.radians(start.yaw_deg)), 0.0, 0)
+
+    def place_robot(self, x_m: float, y_m: float, yaw_rad: float) -> None:
+        """Put the robot elsewhere, at rest; time and the collision count go on."""
+        self._build((x_m, y_m, yaw_rad), self._physics.time_s, self._physics.collisions)
+
+    def place_hider(self, x_m: float, y_m: float, yaw_rad: float) -> None:
+        """Put the second robot somewhere; it is only seen, nothing bumps into it."""
+        self._hider = (x_m, y_m, yaw_rad)
+
+    def remove_hider(self) -> None:
+        """Take the second robot away."""
+        self._hider = None
+
+    def command(self, steer_rad: float, wheel_speed_radps: float, ttl_s: float = math.inf) -> None:
+        """Roll towards a heading (robot frame) at a wheel speed, until `ttl_s` of simulated time has passed."""
+        if not (math.isfinite(steer_rad) and math.isfinite(wheel_speed_radps)) or ttl_s < 0:
+            raise ValueError(f"command must be finite with ttl_s >= 0, got {steer_rad}, {wheel_speed_radps}, {ttl_s}")
+        self._physics.robot.command(steer_rad, wheel_speed_radps)
+        self._expires_s = self._physics.time_s + ttl_s
+
+    def stop(self) -> None:
+        """Stop the wheels."""
+        self._physics.robot.command(0.0, 0.0)
+
+    def step(self, duration_s: float) -> None:
+        """Advance physics by a whole number of timesteps, at least one."""
+        for _ in range(max(1, round(duration_s / self.settings.timestep_s))):
+            if self._physics.time_s >= self._expires_s - 1e-9:
+                self.stop()
+            self._physics.step()
+
+    def panorama(self) -> Image:
+        """What the robot's camera sees, (height, width, 3) BGR."""
+        return self._picture(self._physics.robot.pose(), True)
+
+    def panorama_at(self, x_m: float, y_m: float, yaw_rad: float) -> Image:
+        """What a camera sees at any pose, with the body of a robot of the hider's kind under it; BGR.
+
+        The hider is moved there for the picture, so this is the picture the hider would take.
+        """
+        return self._picture((x_m, y_m, yaw_rad), False)
+
+    def ranges(self) -> npt.NDArray[np.float64]:
+        """Distances of the twelve sensors, metres; every call is a new reading with its own noise."""
+        rng = np.random.default_rng([self._seed, self._readings])
+        self._readings += 1
+        return measure(*self._physics.robot.pose(), self._shapes, self.settings.ranges, rng)
+
+    def range_angles_rad(self) -> npt.NDArray[np.float64]:
+        """Axes of the sensors, robot frame."""
+        return sensor_angles_rad(self.settings.ranges)
+
+    def truth(self) -> Truth:
+        """True state, for evaluation only."""
+        return Truth(*self._physics.robot.pose(), self._hider, self._physics.time_s, self._physics.collisions)
+
+    def _build(self, pose: Pose2, time_s: float, collisions: int) -> None:
+        self._physics = PhysicsScene(self._parts, self.settings.robot, self.settings.timestep_s, pose)
+        self._physics.time_s, self._physics.collisions = time_s, collisions
+        self._expires_s = math.inf
+
+    def _picture(self, pose: Pose2, own: bool) -> Image:
+        if self._view is None:
+            raise RuntimeError("this simulation was made with render=False; set SimulationSettings.render to take pictures")
+        return self._view.picture(pose, self._physics if own else None, self._hider if own else pose)
+
+
+class _View:
+    """The rendered scene with the bodies of both robots."""
+
+    def __init__(self, world: WorldFile, settings: SimulationSettings) -> None:
+        # SAPIEN's renderer is loaded only where pictures are wanted.
+        from simulator.render_scene import RenderScene
+        from simulator.robot_shape import HIDER, SEEKER, chassis_parts, leg_parts, wheel_parts, whole_robot
+
+        self._scene = RenderScene(world, settings.camera)
+        robot = settings.robot
+        self._links = {"chassis": self._scene.add_body(chassis_parts(robot, SEEKER))}
+        for k in range(4):
+            self._links[f"leg{k}"] = self._scene.add_body(leg_parts(robot))
+            self._links[f"wheel{k}"] = self._scene.add_body(wheel_parts(robot))
+        self._hider = self._scene.add_body(whole_robot(robot, HIDER))
+
+    def picture(self, camera: Pose2, physics: PhysicsScene | None, hider: Pose2 | None) -> Image:
+        """Move the bodies to where they are and take the picture; without `physics` the robot is out of sight."""
+        for name, entity in self._links.items():
+            self._scene.move(entity, physics.robot.links[name].entity.pose if physics else None)
+        self._scene.move_flat(self._hider, hider)
+        return self._scene.panorama(camera)

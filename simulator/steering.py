@@ -1,0 +1,56 @@
+"""Low-level control of one leg, as its servo controllers would do it. Pure.
+
+A steer servo turns at a limited rate within +-limit. A wheel can run either way, so a heading is reached by the nearer
+of two servo angles, half a turn apart. The wheel runs only as far as it already points the right way: speed times the
+cosine of the steering error, nothing beyond a right angle, so that it rolls rather than scrubs.
+"""
+
+import math
+from dataclasses import dataclass
+
+from simulator.settings import RobotSettings
+
+
+@dataclass(frozen=True)
+class LegTarget:
+    """What the servos of a leg are asked for."""
+
+    steer_rad: float
+    wheel_radps: float
+
+
+def wrap_rad(angle: float) -> float:
+    """Into [-pi, pi)."""
+    return (angle + math.pi) % (2.0 * math.pi) - math.pi
+
+
+def choose_angle(heading_rad: float, steer_rad: float, limit_rad: float) -> tuple[float, float]:
+    """Servo angle for a heading, and the wheel's direction (+1 or -1): the reachable one nearest to where the servo is."""
+    options = [
+        (wrap_rad(heading_rad) + turn, sign)
+        for turn, sign in ((0.0, 1.0), (math.pi, -1.0), (-math.pi, -1.0), (2 * math.pi, 1.0), (-2 * math.pi, 1.0))
+        if abs(wrap_rad(heading_rad) + turn) <= limit_rad
+    ]
+    return min(options, key=lambda option: (abs(option[0] - steer_rad), -option[1]))
+
+
+def next_target(heading_rad: float, wheel_radps: float, steer_rad: float, last: LegTarget, dt_s: float, robot: RobotSettings) -> LegTarget:
+    """Targets for the next physics step.
+
+    Args:
+        heading_rad: wanted rolling direction, robot frame.
+        wheel_radps: wanted wheel speed in that direction; negative rolls backwards.
+        steer_rad: measured steer angle.
+        last: targets of the step before.
+        dt_s: length of a step.
+        robot: limits.
+    """
+    wanted, sign = choose_angle(heading_rad, last.steer_rad, robot.steer_limit_rad)
+    most = robot.steer_rate_radps * dt_s
+    steer = last.steer_rad + max(-most, min(most, wanted - last.steer_rad))
+    aligned = max(0.0, math.cos(wanted - steer_rad))
+    if abs(wanted - steer_rad) > 0.35:
+        aligned = 0.0  # the other legs may point elsewhere: wait
+    speed = sign * max(-robot.wheel_limit_radps, min(robot.wheel_limit_radps, wheel_radps)) * aligned
+    change = robot.wheel_accel_radps2 * dt_s
+    return LegTarget(steer, last.wheel_radps + max(-change, min(change, speed - last.wheel_radps)))
