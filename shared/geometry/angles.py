@@ -40,5 +40,7 @@ def circular_mean_rad(angles_rad: npt.ArrayLike, weights: npt.ArrayLike | None =
     w = np.ones_like(angles) if weights is None else np.asarray(weights, dtype=np.float64)
     x, y = float(np.sum(w * np.cos(angles))), float(np.sum(w * np.sin(angles)))
     if np.hypot(x, y) <= 1e-12 * max(float(np.sum(np.abs(w))), 1e-300):
-        raise ValueError("angles_rad cancel out: the circular mean is undefined, use a median or reject the input")
+        raise ValueError(
+            "angles_rad cancel out: the circular mean is undefined, use a median or reject the input"
+        )
     return float(wrap_rad(np.arctan2(y, x)))

@@ -1,11 +1,19 @@
-"""Two-view estimation without the plane: five-point RANSAC on bearings, for ramps, thresholds and a tilted robot."""
+"""Two-view estimation without the plane: five-point RANSAC on bearings, for ramps and a tilted robot."""
 
 import numpy as np
 import numpy.typing as npt
 
 from shared.geometry.angles import FloatArray, wrap_rad
-from shared.geometry.essential_model import Pose, PoseEvaluation, evaluate_pose, poses_of, refine_pose, score_essentials
+from shared.geometry.essential_model import (
+    Pose,
+    PoseEvaluation,
+    evaluate_pose,
+    poses_of,
+    refine_pose,
+    score_essentials,
+)
 from shared.geometry.five_point import draw_fives, five_point
+from shared.geometry.general_rotation import fit_rotation
 from shared.geometry.planar_refine import noise_rad
 from shared.geometry.sphere import angle_between_rad, bearings_from_lonlat
 from shared.geometry.two_view_judge import confidence, log_nfa, parallax_share, parallax_z, sign_margin
@@ -35,10 +43,19 @@ def estimate_essential(
     scores = score_essentials(essentials, b, bt, settings.threshold_rad)
     best = np.argsort(-scores, kind="stable")[:REFINED]
     pose, covariance = _best_pose(essentials[best], b, bt, settings.threshold_rad)
-    return _judge(pose, covariance, b, bt, len(essentials), settings)
+    # The refinement searches beyond the samples: count it as ten times as many tests.
+    answer = _judge(pose, covariance, b, bt, 10 * len(essentials), settings)
+    rotation, turned = fit_rotation(b, bt, rng, settings.threshold_rad)
+    if turned.sum() >= settings.min_inliers and turned.sum() >= 0.85 * answer.inliers:
+        displacement = float(np.median(angle_between_rad(b[turned], bt[turned] @ rotation.T)))
+        if not answer.usable or displacement <= settings.no_baseline_noise * (answer.noise_rad or 0.0):
+            return _turn_only(rotation, turned, displacement)
+    return answer
 
 
-def _best_pose(essentials: FloatArray, b: FloatArray, bt: FloatArray, threshold: float) -> tuple[Pose, FloatArray]:
+def _best_pose(
+    essentials: FloatArray, b: FloatArray, bt: FloatArray, threshold: float
+) -> tuple[Pose, FloatArray]:
     """Refined pose with the best score among the cheirality winners of a few essential matrices."""
     refined = []
     for essential in essentials:
@@ -66,10 +83,9 @@ def _judge(
     noise = noise_rad(result.residual[mask], fitted=5)
     displacement = angle_between_rad(b[mask], bt[mask] @ pose.rotation.T)
     disparity = float(np.median(displacement))
-    yaw = float(wrap_rad(np.arctan2(*_yaw_parts(pose.rotation))))
     bound = max(settings.no_baseline_rad, settings.no_baseline_noise * noise)
     if disparity <= bound or parallax_z(result.forward[mask], noise) < settings.min_parallax_z:
-        return TwoViewResult("no_baseline", None, yaw, mask, inliers, 0.0, disparity, None, None, 0.0, "essential")
+        return _turn_only(pose.rotation, mask, disparity)
     level = float(np.hypot(pose.travel[0], pose.travel[1]))
     heading_std = _heading_std_rad(pose.travel, covariance) * noise / parallax_share(disparity, noise)
     if level < MIN_HORIZONTAL or heading_std > settings.max_heading_std_rad:
@@ -79,7 +95,7 @@ def _judge(
     return TwoViewResult(
         status="ok",
         heading_rad=float(wrap_rad(np.arctan2(pose.travel[1], pose.travel[0]))),
-        yaw_rad=yaw,
+        yaw_rad=_yaw_rad(pose.rotation),
         inlier_mask=mask,
         inliers=inliers,
         confidence=confidence(inliers, count, chance, evidence, heading_std, margin),
@@ -87,12 +103,31 @@ def _judge(
         heading_std_rad=heading_std,
         yaw_std_rad=None,
         sign_margin=margin,
+        noise_rad=noise,
         model="essential",
     )
 
 
-def _yaw_parts(rotation: FloatArray) -> tuple[float, float]:
-    return float(rotation[1, 0] - rotation[0, 1]), float(rotation[0, 0] + rotation[1, 1])
+def _turn_only(rotation: FloatArray, mask: BoolArray, disparity: float) -> TwoViewResult:
+    return TwoViewResult(
+        status="no_baseline",
+        heading_rad=None,
+        yaw_rad=_yaw_rad(rotation),
+        inlier_mask=mask,
+        inliers=int(mask.sum()),
+        confidence=0.0,
+        disparity_rad=disparity,
+        heading_std_rad=None,
+        yaw_std_rad=None,
+        sign_margin=0.0,
+        noise_rad=None,
+        model="rotation",
+    )
+
+
+def _yaw_rad(rotation: FloatArray) -> float:
+    """Turn about the vertical of the swing-twist decomposition."""
+    return float(wrap_rad(np.arctan2(rotation[1, 0] - rotation[0, 1], rotation[0, 0] + rotation[1, 1])))
 
 
 def _heading_std_rad(travel: FloatArray, covariance: FloatArray) -> float:
@@ -104,5 +139,7 @@ def _heading_std_rad(travel: FloatArray, covariance: FloatArray) -> float:
 def _chance_rate(pose: Pose, b: FloatArray, bt: FloatArray, threshold: float) -> float:
     """Share of wrong pairings, made by shifting one list, that fit the pose as well."""
     shifts = np.unique(np.linspace(1, len(b) - 1, CHANCE_SHIFTS).astype(np.intp))
-    masks: list[BoolArray] = [evaluate_pose(pose, b, np.roll(bt, -k, axis=0)).consistent(threshold) for k in shifts]
+    masks: list[BoolArray] = [
+        evaluate_pose(pose, b, np.roll(bt, -k, axis=0)).consistent(threshold) for k in shifts
+    ]
     return float(np.clip(np.mean(masks), 1e-3, 0.999))

@@ -1,4 +1,4 @@
-"""General two-view model: rotation R and unit translation t with b^T [t]x R b_t = 0, any tilt of either camera."""
+"""Two-view model of any tilt: rotation R and unit travel t with b^T [t]x R b_t = 0."""
 
 from dataclasses import dataclass
 
@@ -41,8 +41,10 @@ def evaluate_pose(pose: Pose, current: FloatArray, target: FloatArray) -> PoseEv
     return PoseEvaluation(residual, norm, (tb - tw) / norm, (dot - tb * tw) / norm)
 
 
-def score_essentials(essentials: FloatArray, current: FloatArray, target: FloatArray, threshold: float) -> FloatArray:
-    """Truncated Sampson score (M,) of essential matrices (M, 3, 3) on (N, 3) bearings, in single precision."""
+def score_essentials(
+    essentials: FloatArray, current: FloatArray, target: FloatArray, threshold: float
+) -> FloatArray:
+    """Truncated Sampson score (M,) of (M, 3, 3) essential matrices on (N, 3) bearings, single precision."""
     e = essentials.astype(np.float32)
     b, bt = current.astype(np.float32), target.astype(np.float32)
     right = e @ bt.T
@@ -64,7 +66,7 @@ def poses_of(essential: FloatArray) -> list[Pose]:
 def refine_pose(
     pose: Pose, current: FloatArray, target: FloatArray, threshold: float, iterations: int = 8
 ) -> tuple[Pose, FloatArray]:
-    """Reweighted Gauss-Newton over three turns of R and two of t; also the (3, 3) covariance of t for unit noise."""
+    """Reweighted Gauss-Newton over R and t; also the (3, 3) covariance of t for unit noise."""
     scale, normal, tangent = 2.0 * threshold, np.eye(5), np.eye(3)[:, :2]
     for i in range(iterations):
         result = evaluate_pose(pose, current, target)

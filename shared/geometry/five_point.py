@@ -1,7 +1,7 @@
 """Minimal solver: essential matrices from five matched bearings (Stewenius, Engels and Nister 2006), batched.
 
-E = x E1 + y E2 + z E3 + E4 spans the null space of the five coplanarity equations b^T E b_t = 0. The ten cubics
-det E = 0 and 2 E E^T E - tr(E E^T) E = 0 reduce to the eigenvectors of a 10 x 10 action matrix.
+E = x E1 + y E2 + z E3 + E4 spans the null space of the five coplanarity equations b^T E b_t = 0. The ten
+cubics det E = 0 and 2 E E^T E - tr(E E^T) E = 0 reduce to the eigenvectors of a 10 x 10 action matrix.
 """
 
 from itertools import combinations_with_replacement, product
@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from shared.geometry.angles import FloatArray
 
-# Monomials of degree three in (x, y, z, 1); the last ten, all of degree below three, are the basis of the quotient.
+# Monomials of degree three in (x, y, z, 1); the last ten, all of degree below three, are the basis of the
+# quotient.
 _CUBICS = [m for m in combinations_with_replacement(range(4), 3) if 3 not in m]
 _LOWER = [m for m in combinations_with_replacement(range(4), 3) if 3 in m]
 
@@ -36,7 +37,9 @@ def five_point(current: FloatArray, target: FloatArray) -> FloatArray:
         return np.empty((0, 3, 3))
     action = _action(np.linalg.solve(left[solvable], right[solvable]))
     values, vectors = np.linalg.eig(action)
-    x, y, z, one = (vectors[:, i, :] for i in (_position((0, 3, 3)), _position((1, 3, 3)), _position((2, 3, 3)), -1))
+    x, y, z, one = (
+        vectors[:, i, :] for i in (_position((0, 3, 3)), _position((1, 3, 3)), _position((2, 3, 3)), -1)
+    )
     real = (np.abs(values.imag) < 1e-8) & (np.abs(one) > 1e-12)
     safe = np.where(real, one, 1.0)
     coefficients = np.stack([x / safe, y / safe, z / safe, np.ones_like(safe)], axis=-1).real
@@ -52,7 +55,7 @@ def _constraints(basis: FloatArray) -> FloatArray:
     minors = np.cross(basis[:, :, None, 1, :], basis[:, None, :, 2, :])
     determinant = np.einsum("hai,hbci->habc", basis[:, :, 0, :], minors)
     tensor = np.concatenate([cubic.reshape(-1, 64, 9), determinant.reshape(-1, 64, 1)], axis=2)
-    return np.einsum("hpe,pm->hem", tensor, _collect())
+    return np.asarray(np.einsum("hpe,pm->hem", tensor, _collect()), dtype=np.float64)
 
 
 def _collect() -> FloatArray:

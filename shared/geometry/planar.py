@@ -13,6 +13,7 @@ from shared.geometry.two_view_judge import confidence, log_nfa, parallax_share
 from shared.geometry.two_view_types import BoolArray, TwoViewResult, TwoViewSettings, checked_matches, refused
 
 CHANCE_SHIFTS = 16
+WIDE = 4.0  # thresholds within which a match counts as nearly right
 
 
 def estimate_planar(
@@ -38,13 +39,15 @@ def estimate_planar(
     fit = fit_planar(replace(matches, weight=leverage_weights(rotation.residual_rad)), rng, settings)
     if fit is None:
         return refused("inconsistent", none)
-    chance = _chance_rate(fit, c, t, settings.threshold_rad)
+    threshold = settings.threshold_rad
+    chance, wide_chance = _chance_rates(fit, c, t, [threshold, WIDE * threshold])
     evidence = log_nfa(int(fit.mask.sum()), len(c), chance, 2, 2 * settings.pairs)
     if int(fit.mask.sum()) < settings.min_inliers or evidence > settings.max_log_nfa:
         return refused("inconsistent", fit.mask)
     if _only_turned(rotation, fit, chance, settings):
         return _rotation_result(rotation)
-    return _accept(fit, matches, chance, evidence, settings)
+    near = _near_misses(fit, matches, chance, wide_chance, threshold)
+    return replace(_accept(fit, matches, chance, evidence, settings), near_misses=near)
 
 
 def _only_turned(rotation: RotationFit, fit: PlanarFit, chance: float, settings: TwoViewSettings) -> bool:
@@ -58,7 +61,8 @@ def _only_turned(rotation: RotationFit, fit: PlanarFit, chance: float, settings:
         return True
     residual = rotation.residual_rad[both]
     bound = max(settings.no_baseline_rad, settings.no_baseline_noise * fit.noise_rad)
-    # A few near points with parallax among many far ones still make a baseline: look at the upper part as well.
+    # A few near points with parallax among many far ones still make a baseline: look at the upper part as
+    # well.
     return bool(np.median(residual) <= bound and np.quantile(residual, 0.8) <= 2.0 * bound)
 
 
@@ -74,6 +78,7 @@ def _rotation_result(fit: RotationFit) -> TwoViewResult:
         heading_std_rad=None,
         yaw_std_rad=fit.std_rad,
         sign_margin=0.0,
+        noise_rad=None,
         model="rotation",
     )
 
@@ -100,6 +105,7 @@ def _accept(
         heading_std_rad=heading_std,
         yaw_std_rad=float(np.sqrt(max(yaw_variance, 0.0))),
         sign_margin=fit.sign_margin,
+        noise_rad=fit.noise_rad,
         model="planar",
     )
 
@@ -110,7 +116,9 @@ def _disparity_rad(yaw_rad: float, matches: PlanarMatches, mask: BoolArray) -> f
     return float(np.median(np.arccos(np.clip(dot, -1.0, 1.0))))
 
 
-def _chance_rate(fit: PlanarFit, current: FloatArray, target: FloatArray, threshold: float) -> float:
+def _chance_rates(
+    fit: PlanarFit, current: FloatArray, target: FloatArray, thresholds: list[float]
+) -> list[float]:
     """Share of wrong pairings that fit the model as well: near the horizon almost anything does.
 
     Wrong pairings are made by shifting the target list against the current one.
@@ -119,5 +127,18 @@ def _chance_rate(fit: PlanarFit, current: FloatArray, target: FloatArray, thresh
     shifts = np.unique(np.linspace(1, count - 1, CHANCE_SHIFTS).astype(np.intp))
     order = (np.arange(count)[None, :] + shifts[:, None]) % count
     wrong = PlanarMatches.from_lonlat(np.tile(current, (len(shifts), 1)), target[order.ravel()])
-    forward, _ = evaluate(wrong, np.array([fit.phi]), np.array([fit.phi_target])).consistent(threshold)
-    return float(np.clip(np.mean(forward), 1e-3, 0.999))
+    result = evaluate(wrong, np.array([fit.phi]), np.array([fit.phi_target]))
+    return [float(np.clip(np.mean(result.consistent(x)[0]), 1e-3, 0.999)) for x in thresholds]
+
+
+def _near_misses(
+    fit: PlanarFit, matches: PlanarMatches, chance: float, wide_chance: float, threshold: float
+) -> float:
+    """Matches between one and four thresholds from the model, less those expected by chance.
+
+    A tilted camera leaves many: right matches that the plane cannot reach.
+    """
+    result = evaluate(matches, np.array([fit.phi]), np.array([fit.phi_target]))
+    wide = int((result.consistent(WIDE * threshold)[0][0] & ~fit.mask).sum())
+    outliers = int((~fit.mask).sum())
+    return max(wide - outliers * max(wide_chance - chance, 0.0), 0.0)

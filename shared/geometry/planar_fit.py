@@ -32,7 +32,8 @@ class PlanarFit:
         noise_rad: standard deviation of their residuals, radians.
         covariance: (2, 2) of (phi, phi'), radians squared.
         sign_margin: [0, 1], share of the parallax evidence that speaks for this sign.
-        parallax_z: mean displacement of the inliers away from phi, in standard deviations of that mean under noise.
+        parallax_z: mean displacement of the inliers away from phi, in standard deviations of that mean under
+            noise.
     """
 
     phi: float
@@ -49,7 +50,9 @@ class PlanarFit:
         return float(wrap_rad(self.phi - self.phi_target))
 
 
-def fit_planar(matches: PlanarMatches, rng: np.random.Generator, settings: TwoViewSettings) -> PlanarFit | None:
+def fit_planar(
+    matches: PlanarMatches, rng: np.random.Generator, settings: TwoViewSettings
+) -> PlanarFit | None:
     """Best planar model by score, or None where no pair of matches constrains it."""
     threshold = settings.threshold_rad
     phi, phi_target = solve_pairs(matches.rows, draw_pairs(len(matches.rows), settings.pairs, rng))
@@ -78,8 +81,9 @@ def draw_pairs(count: int, pairs: int, rng: np.random.Generator) -> npt.NDArray[
 def leverage_weights(parallax_rad: FloatArray) -> FloatArray:
     """Weights (N,) that bound the influence of displacements far above the usual one.
 
-    Over a short baseline the direction hangs on small displacements, and a wrong match that happens to lie near the
-    epipolar plane moves a hundred times as far. The lower quartile of all displacements after the best yaw is the
+    Over a short baseline the direction hangs on small displacements, and a wrong match that happens to lie
+    near the epipolar plane moves a hundred times as far. The lower quartile of all displacements after the
+    best yaw is the
     yardstick: it comes from right matches as long as they are a quarter of all.
     """
     scale = PARALLAX_REACH * max(float(np.quantile(parallax_rad, 0.25)), PARALLAX_FLOOR_RAD)

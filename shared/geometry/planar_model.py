@@ -1,6 +1,6 @@
 """Epipolar geometry of an upright camera that moves on a horizontal plane.
 
-With the travel direction at longitude phi in the current frame and phi' = phi - psi in the target frame (psi: yaw),
+With travel at longitude phi in the current frame and phi' = phi - psi in the target frame (psi: yaw),
 t = (cos phi, sin phi, 0), b the current bearing and w = Rz(psi) b_target, coplanarity b . (t x w) = 0 becomes
 
     (1)  s = z_t rho_c sin(mu_c - phi) - z_c rho_t sin(mu_t - phi') = 0
@@ -10,12 +10,14 @@ x = (cos phi, sin phi, cos phi', sin phi'), so all hypotheses meet all matches i
 
     (2)  Sampson distance   e = s / n,   n^2 = |t x b|^2 + |t x w|^2
 
-is, to first order, the noise per axis and view that explains the mismatch: an angle, well behaved at the epipoles.
+is, to first order, the noise per axis and view that explains the mismatch: an angle, well behaved at the
+epipoles.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from shared.geometry.angles import FloatArray
 from shared.geometry.two_view_types import BoolArray
@@ -73,7 +75,7 @@ class Evaluation:
     same_side: FloatArray
 
     def consistent(self, threshold_rad: float) -> tuple[BoolArray, BoolArray]:
-        """Inliers for +t and for -t, (H, N) each: near the plane, and in front of both cameras within the noise."""
+        """Inliers for +t and for -t, (H, N) each: near the plane and, within the noise, in front."""
         base = (np.abs(self.residual) <= threshold_rad) & (self.same_side >= -threshold_rad)
         return base & (self.forward >= -threshold_rad), base & (self.forward <= threshold_rad)
 
@@ -95,12 +97,17 @@ def evaluate(matches: PlanarMatches, phi: FloatArray, phi_target: FloatArray) ->
     return Evaluation(residual, norm, forward, same_side)
 
 
-def line_scores(matches: PlanarMatches, phi: FloatArray, phi_target: FloatArray, threshold_rad: float) -> FloatArray:
-    """Truncated score of H lines of travel, (H,): sum of max(0, 1 - (e / threshold)^2), signs not yet told apart.
+def line_scores(
+    matches: PlanarMatches, phi: FloatArray, phi_target: FloatArray, threshold_rad: float
+) -> FloatArray:
+    """Score (H,) of lines of travel, sum of max(0, 1 - (e / threshold)^2); signs not yet told apart.
 
-    Only this pass sees all hypotheses, so it works in single precision and on as few passes over (H, N) as it can.
+    Only this pass sees all hypotheses, so it works in single precision and on as few passes over (H, N) as
+    it can.
     """
-    x = np.stack([np.cos(phi), np.sin(phi), np.cos(phi_target), np.sin(phi_target)], axis=1).astype(np.float32)
+    x = np.stack([np.cos(phi), np.sin(phi), np.cos(phi_target), np.sin(phi_target)], axis=1).astype(
+        np.float32
+    )
     gain = x @ matches.rows.T.astype(np.float32)
     gain *= gain
     tb = x[:, :2] @ matches.h_current.T.astype(np.float32)
@@ -117,10 +124,10 @@ def line_scores(matches: PlanarMatches, phi: FloatArray, phi_target: FloatArray,
     return np.asarray(gain @ matches.weight.astype(np.float32), dtype=np.float64)
 
 
-def solve_pairs(rows: FloatArray, pairs: FloatArray) -> tuple[FloatArray, FloatArray]:
+def solve_pairs(rows: FloatArray, pairs: npt.NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:
     """Both solutions of equation (1) for pairs of matches.
 
-    Two matches give A p + B q = 0 with p = (cos phi, sin phi) and q = (cos phi', sin phi'), hence q = M p with
+    Two matches give A p + B q = 0, p = (cos phi, sin phi), q = (cos phi', sin phi'); hence q = M p with
     M = -B^-1 A; |q| = |p| leaves p^T (M^T M - I) p = 0, which is cos(2 phi - beta) = -T / R.
     Where noise leaves no real root, the nearest direction (double root) is taken.
 

@@ -11,8 +11,8 @@ NOISE_FLOOR_RAD = 5e-4  # a twentieth of a pixel at 800 columns: quantisation, n
 def noise_rad(residual: FloatArray, fitted: int = 2) -> float:
     """Standard deviation of inlier residuals (rad) after `fitted` parameters.
 
-    Not the median: over a short baseline the fit picks the direction that makes the central residuals small, and the
-    median then reads half of the true noise.
+    Not the median: over a short baseline the fit picks the direction that makes the central residuals small,
+    and the median then reads half of the true noise.
     """
     freedom = max(len(residual) - fitted, 1)
     return float(max(np.sqrt(np.sum(residual**2) / freedom), NOISE_FLOOR_RAD))
@@ -53,7 +53,7 @@ def _scales(residual: FloatArray, weight: FloatArray, threshold: float) -> Float
     size = np.sort(np.where(weight > 0.0, np.abs(residual), np.inf), axis=1)
     middle = np.maximum(np.sum(size <= threshold, axis=1) // 2, 0)
     median = np.minimum(size[np.arange(len(size)), middle], threshold)
-    return np.clip(4.7 * 1.4826 * median, 0.5 * threshold, 2.0 * threshold)
+    return np.asarray(np.clip(4.7 * 1.4826 * median, 0.5 * threshold, 2.0 * threshold), dtype=np.float64)
 
 
 def _linearise(
@@ -61,7 +61,7 @@ def _linearise(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Residual e (K, N), its derivative (K, N, 2) and weights (K, N).
 
-    The derivative of the denominator matters, de = ds / n + e t.b d(t.b) / n^2: without it noise in b, which enters
+    The derivative of the denominator matters, de = ds / n + e t.b d(t.b) / n^2: without it noise in b, entering
     both s and ds, pulls the direction towards the crowd of features when the baseline is short.
     """
     result = evaluate(matches, phi, phi_target)
@@ -72,7 +72,9 @@ def _linearise(
     return result.residual, np.stack([by_phi, by_target], axis=2), weight
 
 
-def _derivative(angle: FloatArray, rows: FloatArray, horizontal: FloatArray, result: Evaluation) -> FloatArray:
+def _derivative(
+    angle: FloatArray, rows: FloatArray, horizontal: FloatArray, result: Evaluation
+) -> FloatArray:
     """Derivative (K, N) of e by one of the two angles (K,)."""
     along = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     across = np.stack([-along[:, 1], along[:, 0]], axis=1)

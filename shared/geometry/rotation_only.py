@@ -11,7 +11,7 @@ from shared.geometry.two_view_types import BoolArray
 
 @dataclass(frozen=True, eq=False)
 class RotationFit:
-    """Best yaw (rad), (N,) angular residuals after it (rad), (N,) inliers, and the spread of the yaw (rad)."""
+    """Best yaw (rad), (N,) residuals after it (rad), (N,) inliers, and the spread of the yaw (rad)."""
 
     yaw_rad: float
     residual_rad: FloatArray
@@ -22,8 +22,8 @@ class RotationFit:
 def fit_yaw(matches: PlanarMatches, threshold_rad: float) -> RotationFit:
     """Yaw that brings most target bearings within reach of their current bearing.
 
-    Every match proposes its own longitude difference; the best proposal is refined as a weighted circular mean.
-    An inlier is within three thresholds: the difference of two noisy bearings, over two axes.
+    Every match proposes its own longitude difference; the best proposal is refined as a weighted circular
+    mean. An inlier is within three thresholds: the difference of two noisy bearings, over two axes.
 
     Args:
         matches: prepared matches, N >= 1.

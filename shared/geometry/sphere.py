@@ -17,14 +17,14 @@ from shared.geometry.angles import FloatArray, wrap_rad
 
 def bearings_from_lonlat(lonlat_rad: npt.ArrayLike) -> FloatArray:
     """Map (..., 2) longitude, latitude (rad) to (..., 3) unit bearings, equation (2)."""
-    lonlat = _with_last_axis("lonlat_rad", lonlat_rad, 2)
+    lonlat = with_last_axis("lonlat_rad", lonlat_rad, 2)
     lon, lat = lonlat[..., 0], lonlat[..., 1]
     return np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
 
 
 def lonlat_from_bearings(bearings: npt.ArrayLike) -> FloatArray:
     """Map (..., 3) bearings of any non-zero length to (..., 2) longitude, latitude (rad), equation (3)."""
-    b = _with_last_axis("bearings", bearings, 3)
+    b = with_last_axis("bearings", bearings, 3)
     lon = wrap_rad(np.arctan2(b[..., 1], b[..., 0]))
     lat = np.arctan2(b[..., 2], np.hypot(b[..., 0], b[..., 1]))  # arcsin loses precision at the poles
     return np.stack([lon, lat], axis=-1)
@@ -32,7 +32,7 @@ def lonlat_from_bearings(bearings: npt.ArrayLike) -> FloatArray:
 
 def angle_between_rad(a: npt.ArrayLike, b: npt.ArrayLike) -> FloatArray:
     """Angle between (..., 3) bearings, radians in [0, pi]; exact for tiny angles, where arccos is not."""
-    a3, b3 = _with_last_axis("a", a, 3), _with_last_axis("b", b, 3)
+    a3, b3 = with_last_axis("a", a, 3), with_last_axis("b", b, 3)
     cross = np.linalg.norm(np.cross(a3, b3), axis=-1)
     return np.asarray(np.arctan2(cross, np.sum(a3 * b3, axis=-1)), dtype=np.float64)
 
@@ -58,7 +58,9 @@ class EquirectGrid:
     def __post_init__(self) -> None:
         """Reject a grid without pixels."""
         if self.width < 1 or self.full_height <= 0.0:
-            raise ValueError(f"width and full_height must be positive, got {self.width} and {self.full_height}")
+            raise ValueError(
+                f"width and full_height must be positive, got {self.width} and {self.full_height}"
+            )
         if self.crop_top < 0.0 or self.crop_bottom < 0.0 or self.height < 1:
             raise ValueError(
                 f"crop must leave at least one of {self.full_height} rows, "
@@ -91,14 +93,14 @@ class EquirectGrid:
 
     def lonlat_from_pixels(self, pixels: npt.ArrayLike) -> FloatArray:
         """Map (..., 2) pixels (u, v) to (..., 2) longitude, latitude (rad), equation (1); u wraps."""
-        uv = _with_last_axis("pixels", pixels, 2)
+        uv = with_last_axis("pixels", pixels, 2)
         lon = wrap_rad(2.0 * np.pi * (0.5 - uv[..., 0] / self.width))
         lat = np.pi * (0.5 - (uv[..., 1] + self.crop_top) / self.full_height)
         return np.stack([lon, lat], axis=-1)
 
     def pixels_from_lonlat(self, lonlat_rad: npt.ArrayLike) -> FloatArray:
         """Map (..., 2) longitude, latitude (rad) to (..., 2) pixels, equation (4); v may leave the crop."""
-        lonlat = _with_last_axis("lonlat_rad", lonlat_rad, 2)
+        lonlat = with_last_axis("lonlat_rad", lonlat_rad, 2)
         u = np.mod(self.width * (0.5 - lonlat[..., 0] / (2.0 * np.pi)), self.width)
         u = np.where(u >= self.width, 0.0, u)  # a tiny negative number rounds up to the modulus
         v = self.full_height * (0.5 - lonlat[..., 1] / np.pi) - self.crop_top
@@ -113,12 +115,13 @@ class EquirectGrid:
         return self.pixels_from_lonlat(lonlat_from_bearings(bearings))
 
     def contains_pixels(self, pixels: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        """Say for (..., 2) pixels whether their row lies inside the crop; columns wrap, so none is outside."""
-        v = _with_last_axis("pixels", pixels, 2)[..., 1]
+        """Say for (..., 2) pixels whether their row lies inside the crop; columns wrap."""
+        v = with_last_axis("pixels", pixels, 2)[..., 1]
         return np.asarray((v >= 0.0) & (v < self.height), dtype=np.bool_)
 
 
-def _with_last_axis(name: str, array: npt.ArrayLike, size: int) -> FloatArray:
+def with_last_axis(name: str, array: npt.ArrayLike, size: int) -> FloatArray:
+    """Return the array as float64 if its last axis has the given size, else say what it has."""
     values = np.asarray(array, dtype=np.float64)
     if values.shape[-1:] != (size,):
         raise ValueError(f"{name} must have shape (..., {size}), got {values.shape}")

@@ -1,4 +1,4 @@
-"""Relative pose of two spherical views: the planar model first, the essential matrix where it explains too little."""
+"""Relative pose of two spherical views: the planar model, else the essential matrix."""
 
 import numpy as np
 import numpy.typing as npt
@@ -18,8 +18,9 @@ def two_view(
 ) -> TwoViewResult:
     """Heading and yaw from matched bearings.
 
-    The fallback answers only where the planar model has no answer, or one that it is less than half sure of, and
-    where it explains clearly more matches: it has two and a half times the freedom.
+    The general model is asked where the planar one has no answer, is less than half sure, or leaves
+    residuals that fill its tolerance; it answers where it explains clearly more matches, as it has two and a
+    half times the freedom.
 
     Args:
         current: (N, 2) longitude, latitude in the current frame, radians.
@@ -36,9 +37,25 @@ def two_view(
     limits = settings or TwoViewSettings()
     c, t = checked_matches(current, target)
     planar = estimate_planar(c, t, rng, limits)
-    settled = planar.status in ("no_baseline", "too_few") or planar.confidence >= 0.5
-    if settled or not limits.fallback or len(c) < limits.fallback_min_matches:
+    if not limits.fallback or len(c) < limits.fallback_min_matches or _settled(planar, limits):
         return planar
     general = estimate_essential(c, t, rng, limits)
-    wins = general.usable and general.inliers >= limits.fallback_gain * planar.inliers
-    return general if wins else planar
+    gain = _cost(planar, limits.threshold_rad) - _cost(general, limits.threshold_rad)
+    better = gain >= limits.fallback_gain + 0.05 * len(c)
+    return general if general.status in ("ok", "no_baseline") and better else planar
+
+
+def _cost(result: TwoViewResult, threshold: float) -> float:
+    """Truncated squared residuals of all matches in units of the threshold: an outlier costs one."""
+    inlier_cost = ((result.noise_rad or 0.0) / threshold) ** 2
+    return len(result.inlier_mask) - result.inliers * (1.0 - inlier_cost)
+
+
+def _settled(planar: TwoViewResult, limits: TwoViewSettings) -> bool:
+    """Whether the planar answer stands without asking the general model."""
+    if planar.status in ("no_baseline", "too_few"):
+        return True
+    doubtful = planar.noise_rad is None or planar.noise_rad > limits.fallback_noise * limits.threshold_rad
+    out_of_reach = planar.near_misses > limits.fallback_near * len(planar.inlier_mask) + 2.0
+    few = planar.inliers < limits.fallback_share * len(planar.inlier_mask)
+    return planar.usable and not (doubtful or out_of_reach or few) and planar.confidence >= 0.5

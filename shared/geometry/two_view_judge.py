@@ -56,14 +56,14 @@ def parallax_share(disparity_rad: float, noise_rad: float) -> float:
 
 
 def sign_margin(forward: FloatArray, weight: FloatArray, noise: float) -> float:
-    """Net share of the evidence, clipped at three times the noise, that matches move away from the travel direction."""
+    """Net share of the evidence, clipped at three noises, that matches move away from the heading."""
     evidence = weight * np.clip(forward / (3.0 * noise), -1.0, 1.0)
     total = float(np.sum(np.abs(evidence)))
     return float(np.clip(np.sum(evidence) / max(total, 1e-9), 0.0, 1.0))
 
 
 def parallax_z(forward: FloatArray, noise: float) -> float:
-    """Evidence for any motion at all: the normalised displacement has the standard deviation `noise` without one."""
+    """Evidence for any motion: without one, the normalised displacement has the deviation `noise`."""
     if len(forward) == 0:
         return 0.0
     return float(np.sum(np.clip(forward / noise, -3.0, 3.0)) / np.sqrt(len(forward)))

@@ -23,15 +23,23 @@ class TwoViewSettings:
         min_matches: fewer matches than this are not tried.
         min_inliers: fewer inliers than this are never a usable answer.
         no_baseline_rad: a median disparity below this means that the camera has only turned, radians.
-        no_baseline_noise: the same bound in units of the measured noise, whichever is larger; pure noise gives 1.7.
+        no_baseline_noise: the same bound in units of the measured noise, whichever is larger; pure noise
+            gives 1.7.
         min_parallax_z: displacements away from the heading must be this many standard deviations from zero on
-            average, where a turn alone would explain the matches; the best direction of pure noise reaches about 3.
-        max_log_nfa: largest natural logarithm of the number of false alarms: above it, chance explains the inliers.
+            average, where a turn alone would explain the matches; the best direction of pure noise reaches
+            about 3.
+        max_log_nfa: largest natural logarithm of the number of false alarms: above it, chance explains the
+            inliers.
         max_heading_std_rad: above this spread a direction is not worth following, radians.
         fallback: try the essential matrix where the planar model explains too little.
+        fallback_noise: a planar answer whose residuals spread over more than this share of the threshold is
+            doubted: those of a wrong model fill the band and give 0.58.
+        fallback_near: so is one that leaves more than this share of the matches, plus two, just out of reach.
+        fallback_share: so is one that explains less than this share of the matches.
         fallback_min_matches: fewer matches than this are not worth the price of the fallback.
         fallback_samples: five-point samples drawn by the fallback.
-        fallback_gain: inliers the fallback must have per planar inlier to be preferred.
+        fallback_gain: how much lower the truncated cost of the fallback must be, in outliers, plus a
+            twentieth of all matches: chance gives the larger model a few.
     """
 
     pairs: int = 320
@@ -44,9 +52,12 @@ class TwoViewSettings:
     max_log_nfa: float = -2.0
     max_heading_std_rad: float = float(np.deg2rad(20.0))
     fallback: bool = True
+    fallback_noise: float = 0.45
+    fallback_near: float = 0.15
+    fallback_share: float = 0.3
     fallback_min_matches: int = 20
     fallback_samples: int = 200
-    fallback_gain: float = 1.3
+    fallback_gain: float = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,18 +67,23 @@ class TwoViewResult:
     Attributes:
         status: 'ok'; 'no_baseline', the camera has only turned; 'too_few' matches to try;
             'inconsistent', no motion explains enough of them.
-        heading_rad: direction from the current to the target position, current frame, [-pi, pi); None unless 'ok'.
+        heading_rad: direction from the current to the target position, current frame, [-pi, pi); None unless
+            'ok'.
         yaw_rad: rotation of the target frame seen from the current one, [-pi, pi); None for 'too_few' and
             'inconsistent'.
         inlier_mask: (N,) matches the model explains; all False for 'too_few'.
         inliers: their number.
         confidence: [0, 1], how far `heading_rad` can be trusted; 0 unless 'ok'.
-        disparity_rad: median angle over the inliers between the current bearing and the yaw-compensated target
-            bearing, the arrival measure; None where `yaw_rad` is None.
+        disparity_rad: median angle over the inliers between the current bearing and the yaw-compensated
+            target bearing, the arrival measure; None where `yaw_rad` is None.
         heading_std_rad: standard deviation of the heading from the normal matrix; None unless 'ok'.
         yaw_std_rad: the same for the yaw.
         sign_margin: [0, 1], how clearly the parallax tells forwards from backwards.
+        noise_rad: standard deviation of the inliers' residuals, radians; None unless a model with travel was
+            fitted.
         model: which model gave the answer.
+        near_misses: matches just beyond the threshold that chance does not explain; many of them mean that
+            the model, not the matches, is wrong. Planar model only.
     """
 
     status: Status
@@ -80,7 +96,9 @@ class TwoViewResult:
     heading_std_rad: float | None
     yaw_std_rad: float | None
     sign_margin: float
+    noise_rad: float | None
     model: Model
+    near_misses: float = 0.0
 
     @property
     def usable(self) -> bool:
@@ -90,7 +108,7 @@ class TwoViewResult:
 
 def refused(status: Status, mask: BoolArray) -> TwoViewResult:
     """Result without a pose; `mask` still tells which matches agreed best."""
-    return TwoViewResult(status, None, None, mask, int(mask.sum()), 0.0, None, None, None, 0.0, "none")
+    return TwoViewResult(status, None, None, mask, int(mask.sum()), 0.0, None, None, None, 0.0, None, "none")
 
 
 def checked_matches(current: npt.ArrayLike, target: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:

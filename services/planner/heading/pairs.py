@@ -1,0 +1,54 @@
+"""Pairs of matches for methods 1 and 2: bisectors with their signs, equations (2.1) to (2.6)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shared.geometry.angles import FloatArray, wrap_rad
+
+# Rounding of a dot product: below it two angles are equal. Without it identical frames would vote by
+# rounding errors.
+TOLERANCE = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class PairVotes:
+    """One row per unordered pair i < j (Q6), antipodal pairs left out (Q4).
+
+    Attributes:
+        directions: (P, 2) signed bisectors u_ij of equation (2.6).
+        growth_rad: (P,) change of the pair's longitude difference, equation (2.9), radians.
+    """
+
+    directions: FloatArray
+    growth_rad: FloatArray
+
+
+def pair_votes(current: FloatArray, target: FloatArray) -> PairVotes:
+    """Votes of all pairs of matches.
+
+    Longitude differences are wrapped to [0, pi] (Q3). B_ij is 1 where the order is kept (Q4); sgn 0 gives
+    0.5.
+
+    Args:
+        current: (N, 2) longitude, latitude, current frame, radians.
+        target: (N, 2) the same, target frame; its yaw cancels out.
+    """
+    i, j = np.triu_indices(len(current), 1)
+    u = np.stack([np.cos(current[:, 0]), np.sin(current[:, 0])], axis=1)
+    delta_c = wrap_rad(current[i, 0] - current[j, 0])
+    delta_t = wrap_rad(target[i, 0] - target[j, 0])
+    a = sign(
+        np.cos(delta_c) - np.cos(delta_t)
+    )  # (2.4): a dot product of unit vectors is the cosine of the difference
+    b = (sign(np.sin(delta_c) * np.sin(delta_t)) + 1.0) / 2.0  # (2.5): the cross product is its sine
+    bisector = u[i] + u[j]
+    length = np.hypot(bisector[:, 0], bisector[:, 1])
+    keep = length > 1e-9
+    directions = (1.0 + b * (a - 1.0))[keep, None] * bisector[keep] / length[keep, None]  # (2.6)
+    return PairVotes(directions, (np.abs(delta_t) - np.abs(delta_c))[keep])
+
+
+def sign(values: FloatArray) -> FloatArray:
+    """Sign with a dead band for rounding errors."""
+    return np.where(np.abs(values) <= TOLERANCE, 0.0, np.sign(values))
