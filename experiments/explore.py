@@ -1,0 +1,74 @@
+"""`topnav explore`: explore a world, keep the map, and say how good it is."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from experiments import options
+from experiments.exploration import explore, figures
+from experiments.failure import ExperimentError, one_line_errors
+from experiments.map_client import delete_map, read_map
+from experiments.output import write_json
+from experiments.plots.plans import draw_map
+from experiments.progress import mission_progress
+from experiments.stack import Stack, StackChoice, open_stack
+from experiments.tables import figure_table
+from experiments.truth_file import MapTruth, load_truth, save_truth, truth_path
+from simulator.freespace import free_space
+from simulator.world_file import load_world
+
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+
+
+@app.command()
+def main(
+    world: options.World = "apartment",
+    map_name: options.MapName = "flat",
+    seed: options.Seed = 1,
+    lockstep: options.Lockstep = None,
+    json_file: options.JsonFile = None,
+    continue_: Annotated[bool, typer.Option("--continue", help="Go on with a map that exists.")] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Delete a map of this name first.")] = False,
+    max_steps: options.MaxSteps = 5000,
+    drawing: Annotated[Path | None, typer.Option(help="Draw the map to this PNG.")] = None,
+    profile: options.ProfileName = None,
+    pipeline: options.PipelineName = None,
+    data_dir: options.DataDir = options.DATA_DIR,
+    endpoint: options.Endpoint = None,
+) -> None:
+    """Explore a world and build a map of pictures."""
+    console = Console(stderr=True)
+    space = free_space(load_world(world))
+    choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
+    path = truth_path(data_dir, map_name)
+    with one_line_errors(), open_stack(choice) as stack:
+        before = _prepare(stack, map_name, path, go_on=continue_, fresh=fresh)
+        with mission_progress(console, f"exploring {world}") as watch:
+            result = explore(stack, world, map_name, seed, max_steps, before, watch)
+    save_truth(path, map_name, result.truth)
+    report = figures(result, space, map_name, seed)
+    if json_file is not None:
+        write_json(json_file, report)
+    if drawing is not None:
+        draw_map(drawing, load_world(world), result.truth.poses, result.graph.edges)
+    Console().print(figure_table(f"map {map_name}", report))
+    if not result.run.succeeded:
+        raise ExperimentError(f"exploration ended as {result.run.status.state}: {result.run.status.reason}")
+
+
+def _prepare(stack: Stack, map_name: str, path: Path, *, go_on: bool, fresh: bool) -> MapTruth | None:
+    """Make room for the map, or return the truth of the one to go on with."""
+    found = read_map(stack, map_name)
+    if found is not None and found.nodes and not (go_on or fresh):
+        raise ExperimentError(
+            f"map {map_name!r} exists with {len(found.nodes)} nodes: go on with it (--continue), "
+            "delete it first (--fresh), or choose another name (--map)"
+        )
+    if fresh:
+        if found is not None:
+            delete_map(stack, map_name)
+        path.unlink(missing_ok=True)
+        return None
+    return load_truth(path) if found is not None else None

@@ -1,0 +1,70 @@
+"""The experimenter's hand in the simulation: reset, hide the other robot, look, read the true state."""
+
+import time
+
+from experiments.failure import ExperimentError
+from shared.bus import Bus
+from shared.messages import SimulationReply, SimulationRequest, Truth
+from shared.messages.sensors import Frame
+from shared.messages.simulation import Pose
+from shared.topics import SIMULATION
+
+TIMEOUT_S = 30.0
+STILL_MPS = 0.01
+SETTLED_POLLS = 3
+POLL_S = 0.1
+
+
+class Hand:
+    """Asks the simulator; counts every time it moves the robot."""
+
+    def __init__(self, bus: Bus, robot: str) -> None:
+        self._bus, self._robot = bus, robot
+        self.moves = 0
+
+    def reset(self, seed: int) -> Truth:
+        """Put the robot at the world's start and seed the noise."""
+        self.moves += 1
+        return self._ask(SimulationRequest(action="reset", seed=seed)).truth
+
+    def place_robot(self, pose: Pose) -> Truth:
+        """Put the robot somewhere."""
+        self.moves += 1
+        return self._ask(SimulationRequest(action="place_robot", pose=pose)).truth
+
+    def place_hider(self, pose: Pose) -> Frame:
+        """Put the hidden robot somewhere; returns the picture it takes there."""
+        return _picture(self._ask(SimulationRequest(action="place_hider", pose=pose)), "place_hider")
+
+    def remove_hider(self) -> None:
+        """Take the hidden robot away."""
+        self._ask(SimulationRequest(action="remove_hider"))
+
+    def look(self, pose: Pose) -> Frame:
+        """Take a picture from any pose."""
+        return _picture(self._ask(SimulationRequest(action="look", pose=pose)), "look")
+
+    def truth(self) -> Truth:
+        """The true state now."""
+        return self._ask(SimulationRequest(action="truth")).truth
+
+    def settled_truth(self, timeout_s: float = 10.0) -> Truth:
+        """The true state once the robot stands and, in lockstep, no frame is being answered any more."""
+        deadline_s = time.monotonic() + timeout_s
+        last, equal = self.truth(), 0
+        while equal < SETTLED_POLLS and time.monotonic() < deadline_s:
+            time.sleep(POLL_S)
+            now = self.truth()
+            still = now.pose == last.pose or (now.seq == last.seq and now.speed_mps < STILL_MPS)
+            equal = equal + 1 if still else 0
+            last = now
+        return last
+
+    def _ask(self, request: SimulationRequest) -> SimulationReply:
+        return self._bus.ask(SIMULATION, request, TIMEOUT_S, robot=self._robot)
+
+
+def _picture(reply: SimulationReply, action: str) -> Frame:
+    if reply.frame is None:
+        raise ExperimentError(f"the simulator answered {action} without a picture")
+    return reply.frame

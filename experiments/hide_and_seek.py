@@ -1,0 +1,96 @@
+"""`topnav hide-and-seek`: the thesis's evaluation, rounds of finding a hidden robot from its picture."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from rich.console import Console
+
+from experiments import options
+from experiments.drawings import draw_round
+from experiments.failure import ExperimentError, one_line_errors
+from experiments.map_client import require_map
+from experiments.output import new_run_folder, rounded, write_json
+from experiments.progress import mission_progress
+from experiments.rounds import Game, Round
+from experiments.stack import StackChoice, open_stack
+from experiments.tables import row_table
+from experiments.truth_file import load_truth, truth_path
+from simulator.freespace import free_space
+from simulator.world_file import load_world
+
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+
+SHOWN = ("success", "final_distance_m", "spl", "steps", "collisions", "shortest_m", "driven_m", "reason")
+
+
+@app.command()
+def main(
+    world: options.World = "apartment",
+    map_name: options.MapName = "flat",
+    rounds: Annotated[int, typer.Option(min=1, help="How many hiders to find.")] = 20,
+    seed: options.Seed = 1,
+    lockstep: options.Lockstep = None,
+    json_file: options.JsonFile = None,
+    profile: options.ProfileName = None,
+    pipeline: options.PipelineName = None,
+    max_steps: options.MaxSteps = 1500,
+    drawings: Annotated[
+        Path | None, typer.Option(help="Folder for plans and final frames; default: a new one in runs/.")
+    ] = None,
+    draw: Annotated[bool, typer.Option(help="Draw every round.")] = True,
+    data_dir: options.DataDir = options.DATA_DIR,
+    endpoint: options.Endpoint = None,
+) -> None:
+    """Find robots that hide at random places, one after the other, from the pictures they send."""
+    console = Console(stderr=True)
+    space = free_space(load_world(world))
+    choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
+    folder = (drawings or new_run_folder(options.RUNS_DIR)) if draw else None
+    truth = load_truth(truth_path(data_dir, map_name))
+    poses = truth.poses if truth is not None else {}
+    played: list[Round] = []
+    with one_line_errors(), open_stack(choice) as stack:
+        graph = require_map(stack, map_name)
+        game = Game(stack, space, map_name, np.random.default_rng(seed))
+        game.begin(seed)
+        for number in range(1, rounds + 1):
+            with mission_progress(console, f"round {number}/{rounds}") as watch:
+                played.append(game.play(seed + number, max_steps, watch))
+            console.print(_line(number, played[-1]), highlight=False)
+            if folder is not None:
+                place = folder / f"round-{number:02d}"
+                draw_round(place, load_world(world), played[-1], poses, graph.edges, game.hand)
+            if json_file is not None:
+                write_json(json_file, report(world, profile or "default", seed, played))
+    summary = report(world, profile or "default", seed, played)["summary"]
+    rows = [{name: r.figures()[name] for name in SHOWN} for r in played]
+    Console().print(row_table(f"hide and seek in {world}, seed {seed}", rows))
+    Console().print(row_table("summary", [summary]))
+    if not any(r.success for r in played):
+        raise ExperimentError("no round succeeded")
+
+
+def report(world: str, profile: str, seed: int, played: list[Round]) -> dict[str, Any]:
+    """The figures of --json; the keys of the summary up to steps_per_s are fixed."""
+    rounds = [r.figures() for r in played]
+    steps, wall_s = sum(r.run.status.step for r in played), sum(r.run.wall_s for r in played)
+    summary = {
+        "rounds": len(rounds),
+        "success_rate": rounded(np.mean([r.success for r in played])),
+        "collisions": sum(int(str(r["collisions"])) for r in rounds),
+        "manual_moves": sum(int(str(r["manual_moves"])) for r in rounds),
+        "spl_mean": rounded(np.mean([r.spl for r in played])),
+        "final_distance_median_m": rounded(np.median([r.distance_m for r in played])),
+        "steps_per_s": rounded(steps / max(wall_s, 1e-9), 2),
+    }
+    return {"world": world, "profile": profile, "seed": seed, "rounds": rounds, "summary": summary}
+
+
+def _line(number: int, played: Round) -> str:
+    verdict = "found" if played.success else "NOT found"
+    return (
+        f"round {number}: {verdict}, {played.distance_m:.2f} m left, SPL {played.spl:.2f}, "
+        f"{played.run.status.step} steps, {played.run.steps_per_s:.1f} steps/s: {played.run.status.reason}"
+    )

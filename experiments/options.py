@@ -1,0 +1,29 @@
+"""Command-line options that several commands share."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+World = Annotated[str, typer.Option(help="A file in simulator/worlds, without .yaml.")]
+MapName = Annotated[str, typer.Option("--map", help="Name of the map.")]
+Seed = Annotated[int, typer.Option(min=0, help="Of every random draw.")]
+JsonFile = Annotated[Path | None, typer.Option("--json", help="Write the figures to this file.")]
+Lockstep = Annotated[
+    bool | None,
+    typer.Option(help="As fast as the machine allows, same seed, same path. Default for a stack of its own."),
+]
+ProfileName = Annotated[
+    str | None, typer.Option("--profile", help="Rules of planner and drive: default or thesis.")
+]
+PipelineName = Annotated[str | None, typer.Option("--pipeline", help="Feature pipeline, for example sift.")]
+DataDir = Annotated[
+    Path, typer.Option(envvar="TOPNAV_DATA_DIR", help="Maps and logs; a stack that runs there is joined.")
+]
+Endpoint = Annotated[
+    str | None, typer.Option(help="Join the stack whose router is here, for example tcp/127.0.0.1:7447.")
+]
+MaxSteps = Annotated[int, typer.Option(min=1, help="Give a mission up after so many frames.")]
+
+DATA_DIR = Path("data")
+RUNS_DIR = Path("runs")

@@ -1,0 +1,135 @@
+"""One round of hide and seek: a robot hides, the other gets its picture and looks for it."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from experiments.hand import Hand
+from experiments.measures.spl import spl
+from experiments.mission import MissionClient, MissionRun, Watch
+from experiments.output import rounded
+from experiments.stack import Stack
+from experiments.trail import collisions, driven_m, manual_moves
+from shared.messages import ExtractRequest, MissionRequest
+from shared.messages.sensors import Frame
+from shared.messages.simulation import Pose, Truth
+from shared.topics import EXTRACT
+from simulator.freespace import FreeSpace
+
+ARRIVED_M = 0.5
+MIN_APART_M = 1.5
+MARGIN_M = 0.05
+MAX_DRAWS = 1000
+EXTRACT_TIMEOUT_S = 30.0
+
+
+@dataclass(frozen=True)
+class Round:
+    """A finished round.
+
+    Attributes:
+        start, hider: where the two robots stood when it began.
+        final: where the seeker really ended.
+        goal: the picture it was given.
+        shortest_m: length of the shortest collision-free way.
+    """
+
+    start: Pose
+    hider: Pose
+    final: Pose
+    goal: Frame
+    run: MissionRun
+    shortest_m: float
+    hand_moves: int
+
+    @property
+    def distance_m(self) -> float:
+        """True distance left at the end."""
+        return math.hypot(self.final.x_m - self.hider.x_m, self.final.y_m - self.hider.y_m)
+
+    @property
+    def success(self) -> bool:
+        """The planner says that it arrived, and it is right."""
+        return self.run.succeeded and self.distance_m <= ARRIVED_M
+
+    @property
+    def spl(self) -> float:
+        """Success weighted by path length."""
+        return spl(self.success, self.shortest_m, driven_m(self.run.truths))
+
+    def figures(self) -> dict[str, object]:
+        """One entry of "rounds"; the keys up to reason are fixed."""
+        status = self.run.status
+        failure = status.failure or ("" if self.success else "wrong_place")
+        return {
+            "success": self.success,
+            "final_distance_m": rounded(self.distance_m),
+            "spl": rounded(self.spl),
+            "steps": status.step,
+            "collisions": collisions(self.run.truths),
+            "reason": f"{failure}: {status.reason}" if failure else status.reason,
+            "failure": failure,
+            "manual_moves": max(self.hand_moves, manual_moves(self.run.truths)),
+            "shortest_m": rounded(self.shortest_m, 3),
+            "driven_m": rounded(driven_m(self.run.truths), 3),
+            "wall_s": rounded(self.run.wall_s, 2),
+            "start": _plain(self.start),
+            "hider": _plain(self.hider),
+            "final": _plain(self.final),
+        }
+
+
+def hiding_place(space: FreeSpace, seeker: Pose, rng: np.random.Generator) -> tuple[Pose, float]:
+    """A random free pose at least MIN_APART_M of way from the seeker, and the length of that way.
+
+    Raises:
+        ValueError: the free floor is too small for that.
+    """
+    for _ in range(MAX_DRAWS):
+        x_m, y_m, yaw_rad = space.random_pose(rng, MARGIN_M)
+        way_m = space.shortest_path_m((seeker.x_m, seeker.y_m), (x_m, y_m))
+        if MIN_APART_M <= way_m < math.inf:
+            return Pose(x_m=x_m, y_m=y_m, yaw_rad=yaw_rad), way_m
+    raise ValueError(f"no free place at least {MIN_APART_M} m away from the seeker in {MAX_DRAWS} draws")
+
+
+class Game:
+    """Rounds in one stack; the seeker stays where the last one ended."""
+
+    def __init__(self, stack: Stack, space: FreeSpace, map_name: str, rng: np.random.Generator) -> None:
+        self._stack, self._space, self._map, self._rng = stack, space, map_name, rng
+        self.client, self.hand = MissionClient(stack.bus, stack.robot), Hand(stack.bus, stack.robot)
+
+    def begin(self, seed: int) -> Truth:
+        """Put the seeker at the world's start, once, and wait until it sees something."""
+        truth = self.hand.reset(seed)
+        self.client.wait_for_frame(truth.stamp_ns)
+        return truth
+
+    def hide(self) -> tuple[Pose, Pose, float, Frame]:
+        """Hide the other robot: seeker's pose, hider's pose, shortest way, the hider's picture."""
+        start = self.hand.settled_truth().pose
+        hider, way_m = hiding_place(self._space, start, self._rng)
+        return start, hider, way_m, self.hand.place_hider(hider)
+
+    def play(self, seed: int, max_steps: int, watch: Watch | None = None) -> Round:
+        """Hide, extract the picture's features, seek."""
+        start, hider, way_m, picture = self.hide()
+        goal = self._stack.bus.ask(EXTRACT, ExtractRequest(frame=picture), EXTRACT_TIMEOUT_S)
+        moved = self.hand.moves
+        request = MissionRequest(action="goto", map=self._map, goal=goal, seed=seed, max_steps=max_steps)
+        run = self.client.run(request, watch)
+        return self.finish(start, hider, way_m, picture, run, self.hand.moves - moved)
+
+    def finish(
+        self, start: Pose, hider: Pose, way_m: float, goal: Frame, run: MissionRun, hand_moves: int
+    ) -> Round:
+        """Read where the seeker stands now."""
+        final = self.hand.settled_truth().pose
+        self.client.collect()
+        return Round(start, hider, final, goal, run, way_m, hand_moves)
+
+
+def _plain(pose: Pose) -> dict[str, float]:
+    return {name: rounded(value) for name, value in pose.model_dump().items()}
