@@ -1,0 +1,15 @@
+# topnav: the planner process, with the core and its own extra and nothing else.
+FROM python:3.11-slim-trixie
+
+WORKDIR /app
+COPY pyproject.toml constraints.txt README.md LICENSE ./
+RUN pip install --no-cache-dir --constraint constraints.txt '.[planner]'
+
+COPY shared shared
+COPY services/__init__.py services/__init__.py
+COPY services/planner services/planner
+
+RUN useradd --system --uid 10001 topnav
+USER topnav
+# The root file system is read-only: caches go to the tmpfs.
+ENV HOME=/tmp PYTHONDONTWRITEBYTECODE=1 PYTHONUNBUFFERED=1

@@ -1,0 +1,13 @@
+# topnav: the Zenoh router, with the core and nothing else.
+FROM python:3.11-slim-trixie
+
+WORKDIR /app
+COPY pyproject.toml constraints.txt README.md LICENSE ./
+RUN pip install --no-cache-dir --constraint constraints.txt .
+
+COPY shared shared
+
+RUN useradd --system --uid 10001 topnav
+USER topnav
+# The root file system is read-only: caches go to the tmpfs.
+ENV HOME=/tmp PYTHONDONTWRITEBYTECODE=1 PYTHONUNBUFFERED=1

@@ -1,0 +1,20 @@
+# topnav: the simulator process, with the core and its own extra and nothing else.
+FROM python:3.11-slim-trixie
+
+# Debian 13's Mesa has VK_KHR_external_semaphore_fd in its software driver, which SAPIEN needs; libx11 is linked by SAPIEN.
+RUN apt-get update \
+    && apt-get install -y --no-install-recommends libvulkan1 libx11-6 mesa-vulkan-drivers \
+    && rm -rf /var/lib/apt/lists/*
+
+WORKDIR /app
+COPY pyproject.toml constraints.txt README.md LICENSE ./
+COPY deploy/packaging/opencv-shim deploy/packaging/opencv-shim
+RUN pip install --no-cache-dir --constraint constraints.txt ./deploy/packaging/opencv-shim '.[simulator]'
+
+COPY shared shared
+COPY simulator simulator
+
+RUN useradd --system --uid 10001 topnav
+USER topnav
+# The root file system is read-only: caches go to the tmpfs.
+ENV HOME=/tmp PYTHONDONTWRITEBYTECODE=1 PYTHONUNBUFFERED=1

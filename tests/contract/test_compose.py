@@ -1,0 +1,154 @@
+"""docker-compose.yml: valid, the same for Docker and for the launcher, and in step with the services."""
+
+import importlib
+import importlib.util
+import json
+import os
+import re
+import sys
+
+import pytest
+import yaml
+from jsonschema import Draft201909Validator
+
+from services.launcher.compose_file import COMPOSE_FILE, load_compose
+from services.launcher.interpolate import interpolate_tree
+from services.launcher.local import LocalMachine, local_process
+from services.launcher.stack_settings import Ports, StackSettings
+from shared.settings import ServiceSettings
+
+RAW = yaml.safe_load(COMPOSE_FILE.read_text(encoding="utf-8"))
+SERVICES = RAW["services"]
+SETTINGS = {
+    "map-store": "services.map_store.settings",
+    "simulator": "simulator.service_settings",
+    "features": "services.features.settings",
+    "planner": "services.planner.settings",
+    "drive": "services.drive.settings",
+    "gateway": "services.gateway.settings",
+}
+VARIABLE = re.compile(r"\$\{(\w+)")
+
+
+@pytest.fixture
+def schema(repository):
+    return json.loads((repository / "tests/contract/vendor/compose-spec.json").read_text(encoding="utf-8"))
+
+
+@pytest.fixture
+def stack(tmp_path):
+    return StackSettings(tmp_path, world="apartment", lockstep=True, seed=5, ports=Ports(17447, 18000, 18001))
+
+
+@pytest.fixture
+def specs(stack):
+    services = load_compose(COMPOSE_FILE, stack.variables({})).services
+    machine = LocalMachine(sys.executable, stack.data_dir)
+    return {name: local_process(name, service, services, machine) for name, service in services.items()}
+
+
+def test_the_file_follows_the_compose_specification(schema):
+    errors = [
+        f"{error.json_path}: {error.message}" for error in Draft201909Validator(schema).iter_errors(RAW)
+    ]
+    assert errors == []
+
+
+def test_the_schema_would_notice_a_misspelt_key(schema):
+    broken = {"services": {"a": {"command": ["x"], "enviroment": {}}}}
+    assert not Draft201909Validator(schema).is_valid(broken)
+
+
+def test_every_process_of_the_architecture_is_there():
+    assert set(SERVICES) == {"router", "map-store", "simulator", "features", "planner", "drive", "gateway"}
+
+
+@pytest.mark.parametrize("name", SERVICES)
+def test_docker_and_the_launcher_start_the_same_command(name, specs):
+    assert specs[name].command == (sys.executable, *SERVICES[name]["command"][1:])
+    assert SERVICES[name]["command"][0] == "python"
+
+
+@pytest.mark.parametrize("name", SERVICES)
+def test_docker_and_the_launcher_give_the_same_environment_up_to_host_names_and_volumes(name, specs, stack):
+    ours = dict(specs[name].environment)
+    dockers = interpolate_tree(SERVICES[name]["environment"], stack.variables({}))
+    assert ours.keys() == dockers.keys()
+    for key, value in dockers.items():
+        local = re.sub(
+            r"//map-store:|tcp/router:", lambda m: m[0][:4].replace("//ma", "//") + "127.0.0.1:", value
+        )
+        local = local.replace("/var/lib/topnav", str(stack.data_dir))
+        assert ours[key] == local, key
+
+
+@pytest.mark.parametrize("name", SERVICES)
+def test_the_launcher_watches_the_token_that_dockers_health_check_asks_for(name, specs):
+    test = SERVICES[name]["healthcheck"]["test"]
+    assert test[:4] == ["CMD", "python", "-m", "shared.health"]
+    assert specs[name].alive_as == test[4] == name.replace("-", "_")
+    assert importlib.util.find_spec("shared.health")
+
+
+@pytest.mark.parametrize("name", SERVICES)
+def test_each_command_names_a_module_that_is_there(name):
+    module = SERVICES[name]["command"][2]
+    spec = importlib.util.find_spec(module)
+    assert spec is not None
+    if spec.submodule_search_locations is not None:
+        assert importlib.util.find_spec(f"{module}.__main__") is not None
+
+
+@pytest.mark.parametrize("name", SETTINGS)
+def test_every_variable_of_a_service_is_one_of_its_settings(name, specs, monkeypatch):
+    module = importlib.import_module(SETTINGS[name])
+    classes = [
+        c
+        for c in vars(module).values()
+        if isinstance(c, type) and issubclass(c, ServiceSettings) and c is not ServiceSettings
+    ]
+    assert len(classes) == 1
+    for variable in [v for v in os.environ if v.startswith(classes[0].model_config["env_prefix"])]:
+        monkeypatch.delenv(variable)
+    for variable, value in specs[name].environment.items():
+        monkeypatch.setenv(variable, value)
+    settings = classes[0].from_environment()
+    assert settings.endpoint == "tcp/127.0.0.1:17447"
+
+
+def test_choices_reach_the_services(specs):
+    assert specs["simulator"].environment["SIMULATOR_LOCKSTEP"] == "true"
+    assert specs["simulator"].environment["SIMULATOR_SEED"] == "5"
+    assert specs["gateway"].environment["GATEWAY_PORT"] == "18000"
+    assert specs["gateway"].environment["GATEWAY_MAP_STORE_URL"] == "http://127.0.0.1:18001"
+    assert specs["router"].environment["TOPNAV_ROUTER_LISTEN"] == "tcp/127.0.0.1:17447"
+
+
+def test_docker_publishes_the_gateway_only_and_only_on_loopback_and_requires_a_secret():
+    assert [name for name, service in SERVICES.items() if "ports" in service] == ["gateway"]
+    assert SERVICES["gateway"]["ports"][0].startswith("${TOPNAV_PUBLISH:-127.0.0.1}:")
+    with pytest.raises(ValueError, match="TOPNAV_TOKEN is not set"):
+        load_compose(COMPOSE_FILE, {})
+
+
+def test_the_example_environment_names_what_the_file_reads(repository):
+    text = (repository / ".env.example").read_text(encoding="utf-8")
+    documented = set(re.findall(r"^#? ?(\w+)=", text, flags=re.MULTILINE))
+    read = set(VARIABLE.findall(json.dumps(RAW))) - {"TOPNAV_BIND", "TOPNAV_DATABASE_URL"}
+    assert documented - {"COMPOSE_PROJECT_NAME"} == read
+
+
+@pytest.mark.parametrize("name", SERVICES)
+def test_each_image_installs_one_extra_and_carries_one_services_code(name, repository):
+    build = SERVICES[name]["build"]
+    text = (repository / build["dockerfile"]).read_text(encoding="utf-8")
+    assert "FROM python:3.11-slim-trixie" in text
+    assert re.findall(r"\.\[([\w,-]+)\]", text) == ([] if name == "router" else [name])
+    assert "ENTRYPOINT" not in text
+    assert "CMD" not in text
+    package = SERVICES[name]["command"][2].replace(".", "/").removesuffix("/router")
+    assert re.search(rf"^COPY {package} {package}$", text, flags=re.MULTILINE)
+    copied = set(re.findall(r"^COPY (services/\w+|simulator) ", text, flags=re.MULTILINE))
+    assert copied <= {package}
+    for source in re.findall(r"^COPY (.+) \S+$", text, flags=re.MULTILINE):
+        assert all((repository / one).exists() for one in source.split())
