@@ -122,21 +122,9 @@ def _report(console: Console, scene: Scene, explored: Exploration, found: Round)
     mapping = figures(explored, scene.space, MAP, scene.seed)
     metrics = {"explore": mapping, "goto": found.figures()}
     write_json(scene.folder / "metrics.json", metrics)
-    shown = (
-        "nodes",
-        "edges",
-        "coverage",
-        "components",
-        "false_edges",
-        "collisions",
-        "manual_moves",
-        "steps",
-        "wall_s",
-    )
-    console.print(row_table("the map", [{name: mapping[name] for name in shown}]))
     goto = found.figures()
-    shown = ("success", "final_distance_m", "spl", "shortest_m", "driven_m", "collisions", "steps", "wall_s")
-    console.print(row_table("finding the hidden robot", [{name: goto[name] for name in shown}]))
+    console.print(row_table("the map", [{name: mapping[name] for name in MAP_SHOWN}]))
+    console.print(row_table("finding the hidden robot", [{name: goto[name] for name in GOTO_SHOWN}]))
     return write_report(scene.folder, mapping, goto)
 
 

@@ -1,0 +1,13 @@
+"""`topnav study`: the thesis's studies and ours."""
+
+import typer
+
+from experiments.studies.heading_frames import main as heading_frames
+
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, no_args_is_help=True)
+app.command("heading-frames")(heading_frames)
+
+
+@app.callback()
+def choose() -> None:
+    """Studies of the heading methods and the matching."""

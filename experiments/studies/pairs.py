@@ -1,0 +1,59 @@
+"""Random pairs of camera poses with a free line of sight between them. Pure."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from shared.messages.simulation import Pose
+from simulator.freespace import FreeSpace
+
+MIN_M = 0.3
+MAX_M = 3.0
+MAX_DRAWS = 10_000
+
+
+@dataclass(frozen=True)
+class PosePair:
+    """Two poses; the first looks for the way to the second."""
+
+    current: Pose
+    target: Pose
+
+    @property
+    def distance_m(self) -> float:
+        """How far apart they are."""
+        return math.hypot(self.target.x_m - self.current.x_m, self.target.y_m - self.current.y_m)
+
+    @property
+    def heading_rad(self) -> float:
+        """True direction from the first to the second, camera frame of the first."""
+        dx, dy = self.target.x_m - self.current.x_m, self.target.y_m - self.current.y_m
+        return math.remainder(math.atan2(dy, dx) - self.current.yaw_rad, math.tau)
+
+    @property
+    def yaw_rad(self) -> float:
+        """True turn from the first camera to the second."""
+        return math.remainder(self.target.yaw_rad - self.current.yaw_rad, math.tau)
+
+
+def draw_pairs(space: FreeSpace, count: int, rng: np.random.Generator) -> list[PosePair]:
+    """Pairs whose distance is even in [MIN_M, MAX_M], both ends on free floor, nothing between them."""
+    return [draw_pair(space, rng) for _ in range(count)]
+
+
+def draw_pair(space: FreeSpace, rng: np.random.Generator) -> PosePair:
+    """One pair.
+
+    Raises:
+        ValueError: the free floor has no room for any.
+    """
+    distance_m = float(rng.uniform(MIN_M, MAX_M))
+    for _ in range(MAX_DRAWS):
+        x_m, y_m, yaw_rad = space.random_pose(rng)
+        bearing, other_yaw_rad = (float(angle) for angle in rng.uniform(-math.pi, math.pi, 2))
+        end = (x_m + distance_m * math.cos(bearing), y_m + distance_m * math.sin(bearing))
+        if space.is_free(end) and space.line_of_sight((x_m, y_m), end):
+            target = Pose(x_m=end[0], y_m=end[1], yaw_rad=other_yaw_rad)
+            return PosePair(Pose(x_m=x_m, y_m=y_m, yaw_rad=yaw_rad), target)
+    raise ValueError(f"no two free places {distance_m:.2f} m apart that see each other in {MAX_DRAWS} draws")
