@@ -1,0 +1,187 @@
+"""Import rules: who may know whom. Read from the syntax trees, nothing is imported."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+PACKAGES = ("services", "shared", "simulator", "experiments")
+SERVICES = ("features", "map_store", "planner", "drive", "gateway", "launcher")
+
+# Pure code: the same input gives the same output, whatever the clock, the bus and the environment say.
+PURE = (
+    "shared/geometry/**/*.py",
+    "shared/messages/**/*.py",
+    "services/planner/**/*.py",
+    "services/drive/**/*.py",
+    "services/**/core.py",
+    "services/**/core/**/*.py",
+    "services/**/graph.py",
+    "services/launcher/plan.py",
+    "services/launcher/restart.py",
+    "services/launcher/interpolate.py",
+)
+EDGE_FILES = {"__main__.py", "service.py", "settings.py", "remote.py"}  # where a service meets the world
+IMPURE = {
+    "zenoh",
+    "fastapi",
+    "time",
+    "datetime",
+    "os",
+    "random",
+    "socket",
+    "subprocess",
+    "threading",
+    "requests",
+}
+IMPURE_OURS = {"shared.bus", "shared.bus_config", "shared.lifecycle", "shared.queries", "shared.settings"}
+FORBIDDEN = {
+    "planner": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
+    "drive": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
+    "gateway": {"torch", "kornia", "sapien", "sqlalchemy"},
+    "map_store": {"torch", "kornia", "cv2", "sapien"},
+    "features": {"sapien", "fastapi", "sqlalchemy"},
+    "launcher": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
+}
+TRUTH_NAMES = {"Truth", "TRUTH"}
+
+
+def imported(source: str) -> set[str]:
+    """Full names of everything a source imports, wherever in the file; `from a import b` gives a and a.b."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, "relative imports hide who imports whom"
+            module = node.module or ""
+            names |= {module} | {f"{module}.{alias.name}" for alias in node.names}
+    return names
+
+
+def tops(names: set[str]) -> set[str]:
+    """Top-level packages of imported names."""
+    return {name.partition(".")[0] for name in names}
+
+
+def services_in(names: set[str]) -> set[str]:
+    """Which services the imported names belong to."""
+    parts = [name.split(".") for name in names]
+    return {part[1] for part in parts if part[0] == "services" and len(part) > 1}
+
+
+def names_used(source: str) -> set[str]:
+    """Every identifier and attribute of a source."""
+    tree = ast.walk(ast.parse(source))
+    plain = (node.id if isinstance(node, ast.Name) else getattr(node, "attr", None) for node in tree)
+    return {name for name in plain if name} | {name.rpartition(".")[2] for name in imported(source)}
+
+
+def files(folder: str) -> list[Path]:
+    """All Python files of a folder of the repository."""
+    return sorted((REPOSITORY / folder).rglob("*.py"))
+
+
+def by_path(paths: list[Path]) -> list[object]:
+    """Make one test per file, named by its path."""
+    return [pytest.param(path, id=str(path.relative_to(REPOSITORY))) for path in paths]
+
+
+def pure_files() -> list[Path]:
+    """All files that must be pure."""
+    found = {path for pattern in PURE for path in REPOSITORY.glob(pattern)}
+    return sorted(path for path in found if path.name not in EDGE_FILES)
+
+
+def module_file(name: str) -> Path | None:
+    """File of one of our own modules, None for other names."""
+    if name.partition(".")[0] not in PACKAGES:
+        return None
+    base = REPOSITORY / name.replace(".", "/")
+    return next((p for p in (base.with_suffix(".py"), base / "__init__.py") if p.exists()), None)
+
+
+def reachable(start: list[Path]) -> set[Path]:
+    """Follow our own imports from these files."""
+    seen: set[Path] = set()
+    queue = list(start)
+    while queue:
+        path = queue.pop()
+        if path in seen:
+            continue
+        seen.add(path)
+        queue += filter(None, map(module_file, imported(path.read_text(encoding="utf-8"))))
+    return seen
+
+
+@pytest.mark.parametrize("service", SERVICES)
+def test_a_service_imports_no_other_service_no_simulator_and_no_experiment(service):
+    for path in files(f"services/{service}"):
+        names = imported(path.read_text(encoding="utf-8"))
+        assert services_in(names) <= {service}, path
+        assert not tops(names) & {"simulator", "experiments"}, path
+
+
+@pytest.mark.parametrize("path", by_path(files("shared")))
+def test_shared_code_knows_no_service(path):
+    assert not tops(imported(path.read_text(encoding="utf-8"))) & {"services", "simulator", "experiments"}
+
+
+@pytest.mark.parametrize("path", by_path(files("simulator")))
+def test_the_simulator_knows_no_service(path):
+    assert not tops(imported(path.read_text(encoding="utf-8"))) & {"services", "experiments"}
+
+
+@pytest.mark.parametrize("path", by_path(pure_files()))
+def test_pure_code_reads_no_bus_no_clock_and_no_environment(path):
+    names = imported(path.read_text(encoding="utf-8"))
+    assert not tops(names) & IMPURE
+    assert not names & IMPURE_OURS
+
+
+@pytest.mark.parametrize("service", SERVICES)
+def test_a_service_never_reaches_a_library_that_is_not_its_own(service):
+    for path in reachable(files(f"services/{service}")):
+        found = tops(imported(path.read_text(encoding="utf-8"))) & FORBIDDEN[service]
+        assert not found, f"{path} imports {found}"
+
+
+@pytest.mark.parametrize(
+    "service", [name for name in SERVICES if name != "gateway"], ids=lambda name: f"{name} is blind"
+)
+def test_only_the_gateways_debug_view_may_read_the_true_pose(service):
+    for path in files(f"services/{service}"):
+        source = path.read_text(encoding="utf-8")
+        assert not names_used(source) & TRUTH_NAMES, path
+        assert "/truth" not in source, path
+
+
+def test_no_code_uses_pickle():
+    for folder in PACKAGES:
+        for path in files(folder):
+            assert not tops(imported(path.read_text(encoding="utf-8"))) & {"pickle", "dill", "joblib"}, path
+
+
+def test_pure_code_was_found_at_all():
+    assert len(pure_files()) > 20
+    assert files("services/launcher")
+
+
+@pytest.mark.parametrize(
+    ("source", "names"),
+    [
+        ("import time as t", {"time"}),
+        ("def f():\n    from services.drive import core", {"services.drive", "services.drive.core"}),
+        ("from services import drive", {"services", "services.drive"}),
+        ("if x:\n    import a.b.c", {"a.b.c"}),
+    ],
+)
+def test_the_reader_sees_imports_in_every_form(source, names):
+    assert imported(source) == names
+
+
+def test_the_reader_sees_the_truth_behind_an_attribute():
+    assert names_used("import shared.topics as t\nt.TRUTH") & TRUTH_NAMES
+    assert names_used("from shared.messages import Truth as T") & TRUTH_NAMES
+    assert services_in(imported("from services import drive")) == {"drive"}
