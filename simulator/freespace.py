@@ -56,7 +56,10 @@ class FreeSpace:
     def centres_m(self) -> FloatArray:
         """Centres of all free cells, (n, 2) metres."""
         rows, columns = np.nonzero(self.free)
-        return np.stack([self.origin_m[0] + columns * self.resolution_m, self.origin_m[1] + rows * self.resolution_m], axis=-1)
+        return np.stack(
+            [self.origin_m[0] + columns * self.resolution_m, self.origin_m[1] + rows * self.resolution_m],
+            axis=-1,
+        )
 
     def random_pose(self, rng: np.random.Generator, margin_m: float = 0.0) -> tuple[float, float, float]:
         """A pose (x, y, yaw) drawn evenly from the free floor, `margin_m` further from obstacles than the robot needs."""
@@ -143,7 +146,10 @@ class FreeSpace:
 
     def _clear(self, a: Point, b: Point) -> bool:
         count = max(2, math.ceil(math.dist(a, b) / (self.resolution_m / 2)))
-        return all(self.is_free((a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]))) for t in np.linspace(0.0, 1.0, count + 1))
+        return all(
+            self.is_free((a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])))
+            for t in np.linspace(0.0, 1.0, count + 1)
+        )
 
 
 def free_space(world: WorldFile, robot_radius_m: float = 0.26, resolution_m: float = 0.05) -> FreeSpace:
@@ -157,11 +163,15 @@ def free_space(world: WorldFile, robot_radius_m: float = 0.26, resolution_m: flo
     grid = np.stack(np.meshgrid(xs, ys), axis=-1).reshape(-1, 2)
     inside = np.zeros(len(grid), bool)
     for rx, ry in rects:
-        inside |= (grid[:, 0] >= rx[0]) & (grid[:, 0] <= rx[1]) & (grid[:, 1] >= ry[0]) & (grid[:, 1] <= ry[1])
+        inside |= (
+            (grid[:, 0] >= rx[0]) & (grid[:, 0] <= rx[1]) & (grid[:, 1] >= ry[0]) & (grid[:, 1] <= ry[1])
+        )
     clearance = np.zeros(len(grid))
     clearance[inside] = clearance_m(grid[inside], footprints(parts, *BODY_BAND_M))
     clearance = clearance.reshape(len(ys), len(xs))
-    whole = FreeSpace(clearance >= robot_radius_m, clearance, (float(x0), float(y0)), resolution_m, robot_radius_m, parts)
+    whole = FreeSpace(
+        clearance >= robot_radius_m, clearance, (float(x0), float(y0)), resolution_m, robot_radius_m, parts
+    )
     start = whole.cell((world.start.x_m, world.start.y_m))
     reached = _flood(whole.free, start)
     return FreeSpace(reached, clearance, whole.origin_m, resolution_m, robot_radius_m, parts)
@@ -170,7 +180,9 @@ def free_space(world: WorldFile, robot_radius_m: float = 0.26, resolution_m: flo
 def _flood(free: npt.NDArray[np.bool_], start: tuple[int, int]) -> npt.NDArray[np.bool_]:
     """The 4-connected part of `free` that holds `start`."""
     if not free[start]:
-        raise ValueError("the world's start is not on free floor: move it at least a robot radius away from everything")
+        raise ValueError(
+            "the world's start is not on free floor: move it at least a robot radius away from everything"
+        )
     reached = np.zeros_like(free)
     reached[start] = True
     while True:

@@ -52,13 +52,17 @@ def bake(
         offsets = rng.uniform(-0.45, 0.45, (SAMPLES, 3)) * np.array(light.size_m)
         for point in np.array(light.centre_m) + offsets:
             total += _direct(start, facing, grid, light, point.astype(np.float32)) / SAMPLES
-    total += np.array(ambient, np.float32) * (1.0 - occlusion * (1.0 - _openness(start, facing, grid)))[:, None]
+    total += (
+        np.array(ambient, np.float32) * (1.0 - occlusion * (1.0 - _openness(start, facing, grid)))[:, None]
+    )
     # Soft shoulder: bright spots under lamps keep their texture.
     factors = (1.25 * (1.0 - np.exp(-total / 0.8))) ** GAMMA
     return np.asarray(factors[back.reshape(-1)], np.float32)
 
 
-def _direct(start: FloatArray, normals: FloatArray, grid: "_FilledGrid", light: Light, point: FloatArray) -> FloatArray:
+def _direct(
+    start: FloatArray, normals: FloatArray, grid: "_FilledGrid", light: Light, point: FloatArray
+) -> FloatArray:
     delta = point - start
     squared = (delta**2).sum(axis=1)
     unit = delta / np.sqrt(squared)[:, None]
@@ -76,8 +80,12 @@ def _openness(start: FloatArray, normals: FloatArray, grid: "_FilledGrid") -> Fl
     """Share of HEMISPHERE directions, cosine-weighted, that are free for REACH_M."""
     k = np.arange(HEMISPHERE) + 0.5
     radius, angle = np.sqrt(k / HEMISPHERE), np.pi * (1 + 5**0.5) * k
-    local = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.sqrt(1 - radius**2)], axis=-1).astype(np.float32)
-    helper = np.where(np.abs(normals[:, :1]) > 0.9, np.array([[0, 1, 0]], np.float32), np.array([[1, 0, 0]], np.float32))
+    local = np.stack(
+        [radius * np.cos(angle), radius * np.sin(angle), np.sqrt(1 - radius**2)], axis=-1
+    ).astype(np.float32)
+    helper = np.where(
+        np.abs(normals[:, :1]) > 0.9, np.array([[0, 1, 0]], np.float32), np.array([[1, 0, 0]], np.float32)
+    )
     tangent = np.cross(helper, normals)
     tangent /= np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), 1e-6)
     bitangent = np.cross(normals, tangent)
@@ -104,7 +112,9 @@ class _FilledGrid:
     def _fill(self, part: Part, half: npt.NDArray[np.float64]) -> None:
         """Fill every cell that holds a sample point of the part; samples are denser than cells."""
         axes = [np.linspace(-h, h, max(2, int(np.ceil(2 * h / (0.7 * CELL_M))) + 1)) for h in half]
-        points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3) @ rotation_of(part).T + np.array(part.centre_m)
+        points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3) @ rotation_of(
+            part
+        ).T + np.array(part.centre_m)
         i, j, k = np.clip(((points - self._low) / CELL_M).astype(int), 0, np.array(self._filled.shape) - 1).T
         self._filled[i, j, k] = True
 

@@ -34,11 +34,41 @@ def joined(meshes: list[Mesh]) -> Mesh:
     )
 
 
+def facing_any(mesh: Mesh, eyes: FloatArray) -> Mesh:
+    """The triangles whose front is turned towards at least one of (k, 3) eye positions.
+
+    With the corners of all rooms at camera height as eyes this drops, exactly, what no camera there can see:
+    undersides below the camera, tops above it, backs against walls. Half of all triangles, and half the frame time.
+    """
+    corner = mesh.vertices[mesh.triangles[:, 0]]
+    normal = np.cross(
+        mesh.vertices[mesh.triangles[:, 1]] - corner, mesh.vertices[mesh.triangles[:, 2]] - corner
+    )
+    ahead = np.einsum("kmc,mc->km", eyes[:, None, :] - corner[None], normal)
+    kept = mesh.triangles[(ahead > 0.0).any(axis=0)]
+    used, back = np.unique(kept, return_inverse=True)
+    return Mesh(
+        mesh.vertices[used], mesh.normals[used], mesh.uvs[used], back.reshape(-1, 3).astype(np.uint32)
+    )
+
+
 def mesh_of(part: Part) -> Mesh:
     """Triangles of a part in its world (or body) frame."""
-    local = {"box": _box, "cylinder": _cylinder, "ellipsoid": _ellipsoid, "cushion": _cushion, "drape": _drape, "leaf": _leaf}[part.shape](part)
+    local = {
+        "box": _box,
+        "cylinder": _cylinder,
+        "ellipsoid": _ellipsoid,
+        "cushion": _cushion,
+        "drape": _drape,
+        "leaf": _leaf,
+    }[part.shape](part)
     rotation = rotation_of(part).astype(np.float32)
-    return Mesh(local.vertices @ rotation.T + np.array(part.centre_m, np.float32), local.normals @ rotation.T, local.uvs, local.triangles)
+    return Mesh(
+        local.vertices @ rotation.T + np.array(part.centre_m, np.float32),
+        local.normals @ rotation.T,
+        local.uvs,
+        local.triangles,
+    )
 
 
 def _grid(rows: int, columns: int) -> IntArray:
@@ -77,7 +107,9 @@ def _box(part: Part) -> Mesh:
             lift = np.eye(3, dtype=np.float32)[up]
             side = np.cross(lift, normal).astype(np.float32)
             n_u, n_v = _steps(2 * half[right]), _steps(2 * half[up])
-            s, t = np.meshgrid(np.linspace(-1, 1, n_u, dtype=np.float32), np.linspace(1, -1, n_v, dtype=np.float32))
+            s, t = np.meshgrid(
+                np.linspace(-1, 1, n_u, dtype=np.float32), np.linspace(1, -1, n_v, dtype=np.float32)
+            )
             points = normal * half[axis] + s[..., None] * side * half[right] + t[..., None] * lift * half[up]
             points = points.reshape(-1, 3)
             if part.tile_m is None:
@@ -88,39 +120,68 @@ def _box(part: Part) -> Mesh:
                 uv = np.stack([world @ side, -(world @ lift)], axis=-1) / np.float32(part.tile_m) + shift
                 if 2 * half[right] < 2 * half[up] and max(part.size_m) <= 2.4:
                     uv = uv[:, ::-1]  # grain runs along the longer side
-            faces.append(Mesh(points, np.tile(normal, (len(points), 1)), uv.astype(np.float32), _grid(n_v, n_u)[:, ::-1]))
+            faces.append(
+                Mesh(
+                    points, np.tile(normal, (len(points), 1)), uv.astype(np.float32), _grid(n_v, n_u)[:, ::-1]
+                )
+            )
     return joined(faces)
 
 
 def _cylinder(part: Part) -> Mesh:
     rx, ry, half = part.size_m[0] / 2, part.size_m[1] / 2, part.size_m[2] / 2
-    angles = np.linspace(0, 2 * np.pi, SIDES + 1, dtype=np.float32)
+    sides = SIDES if rx > 0.06 else 10
+    angles = np.linspace(0, 2 * np.pi, sides + 1, dtype=np.float32)
     levels = np.linspace(-1, 1, _steps(2 * half), dtype=np.float32)
     scale = 1 + (part.taper - 1) * (levels + 1) / 2
     unit = np.stack([np.cos(angles) * rx, np.sin(angles) * ry], axis=-1)
     ring = unit[None] * scale[:, None, None]
-    wall = np.concatenate([ring, np.broadcast_to((levels * half)[:, None, None], (len(levels), SIDES + 1, 1))], axis=-1).reshape(-1, 3)
-    normals = np.tile(np.stack([np.cos(angles), np.sin(angles), np.zeros_like(angles)], axis=-1), (len(levels), 1))
-    u, v = np.tile(angles / (2 * np.pi), len(levels)), np.repeat((1 - levels) / 2, SIDES + 1)
-    repeat = (1.0, 1.0) if part.tile_m is None else (max(1.0, round(2 * np.pi * rx / part.tile_m)), 2 * half / part.tile_m)
+    wall = np.concatenate(
+        [ring, np.broadcast_to((levels * half)[:, None, None], (len(levels), sides + 1, 1))], axis=-1
+    ).reshape(-1, 3)
+    normals = np.tile(
+        np.stack([np.cos(angles), np.sin(angles), np.zeros_like(angles)], axis=-1), (len(levels), 1)
+    )
+    u, v = np.tile(angles / (2 * np.pi), len(levels)), np.repeat((1 - levels) / 2, sides + 1)
+    repeat = (
+        (1.0, 1.0)
+        if part.tile_m is None
+        else (max(1.0, round(2 * np.pi * rx / part.tile_m)), 2 * half / part.tile_m)
+    )
     uv = np.stack([u * repeat[0], v * repeat[1]], axis=-1)
-    pieces = [Mesh(wall.astype(np.float32), normals.astype(np.float32), uv.astype(np.float32), _grid(len(levels), SIDES + 1))]
+    pieces = [
+        Mesh(
+            wall.astype(np.float32),
+            normals.astype(np.float32),
+            uv.astype(np.float32),
+            _grid(len(levels), sides + 1),
+        )
+    ]
     for sign, rim in ((-1.0, ring[0]), (1.0, ring[-1])):
         points = np.concatenate([[[0.0, 0.0]], rim]).astype(np.float32)
         cap = np.concatenate([points, np.full((len(points), 1), sign * half)], axis=-1).astype(np.float32)
-        fan = np.stack([np.zeros(SIDES), np.arange(1, SIDES + 1), np.arange(2, SIDES + 2)], axis=-1).astype(np.uint32)
+        fan = np.stack([np.zeros(sides), np.arange(1, sides + 1), np.arange(2, sides + 2)], axis=-1).astype(
+            np.uint32
+        )
         size = 2 * rx if part.tile_m is None else part.tile_m
-        pieces.append(Mesh(cap, np.tile(np.array([0, 0, sign], np.float32), (len(cap), 1)), (points / size + 0.5).astype(np.float32), fan if sign > 0 else fan[:, ::-1]))
+        pieces.append(
+            Mesh(
+                cap,
+                np.tile(np.array([0, 0, sign], np.float32), (len(cap), 1)),
+                (points / size + 0.5).astype(np.float32),
+                fan if sign > 0 else fan[:, ::-1],
+            )
+        )
     return joined(pieces)
 
 
 def _ellipsoid(part: Part) -> Mesh:
-    return _superellipsoid(part, 1.0, 9, 15)
+    return _superellipsoid(part, 1.0, 8, 13)
 
 
 def _cushion(part: Part) -> Mesh:
     """Box with round edges: a superellipsoid of low exponent."""
-    return _superellipsoid(part, 0.32, 13, 25)
+    return _superellipsoid(part, 0.32, 11, 21)
 
 
 def _superellipsoid(part: Part, exponent: float, rows: int, columns: int) -> Mesh:
@@ -132,8 +193,22 @@ def _superellipsoid(part: Part, exponent: float, rows: int, columns: int) -> Mes
     def power(value: npt.NDArray[np.float64], e: float) -> npt.NDArray[np.float64]:
         return np.asarray(np.sign(value) * np.abs(value) ** e)
 
-    unit = np.stack([power(np.cos(lat), exponent) * power(np.cos(lon), exponent), power(np.cos(lat), exponent) * power(np.sin(lon), exponent), power(np.sin(lat), exponent)], -1)
-    gradient = np.stack([power(np.cos(lat), 2 - exponent) * power(np.cos(lon), 2 - exponent), power(np.cos(lat), 2 - exponent) * power(np.sin(lon), 2 - exponent), power(np.sin(lat), 2 - exponent)], -1)
+    unit = np.stack(
+        [
+            power(np.cos(lat), exponent) * power(np.cos(lon), exponent),
+            power(np.cos(lat), exponent) * power(np.sin(lon), exponent),
+            power(np.sin(lat), exponent),
+        ],
+        -1,
+    )
+    gradient = np.stack(
+        [
+            power(np.cos(lat), 2 - exponent) * power(np.cos(lon), 2 - exponent),
+            power(np.cos(lat), 2 - exponent) * power(np.sin(lon), 2 - exponent),
+            power(np.sin(lat), 2 - exponent),
+        ],
+        -1,
+    )
     points = (unit * half).reshape(-1, 3).astype(np.float32)
     normals = (gradient / half).reshape(-1, 3)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
@@ -171,7 +246,11 @@ def _leaf(part: Part) -> Mesh:
     long, wide, droop = part.size_m
     s, t = np.meshgrid(np.linspace(-1, 1, 3), np.linspace(0, 1, 6))
     half = wide / 2 * np.sin(np.pi * np.clip(t * 0.92 + 0.05, 0, 1)) ** 0.8
-    points = np.stack([(t - 0.5) * long, s * half, -droop * (t - 0.3) ** 2 + 0.12 * wide * np.abs(s)], axis=-1).reshape(-1, 3).astype(np.float32)
+    points = (
+        np.stack([(t - 0.5) * long, s * half, -droop * (t - 0.3) ** 2 + 0.12 * wide * np.abs(s)], axis=-1)
+        .reshape(-1, 3)
+        .astype(np.float32)
+    )
     uv = _stretch(part, ((s + 1) / 2).ravel().astype(np.float32), t.ravel().astype(np.float32))
     front = Mesh(points, np.tile(np.array([0, 0, 1], np.float32), (len(points), 1)), uv, _grid(6, 3))
     front = Mesh(front.vertices, front.normals, front.uvs, front.triangles[:, ::-1])

@@ -47,7 +47,12 @@ def directions(width_px: int) -> FloatArray:
     latitude = math.pi / 2 - math.pi * (np.arange(height) + 0.5) / height
     cos_lat = np.cos(latitude)[:, None]
     return np.stack(
-        [cos_lat * np.cos(longitude), cos_lat * np.sin(longitude), np.broadcast_to(np.sin(latitude)[:, None], (height, width_px))], axis=-1
+        [
+            cos_lat * np.cos(longitude),
+            cos_lat * np.sin(longitude),
+            np.broadcast_to(np.sin(latitude)[:, None], (height, width_px)),
+        ],
+        axis=-1,
     )
 
 
@@ -72,5 +77,7 @@ class CubeToEquirect:
     def __call__(self, faces: Image) -> Image:
         """Resample (6 * face_px, face_px, channels) bytes to (width / 2, width, channels)."""
         if faces.shape[:2] != (6 * self.face_px, self.face_px):
-            raise ValueError(f"faces must have shape ({6 * self.face_px}, {self.face_px}, channels), got {faces.shape}")
+            raise ValueError(
+                f"faces must have shape ({6 * self.face_px}, {self.face_px}, channels), got {faces.shape}"
+            )
         return np.asarray(cv2.remap(faces, self._map, self._weights, cv2.INTER_LINEAR), np.uint8)

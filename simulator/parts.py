@@ -108,14 +108,22 @@ def rotation_of(part: Part) -> npt.NDArray[np.float64]:
     return np.asarray(rotation_z(part.yaw_rad) @ pitch @ roll)
 
 
-def box(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], material: Material, **options: object) -> Part:
+def box(
+    x: tuple[float, float],
+    y: tuple[float, float],
+    z: tuple[float, float],
+    material: Material,
+    **options: object,
+) -> Part:
     """A box given by its extents along the axes."""
     centre = ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2, (z[0] + z[1]) / 2)
     size = (abs(x[1] - x[0]), abs(y[1] - y[0]), abs(z[1] - z[0]))
     return replace(Part("box", centre, size, material), **options)  # type: ignore[arg-type]
 
 
-def post(x: float, y: float, z: tuple[float, float], radius: float, material: Material, **options: object) -> Part:
+def post(
+    x: float, y: float, z: tuple[float, float], radius: float, material: Material, **options: object
+) -> Part:
     """An upright cylinder."""
     part = Part("cylinder", (x, y, (z[0] + z[1]) / 2), (2 * radius, 2 * radius, z[1] - z[0]), material)
     return replace(part, **options)  # type: ignore[arg-type]
@@ -123,4 +131,8 @@ def post(x: float, y: float, z: tuple[float, float], radius: float, material: Ma
 
 def solids_between(parts: Iterable[Part], low_m: float, high_m: float) -> list[Part]:
     """The solid parts that reach into a band of heights."""
-    return [p for p in parts if p.solid and p.centre_m[2] + p.size_m[2] / 2 > low_m and p.centre_m[2] - p.size_m[2] / 2 < high_m]
+    return [
+        p
+        for p in parts
+        if p.solid and p.centre_m[2] + p.size_m[2] / 2 > low_m and p.centre_m[2] - p.size_m[2] / 2 < high_m
+    ]

@@ -21,7 +21,13 @@ EPISODE_GAP_S = 0.5
 class PhysicsScene:
     """One robot among static bodies."""
 
-    def __init__(self, parts: tuple[Part, ...], settings: RobotSettings, timestep_s: float, pose: tuple[float, float, float]) -> None:
+    def __init__(
+        self,
+        parts: tuple[Part, ...],
+        settings: RobotSettings,
+        timestep_s: float,
+        pose: tuple[float, float, float],
+    ) -> None:
         """Build everything with the robot at a pose, at rest."""
         config = physx.PhysxSceneConfig()
         config.enable_enhanced_determinism = True
@@ -52,7 +58,10 @@ class PhysicsScene:
             ids = [body.entity.per_scene_id for body in contact.bodies]
             if self._floor in ids or not any(k in self._own for k in ids):
                 continue
-            if any(float(np.abs(point.impulse).sum()) > TOUCH_N_S or point.separation < 0.0 for point in contact.points):
+            if any(
+                float(np.abs(point.impulse).sum()) > TOUCH_N_S or point.separation < 0.0
+                for point in contact.points
+            ):
                 return True
         return False
 
@@ -69,7 +78,12 @@ def _add_static(scene: sapien.Scene, parts: tuple[Part, ...], height_m: float) -
         turn = sapien.Pose([x, y, z], [math.cos(part.yaw_rad / 2), 0, 0, math.sin(part.yaw_rad / 2)])
         if part.shape == "cylinder":
             radius = part.size_m[0] / 2 * max(1.0, part.taper)
-            solids.add_cylinder_collision(turn * sapien.Pose([0, 0, 0], UPRIGHT), radius=radius, half_length=part.size_m[2] / 2, material=material)
+            solids.add_cylinder_collision(
+                turn * sapien.Pose([0, 0, 0], UPRIGHT),
+                radius=radius,
+                half_length=part.size_m[2] / 2,
+                material=material,
+            )
         else:
             solids.add_box_collision(turn, half_size=[s / 2 for s in part.size_m], material=material)
     solids.build_static(name="solids")

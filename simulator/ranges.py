@@ -14,7 +14,14 @@ def sensor_angles_rad(settings: RangeSettings) -> FloatArray:
     return np.arange(settings.count) * (2.0 * np.pi / settings.count)
 
 
-def measure(x_m: float, y_m: float, yaw_rad: float, shapes: Footprints, settings: RangeSettings, rng: np.random.Generator) -> FloatArray:
+def measure(
+    x_m: float,
+    y_m: float,
+    yaw_rad: float,
+    shapes: Footprints,
+    settings: RangeSettings,
+    rng: np.random.Generator,
+) -> FloatArray:
     """Distances of all sensors at a robot pose.
 
     Each sensor reports the nearest outline inside its beam, measured horizontally from the robot's centre,

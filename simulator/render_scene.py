@@ -11,7 +11,7 @@ import sapien
 from sapien import render
 
 from simulator.lighting import bake
-from simulator.meshes import Mesh, joined, mesh_of
+from simulator.meshes import Mesh, facing_any, joined, mesh_of
 from simulator.panorama import BORDER_PX, CubeToEquirect, Image, face_fov_rad, face_rotations
 from simulator.parts import Material, Part
 from simulator.scene_parts import expand
@@ -56,7 +56,9 @@ class RenderScene:
         entity = sapien.Entity()
         body = render.RenderBodyComponent()
         for material, mesh in _by_material(parts).items():
-            shade = (0.62 + 0.3 * mesh.normals[:, 2:] + 0.08 * mesh.normals[:, :1]) * np.array([[1.0, 0.98, 0.95]])
+            shade = (0.62 + 0.3 * mesh.normals[:, 2:] + 0.08 * mesh.normals[:, :1]) * np.array(
+                [[1.0, 0.98, 0.95]]
+            )
             body.attach(self._shape(mesh, shade.astype(np.float32), material))
         entity.add_component(body)
         self._scene.add_entity(entity)
@@ -85,10 +87,20 @@ class RenderScene:
         parts, lights = expand(world)
         entity = sapien.Entity()
         body = render.RenderBodyComponent()
-        groups = _by_material(parts)
+        eyes = _eyes(world, self._settings.height_m)
+        culled = {material: facing_any(mesh, eyes) for material, mesh in _by_material(parts).items()}
+        groups = {material: mesh for material, mesh in culled.items() if len(mesh.triangles)}
         whole = joined(list(groups.values()))
         rng = np.random.default_rng(0)
-        light = bake(whole.vertices, whole.normals, parts, lights, world.lighting.ambient, world.lighting.occlusion, rng)
+        light = bake(
+            whole.vertices,
+            whole.normals,
+            parts,
+            lights,
+            world.lighting.ambient,
+            world.lighting.occlusion,
+            rng,
+        )
         start = 0
         for material, mesh in groups.items():
             shade = light[start : start + len(mesh.vertices)]
@@ -99,8 +111,12 @@ class RenderScene:
         entity.add_component(body)
         self._scene.add_entity(entity)
 
-    def _shape(self, mesh: Mesh, shade: npt.NDArray[np.float32], material: Material) -> render.RenderShapeTriangleMesh:
-        return render.RenderShapeTriangleMesh(mesh.vertices, mesh.triangles, shade, mesh.uvs, self._material(material))
+    def _shape(
+        self, mesh: Mesh, shade: npt.NDArray[np.float32], material: Material
+    ) -> render.RenderShapeTriangleMesh:
+        return render.RenderShapeTriangleMesh(
+            mesh.vertices, mesh.triangles, shade, mesh.uvs, self._material(material)
+        )
 
     def _material(self, material: Material) -> render.RenderMaterial:
         if material not in self._materials:
@@ -135,3 +151,9 @@ def _by_material(parts: tuple[Part, ...]) -> dict[Material, Mesh]:
     for part in parts:
         groups.setdefault(part.material, []).append(mesh_of(part))
     return {material: joined(meshes) for material, meshes in groups.items()}
+
+
+def _eyes(world: WorldFile, height_m: float) -> npt.NDArray[np.float32]:
+    """Corners of all rooms and openings at camera height, (k, 3): the camera is always between them."""
+    rects = [(r.x_m, r.y_m) for r in (*world.rooms, *world.openings)]
+    return np.array([(x, y, height_m) for rx, ry in rects for x in rx for y in ry], np.float32)

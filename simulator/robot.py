@@ -22,7 +22,9 @@ ROBOT_GROUP = 2
 class Robot:
     """The articulation and its low-level controller."""
 
-    def __init__(self, scene: sapien.Scene, settings: RobotSettings, x_m: float, y_m: float, yaw_rad: float) -> None:
+    def __init__(
+        self, scene: sapien.Scene, settings: RobotSettings, x_m: float, y_m: float, yaw_rad: float
+    ) -> None:
         """Put the robot on the floor at a pose, at rest, wheels straight."""
         self._settings = settings
         self._articulation = _build(scene, settings, x_m, y_m, yaw_rad)
@@ -48,7 +50,9 @@ class Robot:
         measured = self._articulation.qpos
         for k in range(4):
             steer = float(measured[self._steer_index[k]])
-            target = next_target(self._heading_rad, self._wheel_radps, steer, self._targets[k], dt_s, self._settings)
+            target = next_target(
+                self._heading_rad, self._wheel_radps, steer, self._targets[k], dt_s, self._settings
+            )
             self._targets[k] = target
             self._steer[k].set_drive_target(target.steer_rad)
             self._angles[k] = self._next_angle(k, float(measured[self._drive_index[k]]), dt_s)
@@ -76,7 +80,9 @@ class Robot:
         return float(np.hypot(*self._articulation.root_linear_velocity[:2]))
 
 
-def _build(scene: sapien.Scene, settings: RobotSettings, x_m: float, y_m: float, yaw_rad: float) -> physx.PhysxArticulation:
+def _build(
+    scene: sapien.Scene, settings: RobotSettings, x_m: float, y_m: float, yaw_rad: float
+) -> physx.PhysxArticulation:
     slick = physx.PhysxMaterial(0.2, 0.2, 0.0)
     rubber = physx.PhysxMaterial(1.0, 1.0, 0.0)
     radius = settings.wheel_radius_m
@@ -87,25 +93,41 @@ def _build(scene: sapien.Scene, settings: RobotSettings, x_m: float, y_m: float,
     lie = sapien.Pose([0, 0, settings.body_low_m + half], UPRIGHT)
     chassis.add_cylinder_collision(lie, radius=settings.body_radius_m, half_length=half, material=slick)
     mast = (settings.mast_top_m - settings.body_top_m) / 2
-    chassis.add_cylinder_collision(sapien.Pose([0, 0, settings.body_top_m + mast], UPRIGHT), radius=settings.mast_radius_m, half_length=mast, material=slick)
+    chassis.add_cylinder_collision(
+        sapien.Pose([0, 0, settings.body_top_m + mast], UPRIGHT),
+        radius=settings.mast_radius_m,
+        half_length=mast,
+        material=slick,
+    )
     inertia = CHASSIS_KG * settings.body_radius_m**2
-    chassis.set_mass_and_inertia(CHASSIS_KG, sapien.Pose([0, 0, 0.1]), [inertia / 3, inertia / 3, inertia / 2])
+    chassis.set_mass_and_inertia(
+        CHASSIS_KG, sapien.Pose([0, 0, 0.1]), [inertia / 3, inertia / 3, inertia / 2]
+    )
     for k, (x, y) in enumerate(wheel_mounts(settings)):
         leg = builder.create_link_builder(chassis)
         leg.set_name(f"leg{k}")
         leg.set_joint_name(f"steer{k}")
-        leg.set_joint_properties("revolute", [[-2.2, 2.2]], sapien.Pose([x, y, radius], UPRIGHT), sapien.Pose([0, 0, 0], UPRIGHT))
+        leg.set_joint_properties(
+            "revolute", [[-2.2, 2.2]], sapien.Pose([x, y, radius], UPRIGHT), sapien.Pose([0, 0, 0], UPRIGHT)
+        )
         leg.set_mass_and_inertia(LEG_KG, sapien.Pose(), [0.002, 0.002, 0.002])
         wheel = builder.create_link_builder(leg)
         wheel.set_name(f"wheel{k}")
         wheel.set_joint_name(f"drive{k}")
-        wheel.set_joint_properties("revolute_unwrapped", [[-np.inf, np.inf]], sapien.Pose([0, 0, 0], ACROSS), sapien.Pose([0, 0, 0], ACROSS))
+        wheel.set_joint_properties(
+            "revolute_unwrapped",
+            [[-np.inf, np.inf]],
+            sapien.Pose([0, 0, 0], ACROSS),
+            sapien.Pose([0, 0, 0], ACROSS),
+        )
         wheel.add_sphere_collision(radius=radius, material=rubber)
         wheel.set_mass_and_inertia(WHEEL_KG, sapien.Pose(), [0.0016, 0.0016, 0.0016])
     # The body must not touch its own wheels: group 3 holds an id, group 2 says whom that id ignores.
     for link in builder.link_builders:
         link.collision_groups = [1, 1, ROBOT_GROUP, 7]
-    builder.set_initial_pose(sapien.Pose([x_m, y_m, 0.0], [math.cos(yaw_rad / 2), 0, 0, math.sin(yaw_rad / 2)]))
+    builder.set_initial_pose(
+        sapien.Pose([x_m, y_m, 0.0], [math.cos(yaw_rad / 2), 0, 0, math.sin(yaw_rad / 2)])
+    )
     articulation = builder.build(fix_root_link=False)
     for joint in articulation.active_joints:
         joint.set_friction(0.0)

@@ -24,9 +24,13 @@ def chassis_parts(robot: RobotSettings, colour: Rgb) -> tuple[Part, ...]:
         box((0.08, 0.2), (-0.03, 0.03), (top, top + 0.006), accent),  # marks the front
         box((-0.17, -0.09), (-0.05, 0.05), (top, top + 0.02), steel),
         post(0.0, 0.0, (top, robot.mast_top_m - 0.06), robot.mast_radius_m, steel),
-        post(0.0, 0.0, (robot.mast_top_m - 0.06, robot.mast_top_m), robot.mast_radius_m * 1.1, dark, taper=0.8),
+        post(
+            0.0, 0.0, (robot.mast_top_m - 0.06, robot.mast_top_m), robot.mast_radius_m * 1.1, dark, taper=0.8
+        ),
     ]
-    parts.extend(post(0.16 * sx, 0.13 * sy, (top, top + 0.012), 0.022, dark) for sx in (-1, 1) for sy in (-1, 1))
+    parts.extend(
+        post(0.16 * sx, 0.13 * sy, (top, top + 0.012), 0.022, dark) for sx in (-1, 1) for sy in (-1, 1)
+    )
     return tuple(parts)
 
 

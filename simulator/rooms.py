@@ -18,7 +18,17 @@ def room_parts(world: WorldFile) -> list[Part]:
     for room in world.rooms:
         height = room.height_m or world.wall_height_m
         parts.append(_floor((room.x_m, room.y_m), room.floor))
-        parts.append(box(room.x_m, room.y_m, (height, height + 0.1), _material(room.ceiling), solid=False, tile_m=room.ceiling.tile_m, casts_shadow=False))
+        parts.append(
+            box(
+                room.x_m,
+                room.y_m,
+                (height, height + 0.1),
+                _material(room.ceiling),
+                solid=False,
+                tile_m=room.ceiling.tile_m,
+                casts_shadow=False,
+            )
+        )
         for side in range(4):
             parts.extend(_side(world, room, side, height))
     for opening in world.openings:
@@ -31,7 +41,14 @@ def _material(surface: Surface) -> Material:
 
 
 def _floor(rect: Rect, surface: Surface) -> Part:
-    return box(*rect, (-FLOOR_DEPTH_M, 0.0), _material(surface), solid=False, tile_m=surface.tile_m, casts_shadow=False)
+    return box(
+        *rect,
+        (-FLOOR_DEPTH_M, 0.0),
+        _material(surface),
+        solid=False,
+        tile_m=surface.tile_m,
+        casts_shadow=False,
+    )
 
 
 def _side(world: WorldFile, room: Room, side: int, height: float) -> list[Part]:
@@ -44,22 +61,37 @@ def _side(world: WorldFile, room: Room, side: int, height: float) -> list[Part]:
     cuts: list[tuple[Span, float]] = []
     for other in (*world.openings, *(r for r in world.rooms if r is not room)):
         rect: Rect = (other.x_m, other.y_m)
-        if min(abs(edge - line) for edge in rect[normal_axis]) < CONTACT_M and _overlap(rect[1 - normal_axis], along):
-            cuts.append((rect[1 - normal_axis], other.height_m if isinstance(other, Opening) and other.height_m else height))
+        if min(abs(edge - line) for edge in rect[normal_axis]) < CONTACT_M and _overlap(
+            rect[1 - normal_axis], along
+        ):
+            cuts.append(
+                (
+                    rect[1 - normal_axis],
+                    other.height_m if isinstance(other, Opening) and other.height_m else height,
+                )
+            )
     parts: list[Part] = []
-    for span in _remaining(along, [c for c, _ in cuts], _reach(world, normal_axis, (line + outer) / 2, along)):
+    for span in _remaining(
+        along, [c for c, _ in cuts], _reach(world, normal_axis, (line + outer) / 2, along)
+    ):
         parts.append(_slab(normal_axis, (line, outer), span, (0.0, height), material, tile))
         inner = line - outward * SKIRTING_DEPTH_M
         clipped = (max(span[0], along[0]), min(span[1], along[1]))
         if clipped[0] < clipped[1]:
-            parts.append(_slab(normal_axis, (line, inner), clipped, (0.0, SKIRTING_HEIGHT_M), SKIRTING, 0.8, solid=False))
+            parts.append(
+                _slab(
+                    normal_axis, (line, inner), clipped, (0.0, SKIRTING_HEIGHT_M), SKIRTING, 0.8, solid=False
+                )
+            )
     for span, top in cuts:
         if top < height:
             parts.append(_slab(normal_axis, (line, outer), span, (top, height), material, tile))
     return parts
 
 
-def _slab(axis: int, across: Span, along: Span, z: Span, material: Material, tile: float, solid: bool = True) -> Part:
+def _slab(
+    axis: int, across: Span, along: Span, z: Span, material: Material, tile: float, solid: bool = True
+) -> Part:
     across = (min(across), max(across))
     x, y = (across, along) if axis == 0 else (along, across)
     return box(x, y, z, material, tile_m=tile, solid=solid)
@@ -78,7 +110,9 @@ def _reach(world: WorldFile, axis: int, across: float, along: Span) -> Span:
         rects = [(r.x_m, r.y_m) for r in (*world.rooms, *world.openings)]
         return not any(rx[0] < x < rx[1] and ry[0] < y < ry[1] for rx, ry in rects)
 
-    return along[0] - (t if free(along[0] - t / 2) else 0.0), along[1] + (t if free(along[1] + t / 2) else 0.0)
+    return along[0] - (t if free(along[0] - t / 2) else 0.0), along[1] + (
+        t if free(along[1] + t / 2) else 0.0
+    )
 
 
 def _remaining(along: Span, cuts: list[Span], reach: Span) -> list[Span]:

@@ -2,7 +2,15 @@
 
 from typing import Self
 
-from pydantic import BaseModel, ConfigDict, Field, NonNegativeFloat, PositiveFloat, PositiveInt, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    NonNegativeFloat,
+    PositiveFloat,
+    PositiveInt,
+    model_validator,
+)
 
 
 class _Frozen(BaseModel):
@@ -16,7 +24,12 @@ class CameraSettings(_Frozen):
     height_m: PositiveFloat = 0.8
     near_m: PositiveFloat = 0.015
     far_m: PositiveFloat = 60.0
-    face_scale: float = Field(default=0.32, ge=0.2, le=1.0, description="side of a cube face over picture width; 1 / pi keeps the resolution at face centres")
+    face_scale: float = Field(
+        default=0.32,
+        ge=0.2,
+        le=1.0,
+        description="side of a cube face over picture width; 1 / pi keeps the resolution at face centres",
+    )
 
     @model_validator(mode="after")
     def _even(self) -> Self:

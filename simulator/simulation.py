@@ -27,6 +27,7 @@ class Truth:
     yaw_rad: float
     hider: Pose2 | None
     time_s: float
+    speed_mps: float
     collisions: int
 
 
@@ -65,7 +66,9 @@ class Simulation:
     def command(self, steer_rad: float, wheel_speed_radps: float, ttl_s: float = math.inf) -> None:
         """Roll towards a heading (robot frame) at a wheel speed, until `ttl_s` of simulated time has passed."""
         if not (math.isfinite(steer_rad) and math.isfinite(wheel_speed_radps)) or ttl_s < 0:
-            raise ValueError(f"command must be finite with ttl_s >= 0, got {steer_rad}, {wheel_speed_radps}, {ttl_s}")
+            raise ValueError(
+                f"command must be finite with ttl_s >= 0, got {steer_rad}, {wheel_speed_radps}, {ttl_s}"
+            )
         self._physics.robot.command(steer_rad, wheel_speed_radps)
         self._expires_s = self._physics.time_s + ttl_s
 
@@ -82,14 +85,15 @@ class Simulation:
 
     def panorama(self) -> Image:
         """What the robot's camera sees, (height, width, 3) BGR."""
-        return self._picture(self._physics.robot.pose(), True)
+        return self.panorama_at(*self._physics.robot.pose())
 
     def panorama_at(self, x_m: float, y_m: float, yaw_rad: float) -> Image:
-        """What a camera sees at any pose, with the body of a robot of the hider's kind under it; BGR.
-
-        The hider is moved there for the picture, so this is the picture the hider would take.
-        """
-        return self._picture((x_m, y_m, yaw_rad), False)
+        """What a camera at any pose sees, with both robots where they are; (height, width, 3) BGR."""
+        if self._view is None:
+            raise RuntimeError(
+                "this simulation was made with render=False; set SimulationSettings.render to take pictures"
+            )
+        return self._view.picture((x_m, y_m, yaw_rad), self._physics, self._hider)
 
     def ranges(self) -> npt.NDArray[np.float64]:
         """Distances of the twelve sensors, metres; every call is a new reading with its own noise."""
@@ -103,17 +107,15 @@ class Simulation:
 
     def truth(self) -> Truth:
         """True state, for evaluation only."""
-        return Truth(*self._physics.robot.pose(), self._hider, self._physics.time_s, self._physics.collisions)
+        physics = self._physics
+        return Truth(
+            *physics.robot.pose(), self._hider, physics.time_s, physics.robot.speed_mps(), physics.collisions
+        )
 
     def _build(self, pose: Pose2, time_s: float, collisions: int) -> None:
         self._physics = PhysicsScene(self._parts, self.settings.robot, self.settings.timestep_s, pose)
         self._physics.time_s, self._physics.collisions = time_s, collisions
         self._expires_s = math.inf
-
-    def _picture(self, pose: Pose2, own: bool) -> Image:
-        if self._view is None:
-            raise RuntimeError("this simulation was made with render=False; set SimulationSettings.render to take pictures")
-        return self._view.picture(pose, self._physics if own else None, self._hider if own else pose)
 
 
 class _View:
@@ -132,9 +134,9 @@ class _View:
             self._links[f"wheel{k}"] = self._scene.add_body(wheel_parts(robot))
         self._hider = self._scene.add_body(whole_robot(robot, HIDER))
 
-    def picture(self, camera: Pose2, physics: PhysicsScene | None, hider: Pose2 | None) -> Image:
-        """Move the bodies to where they are and take the picture; without `physics` the robot is out of sight."""
+    def picture(self, camera: Pose2, physics: PhysicsScene, hider: Pose2 | None) -> Image:
+        """Move the bodies to where they are and take the picture."""
         for name, entity in self._links.items():
-            self._scene.move(entity, physics.robot.links[name].entity.pose if physics else None)
+            self._scene.move(entity, physics.robot.links[name].entity.pose)
         self._scene.move_flat(self._hider, hider)
         return self._scene.panorama(camera)

@@ -28,13 +28,26 @@ def choose_angle(heading_rad: float, steer_rad: float, limit_rad: float) -> tupl
     """Servo angle for a heading, and the wheel's direction (+1 or -1): the reachable one nearest to where the servo is."""
     options = [
         (wrap_rad(heading_rad) + turn, sign)
-        for turn, sign in ((0.0, 1.0), (math.pi, -1.0), (-math.pi, -1.0), (2 * math.pi, 1.0), (-2 * math.pi, 1.0))
+        for turn, sign in (
+            (0.0, 1.0),
+            (math.pi, -1.0),
+            (-math.pi, -1.0),
+            (2 * math.pi, 1.0),
+            (-2 * math.pi, 1.0),
+        )
         if abs(wrap_rad(heading_rad) + turn) <= limit_rad
     ]
     return min(options, key=lambda option: (abs(option[0] - steer_rad), -option[1]))
 
 
-def next_target(heading_rad: float, wheel_radps: float, steer_rad: float, last: LegTarget, dt_s: float, robot: RobotSettings) -> LegTarget:
+def next_target(
+    heading_rad: float,
+    wheel_radps: float,
+    steer_rad: float,
+    last: LegTarget,
+    dt_s: float,
+    robot: RobotSettings,
+) -> LegTarget:
     """Targets for the next physics step.
 
     Args:

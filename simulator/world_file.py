@@ -4,7 +4,15 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 import yaml
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PositiveFloat, ValidationError, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    PositiveFloat,
+    ValidationError,
+    model_validator,
+)
 
 from simulator.furniture.catalogue import FURNITURE
 from simulator.textures.catalogue import KINDS
@@ -79,7 +87,9 @@ class Item(_Model):
     @model_validator(mode="after")
     def _known(self) -> Self:
         if self.kind not in FURNITURE:
-            raise ValueError(f"unknown furniture kind {self.kind!r}; choose from {', '.join(sorted(FURNITURE))}")
+            raise ValueError(
+                f"unknown furniture kind {self.kind!r}; choose from {', '.join(sorted(FURNITURE))}"
+            )
         FURNITURE[self.kind].check(self.options)
         return self
 
@@ -116,7 +126,9 @@ class WorldFile(_Model):
     def _start_inside(self) -> Self:
         s = self.start
         if not any(r.x_m[0] < s.x_m < r.x_m[1] and r.y_m[0] < s.y_m < r.y_m[1] for r in self.rooms):
-            raise ValueError(f"start ({s.x_m}, {s.y_m}) must lie inside one of the rooms {[r.name for r in self.rooms]}")
+            raise ValueError(
+                f"start ({s.x_m}, {s.y_m}) must lie inside one of the rooms {[r.name for r in self.rooms]}"
+            )
         return self
 
 
@@ -135,15 +147,21 @@ def load_world(name_or_path: str) -> WorldFile:
     if path.suffix not in {".yaml", ".yml"}:
         path = WORLDS / f"{name_or_path}.yaml"
     if not path.is_file():
-        raise WorldFileError(f"world must be one of {', '.join(world_names())} or a .yaml file; got {name_or_path!r}")
+        raise WorldFileError(
+            f"world must be one of {', '.join(world_names())} or a .yaml file; got {name_or_path!r}"
+        )
     try:
         data = yaml.safe_load(path.read_text(encoding="utf-8"))
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise WorldFileError(f"{path}: not valid YAML: {error}") from error
     if not isinstance(data, dict):
-        raise WorldFileError(f"{path}: must be a mapping with format, name, rooms, start; got {type(data).__name__}")
+        raise WorldFileError(
+            f"{path}: must be a mapping with format, name, rooms, start; got {type(data).__name__}"
+        )
     try:
         return WorldFile.model_validate(data)
     except ValidationError as error:
-        faults = "; ".join(f"{'.'.join(str(part) for part in e['loc']) or 'world'}: {e['msg']}" for e in error.errors())
+        faults = "; ".join(
+            f"{'.'.join(str(part) for part in e['loc']) or 'world'}: {e['msg']}" for e in error.errors()
+        )
         raise WorldFileError(f"{path}: {faults}") from error

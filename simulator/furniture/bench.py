@@ -6,7 +6,13 @@ from simulator.furniture.stacks import book_pile, book_row, ornament
 from simulator.parts import Material, Piece, Rgb, box, post
 
 
-def tv_bench(rng: np.random.Generator, width_m: float = 1.8, depth_m: float = 0.42, height_m: float = 0.5, colour: Rgb = (206, 178, 138)) -> Piece:
+def tv_bench(
+    rng: np.random.Generator,
+    width_m: float = 1.8,
+    depth_m: float = 0.42,
+    height_m: float = 0.5,
+    colour: Rgb = (206, 178, 138),
+) -> Piece:
     """Low board, back at x = 0: drawers on both sides, an open middle with players and books."""
     wood = Material("wood", colour, int(rng.integers(1000)))
     dark = Material("lacquer", (44, 44, 48), 7)
@@ -22,10 +28,20 @@ def tv_bench(rng: np.random.Generator, width_m: float = 1.8, depth_m: float = 0.
         for z in ((0.14, 0.29), (0.3, 0.46)):
             parts.append(box((depth_m - 0.02, depth_m), (y[0] + 0.008, y[1] - 0.008), z, wood, tile_m=0.5))
             middle = (y[0] + y[1]) / 2
-            parts.append(box((depth_m, depth_m + 0.012), (middle - 0.06, middle + 0.06), (z[1] - 0.05, z[1] - 0.035), dark, solid=False))
+            parts.append(
+                box(
+                    (depth_m, depth_m + 0.012),
+                    (middle - 0.06, middle + 0.06),
+                    (z[1] - 0.05, z[1] - 0.035),
+                    dark,
+                    solid=False,
+                )
+            )
         parts.extend(post(x, side * (half - 0.08), (0.0, 0.1), 0.02, dark) for x in (0.08, depth_m - 0.08))
     parts.append(box((0.05, 0.36), (-0.2, 0.2), (0.13, 0.2), dark, solid=False))
     parts.extend(book_row(rng, depth_m - 0.06, (-0.28, 0.28), (0.23, 0.46)))
     parts.append(box((0.02, depth_m - 0.02), (-third, third), (0.21, 0.23), wood))
-    parts.extend(ornament(rng, (0.2, half - 0.12, height_m)) + book_pile(rng, (0.2, -half + 0.18, height_m), 3))
+    parts.extend(
+        ornament(rng, (0.2, half - 0.12, height_m)) + book_pile(rng, (0.2, -half + 0.18, height_m), 3)
+    )
     return Piece(tuple(parts))

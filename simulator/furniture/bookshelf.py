@@ -6,13 +6,24 @@ from simulator.furniture.stacks import book_row, ornament
 from simulator.parts import Material, Part, Piece, Rgb, box
 
 
-def bookshelf(rng: np.random.Generator, width_m: float = 1.8, height_m: float = 2.0, depth_m: float = 0.3, shelves: int = 6, bays: int = 2, colour: Rgb = (140, 98, 62)) -> Piece:
+def bookshelf(
+    rng: np.random.Generator,
+    width_m: float = 1.8,
+    height_m: float = 2.0,
+    depth_m: float = 0.3,
+    shelves: int = 6,
+    bays: int = 2,
+    colour: Rgb = (140, 98, 62),
+) -> Piece:
     """Open shelves with the back at x = 0 (against a wall), front along +x."""
     wood = Material("wood", colour, int(rng.integers(1000)))
     half, t = width_m / 2, 0.025
     parts: list[Part] = [box((0.0, 0.012), (-half, half), (0.0, height_m), wood)]
     bay = (width_m - t) / bays
-    parts.extend(box((0.0, depth_m), (-half + k * bay, -half + k * bay + t), (0.0, height_m), wood) for k in range(bays + 1))
+    parts.extend(
+        box((0.0, depth_m), (-half + k * bay, -half + k * bay + t), (0.0, height_m), wood)
+        for k in range(bays + 1)
+    )
     step = (height_m - 0.06 - t) / shelves
     for row in range(shelves + 1):
         z = 0.06 + row * step

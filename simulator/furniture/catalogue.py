@@ -27,7 +27,9 @@ class Kind:
         known = [name for name in inspect.signature(self.function).parameters if name != "rng"]
         unknown = sorted(set(options) - set(known))
         if unknown:
-            raise ValueError(f"{self.name} has no option {', '.join(unknown)}; it has {', '.join(known) or 'none'}")
+            raise ValueError(
+                f"{self.name} has no option {', '.join(unknown)}; it has {', '.join(known) or 'none'}"
+            )
         try:
             self.build(options, 0)
         except ValidationError as error:

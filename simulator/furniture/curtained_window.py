@@ -5,12 +5,30 @@ import numpy as np
 from simulator.parts import Light, Material, Part, Piece, Rgb, box
 
 
-def window(rng: np.random.Generator, width_m: float = 1.6, height_m: float = 1.35, panes: int = 2, daylight: float = 3.2, curtain: Rgb = (196, 178, 150), patterned: bool = False) -> Piece:
+def window(
+    rng: np.random.Generator,
+    width_m: float = 1.6,
+    height_m: float = 1.35,
+    panes: int = 2,
+    daylight: float = 3.2,
+    curtain: Rgb = (196, 178, 150),
+    patterned: bool = False,
+) -> Piece:
     """Window on a wall at x = 0 facing +x; the item's height is that of the sill."""
     white = Material("lacquer", (242, 242, 238), 3)
     outlook = Material("view", (150, 190, 232), int(rng.integers(1000)), glow=1.0)
     half = width_m / 2
-    parts = [box((0.0, 0.006), (-half, half), (0.0, height_m), outlook, solid=False, tile_m=None, casts_shadow=False)]
+    parts = [
+        box(
+            (0.0, 0.006),
+            (-half, half),
+            (0.0, height_m),
+            outlook,
+            solid=False,
+            tile_m=None,
+            casts_shadow=False,
+        )
+    ]
     for k in range(panes + 1):
         y = -half + k * width_m / panes
         parts.append(box((0.0, 0.045), (y - 0.03, y + 0.03), (0.0, height_m), white, solid=False))
@@ -20,8 +38,22 @@ def window(rng: np.random.Generator, width_m: float = 1.6, height_m: float = 1.3
     cloth = Material("pattern_cloth" if patterned else "fabric", curtain, int(rng.integers(1000)))
     low, high = -0.75, height_m + 0.18
     for side in (-1, 1):
-        parts.append(Part("drape", (0.1, side * (half + 0.1), (low + high) / 2), (0.07, 0.46, high - low), cloth, solid=False, tile_m=0.6))
+        parts.append(
+            Part(
+                "drape",
+                (0.1, side * (half + 0.1), (low + high) / 2),
+                (0.07, 0.46, high - low),
+                cloth,
+                solid=False,
+                tile_m=0.6,
+            )
+        )
     rod = Material("metal", (120, 104, 84), 1)
     parts.append(box((0.09, 0.11), (-half - 0.42, half + 0.42), (high, high + 0.02), rod, solid=False))
-    light = Light((0.05, 0.0, height_m / 2), (0.0, width_m, height_m), (0.95 * daylight, daylight, 1.08 * daylight), (1.0, 0.0, 0.0))
+    light = Light(
+        (0.05, 0.0, height_m / 2),
+        (0.0, width_m, height_m),
+        (0.95 * daylight, daylight, 1.08 * daylight),
+        (1.0, 0.0, 0.0),
+    )
     return Piece(tuple(parts), (light,))

@@ -24,5 +24,14 @@ def picture(
         parts.append(box((0.0, 0.03), (y[0], y[1]), (-tall, tall), wood, solid=False))
         parts.append(box((0.0, 0.03), (-half, half), (z[0], z[1]), wood, solid=False))
     inset = edge + mount_m
-    parts.append(box((0.012, 0.015), (-half + inset, half - inset), (-tall + inset, tall - inset), canvas, solid=False, tile_m=None))
+    parts.append(
+        box(
+            (0.012, 0.015),
+            (-half + inset, half - inset),
+            (-tall + inset, tall - inset),
+            canvas,
+            solid=False,
+            tile_m=None,
+        )
+    )
     return Piece(tuple(parts))

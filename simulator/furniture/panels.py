@@ -8,7 +8,18 @@ from simulator.parts import Material, Piece, Rgb, box
 def thermostat(rng: np.random.Generator, size_m: float = 0.14) -> Piece:
     """Wall device with a display; the item's height is its centre."""
     half = size_m / 2
-    return Piece((box((0.0, 0.025), (-half, half), (-half, half), Material("panel", (226, 226, 222), int(rng.integers(100))), solid=False, tile_m=None),))
+    return Piece(
+        (
+            box(
+                (0.0, 0.025),
+                (-half, half),
+                (-half, half),
+                Material("panel", (226, 226, 222), int(rng.integers(100))),
+                solid=False,
+                tile_m=None,
+            ),
+        )
+    )
 
 
 def switch(rng: np.random.Generator) -> Piece:
@@ -32,7 +43,9 @@ def fuse_box(rng: np.random.Generator, width_m: float = 0.36, height_m: float = 
     ))  # fmt: skip
 
 
-def mirror(rng: np.random.Generator, width_m: float = 0.5, height_m: float = 1.1, frame: Rgb = (176, 142, 84)) -> Piece:
+def mirror(
+    rng: np.random.Generator, width_m: float = 0.5, height_m: float = 1.1, frame: Rgb = (176, 142, 84)
+) -> Piece:
     """Mirror seen as a dim, cloudy pane: reflections are not rendered."""
     pane, edge = Material("screen", (176, 186, 190), int(rng.integers(100))), Material("metal", frame, 5)
     half, tall = width_m / 2, height_m / 2

@@ -5,7 +5,14 @@ import numpy as np
 from simulator.parts import Material, Part, Piece, Rgb, post
 
 
-def plant(rng: np.random.Generator, height_m: float = 1.2, pot_radius_m: float = 0.17, pot: Rgb = (176, 104, 74), leaf: Rgb = (62, 104, 50), leaves: int = 34) -> Piece:
+def plant(
+    rng: np.random.Generator,
+    height_m: float = 1.2,
+    pot_radius_m: float = 0.17,
+    pot: Rgb = (176, 104, 74),
+    leaf: Rgb = (62, 104, 50),
+    leaves: int = 34,
+) -> Piece:
     """Plant in a pot; leaves spread wider than the pot only above the robot."""
     clay = Material("ceramic", pot, int(rng.integers(1000)))
     stem = Material("wood", (96, 78, 52), 2)
@@ -19,6 +26,21 @@ def plant(rng: np.random.Generator, height_m: float = 1.2, pot_radius_m: float =
         yaw, lift = float(rng.uniform(0, 2 * np.pi)), float(rng.uniform(-0.9, 0.1))
         tone: Rgb = tuple(int(c * rng.uniform(0.85, 1.15)) for c in leaf)  # type: ignore[assignment]
         green = Material("leaf", tuple(c // 16 * 16 for c in tone), 0)  # type: ignore[arg-type]
-        centre = (reach / 2 * np.cos(yaw) * np.cos(lift), reach / 2 * np.sin(yaw) * np.cos(lift), z - reach / 2 * np.sin(lift))
-        parts.append(Part("leaf", centre, (reach, reach * 0.36, reach * 0.2), green, yaw_rad=yaw, pitch_rad=lift, solid=False, tile_m=None))
+        centre = (
+            reach / 2 * np.cos(yaw) * np.cos(lift),
+            reach / 2 * np.sin(yaw) * np.cos(lift),
+            z - reach / 2 * np.sin(lift),
+        )
+        parts.append(
+            Part(
+                "leaf",
+                centre,
+                (reach, reach * 0.36, reach * 0.2),
+                green,
+                yaw_rad=yaw,
+                pitch_rad=lift,
+                solid=False,
+                tile_m=None,
+            )
+        )
     return Piece(tuple(parts))

@@ -7,14 +7,36 @@ import numpy as np
 from simulator.parts import Material, Piece, Rgb, box
 
 
-def rug(rng: np.random.Generator, length_m: float = 2.4, width_m: float = 1.7, style: Literal["persian", "kilim", "modern"] = "persian", colour: Rgb = (150, 46, 44)) -> Piece:
+def rug(
+    rng: np.random.Generator,
+    length_m: float = 2.4,
+    width_m: float = 1.7,
+    style: Literal["persian", "kilim", "modern"] = "persian",
+    colour: Rgb = (150, 46, 44),
+) -> Piece:
     """Rug with its long side along y."""
     del rng
     cloth = Material(style, colour, int(1000 * length_m))
-    body = box((-width_m / 2, width_m / 2), (-length_m / 2, length_m / 2), (0.0, 0.008), cloth, solid=False, tile_m=None, casts_shadow=False)
+    body = box(
+        (-width_m / 2, width_m / 2),
+        (-length_m / 2, length_m / 2),
+        (0.0, 0.008),
+        cloth,
+        solid=False,
+        tile_m=None,
+        casts_shadow=False,
+    )
     fringe = Material("fabric", (222, 210, 184), 2)
     ends = tuple(
-        box((-width_m / 2, width_m / 2), tuple(sorted((s * length_m / 2, s * (length_m / 2 + 0.05)))), (0.0, 0.005), fringe, solid=False, tile_m=0.2, casts_shadow=False)  # type: ignore[arg-type]
+        box(
+            (-width_m / 2, width_m / 2),
+            tuple(sorted((s * length_m / 2, s * (length_m / 2 + 0.05)))),
+            (0.0, 0.005),
+            fringe,
+            solid=False,
+            tile_m=0.2,
+            casts_shadow=False,
+        )  # type: ignore[arg-type]
         for s in (-1, 1)
     )
     return Piece((body, *ends))

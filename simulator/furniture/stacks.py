@@ -7,7 +7,14 @@ import numpy as np
 from simulator.parts import Material, Part, Rgb, Vec3, box, post
 from simulator.textures.objects import SPINES
 
-COVERS: tuple[Rgb, ...] = ((120, 40, 40), (40, 66, 104), (62, 96, 70), (206, 180, 126), (228, 222, 206), (188, 100, 52))
+COVERS: tuple[Rgb, ...] = (
+    (120, 40, 40),
+    (40, 66, 104),
+    (62, 96, 70),
+    (206, 180, 126),
+    (228, 222, 206),
+    (188, 100, 52),
+)
 
 
 def book_pile(rng: np.random.Generator, at: Vec3, count: int) -> list[Part]:
@@ -15,14 +22,22 @@ def book_pile(rng: np.random.Generator, at: Vec3, count: int) -> list[Part]:
     parts, z = [], at[2]
     for _ in range(count):
         depth, width, thick = rng.uniform(0.15, 0.21), rng.uniform(0.21, 0.28), rng.uniform(0.015, 0.04)
-        cover = Material("poster" if rng.random() < 0.5 else "fabric", COVERS[int(rng.integers(len(COVERS)))], int(rng.integers(4)))
-        book = box((-depth / 2, depth / 2), (-width / 2, width / 2), (0.0, thick), cover, solid=False, tile_m=None)
+        cover = Material(
+            "poster" if rng.random() < 0.5 else "fabric",
+            COVERS[int(rng.integers(len(COVERS)))],
+            int(rng.integers(4)),
+        )
+        book = box(
+            (-depth / 2, depth / 2), (-width / 2, width / 2), (0.0, thick), cover, solid=False, tile_m=None
+        )
         parts.append(_at(book, (at[0], at[1], z), float(rng.normal(0, 0.2))))
         z += thick
     return parts
 
 
-def book_row(rng: np.random.Generator, front_x: float, y: tuple[float, float], z: tuple[float, float]) -> list[Part]:
+def book_row(
+    rng: np.random.Generator, front_x: float, y: tuple[float, float], z: tuple[float, float]
+) -> list[Part]:
     """Books standing side by side between two y, spines towards +x at about `front_x`, no higher than z[1]."""
     spines = Material("books", (0, 0, 0), int(rng.integers(6)))
     parts, at = [], y[0]
@@ -35,7 +50,17 @@ def book_row(rng: np.random.Generator, front_x: float, y: tuple[float, float], z
             continue
         depth, inset, k = 0.17, float(rng.uniform(0.0, 0.025)), int(rng.integers(SPINES))
         uv = (k / SPINES, 0.0, (k + 1) / SPINES, 1.0)
-        parts.append(box((front_x - inset - depth, front_x - inset), (at, at + thick), (z[0], z[0] + tall), spines, solid=False, tile_m=None, uv=uv))
+        parts.append(
+            box(
+                (front_x - inset - depth, front_x - inset),
+                (at, at + thick),
+                (z[0], z[0] + tall),
+                spines,
+                solid=False,
+                tile_m=None,
+                uv=uv,
+            )
+        )
         at += thick + 0.001
     return parts
 
@@ -47,11 +72,40 @@ def ornament(rng: np.random.Generator, at: Vec3) -> list[Part]:
     kind = int(rng.integers(4))
     x, y, z = at
     if kind == 0:
-        return [post(x, y, (z, z + float(rng.uniform(0.14, 0.3))), 0.055, Material("ceramic", colour, seed), solid=False, taper=0.6, tile_m=0.3)]
+        return [
+            post(
+                x,
+                y,
+                (z, z + float(rng.uniform(0.14, 0.3))),
+                0.055,
+                Material("ceramic", colour, seed),
+                solid=False,
+                taper=0.6,
+                tile_m=0.3,
+            )
+        ]
     if kind == 1:
-        return [box((x - 0.08, x + 0.08), (y - 0.11, y + 0.11), (z, z + 0.14), Material("wicker", (176, 142, 96), seed), solid=False, tile_m=0.25)]
+        return [
+            box(
+                (x - 0.08, x + 0.08),
+                (y - 0.11, y + 0.11),
+                (z, z + 0.14),
+                Material("wicker", (176, 142, 96), seed),
+                solid=False,
+                tile_m=0.25,
+            )
+        ]
     if kind == 2:
-        return [Part("ellipsoid", (x, y, z + 0.08), (0.17, 0.17, 0.16), Material("ceramic", colour, seed), solid=False, tile_m=0.3)]
+        return [
+            Part(
+                "ellipsoid",
+                (x, y, z + 0.08),
+                (0.17, 0.17, 0.16),
+                Material("ceramic", colour, seed),
+                solid=False,
+                tile_m=0.3,
+            )
+        ]
     return framed(rng, at)
 
 
@@ -59,10 +113,19 @@ def framed(rng: np.random.Generator, at: Vec3) -> list[Part]:
     """A framed photograph that stands on its edge, facing +x."""
     x, y, z = at
     frame = Material("wood", (70, 52, 40), 6)
-    photo = Material(("street", "landscape", "still_life")[int(rng.integers(3))], (0, 0, 0), int(rng.integers(6)))
+    photo = Material(
+        ("street", "landscape", "still_life")[int(rng.integers(3))], (0, 0, 0), int(rng.integers(6))
+    )
     return [
         box((x - 0.01, x + 0.01), (y - 0.1, y + 0.1), (z, z + 0.17), frame, solid=False),
-        box((x + 0.01, x + 0.013), (y - 0.085, y + 0.085), (z + 0.015, z + 0.155), photo, solid=False, tile_m=None),
+        box(
+            (x + 0.01, x + 0.013),
+            (y - 0.085, y + 0.085),
+            (z + 0.015, z + 0.155),
+            photo,
+            solid=False,
+            tile_m=None,
+        ),
     ]
 
 

@@ -65,7 +65,17 @@ def lacquer(rng: np.random.Generator, colour: Rgb) -> Image:
     for _ in range(9):
         x, y = (int(v) for v in rng.integers(4, size - 4, 2))
         tone = tuple(float(c * rng.uniform(0.8, 0.95)) for c in colour)
-        cv2.ellipse(image, (x, y), (int(rng.integers(1, 5)), 1), float(rng.uniform(0, 180)), 0, 360, tone, -1, cv2.LINE_AA)
+        cv2.ellipse(
+            image,
+            (x, y),
+            (int(rng.integers(1, 5)), 1),
+            float(rng.uniform(0, 180)),
+            0,
+            360,
+            tone,
+            -1,
+            cv2.LINE_AA,
+        )
     return finish(image)
 
 
@@ -74,7 +84,13 @@ def ceramic(rng: np.random.Generator, colour: Rgb) -> Image:
     size = 256
     image = modulate(flat(size, size, colour), spectral_noise(rng, size, size, 1.4), 0.07)
     for band in rng.integers(20, size - 20, 3):
-        cv2.line(image, (0, int(band)), (size, int(band)), tuple(float(0.55 * c) for c in colour), int(rng.integers(2, 7)))
+        cv2.line(
+            image,
+            (0, int(band)),
+            (size, int(band)),
+            tuple(float(0.55 * c) for c in colour),
+            int(rng.integers(2, 7)),
+        )
     speckle = (rng.random((size, size)) > 0.995).astype(np.float32)
     return finish(modulate(image, -cv2.dilate(speckle, np.ones((2, 2), np.uint8)), 0.5))
 
@@ -100,7 +116,11 @@ def wicker(rng: np.random.Generator, colour: Rgb) -> Image:
             shade = float(rng.uniform(0.8, 1.1))
             tone = tuple(float(c * shade) for c in colour)
             y, x = i * step, j * step
-            rect = ((x, y + 3), (x + step - 1, y + step - 4)) if (i + j) % 2 else ((x + 3, y), (x + step - 4, y + step - 1))
+            rect = (
+                ((x, y + 3), (x + step - 1, y + step - 4))
+                if (i + j) % 2
+                else ((x + 3, y), (x + step - 4, y + step - 1))
+            )
             cv2.rectangle(image, rect[0], rect[1], tone, -1)
     return finish(modulate(image, spectral_noise(rng, size, size, 0.7), 0.08))
 

@@ -56,7 +56,9 @@ def vary(rng: np.random.Generator, colour: Rgb, spread: float) -> Rgb:
     return r, g, b
 
 
-def blob(rng: np.random.Generator, centre: tuple[float, float], radius: float, points: int = 14) -> npt.NDArray[np.int32]:
+def blob(
+    rng: np.random.Generator, centre: tuple[float, float], radius: float, points: int = 14
+) -> npt.NDArray[np.int32]:
     """An irregular closed outline around a centre, (points, 1, 2) integer pixels, for cv2.fillPoly."""
     angles = np.linspace(0, 2 * np.pi, points, endpoint=False)
     radii = radius * rng.uniform(0.65, 1.3, points)
@@ -71,7 +73,9 @@ def smooth(image: FloatArray, sigma_px: float) -> FloatArray:
     return np.asarray(cv2.GaussianBlur(wrapped, (0, 0), sigma_px), np.float32)[pad:-pad, pad:-pad]
 
 
-def write(image: FloatArray, text: str, at: tuple[int, int], scale: float, ink: tuple[float, ...], thick: int) -> None:
+def write(
+    image: FloatArray, text: str, at: tuple[int, int], scale: float, ink: tuple[float, ...], thick: int
+) -> None:
     """Draw text in place; `at` is the left end of the base line. OpenCV 5 draws text on bytes only, so a mask is blended."""
     mask = np.zeros(image.shape[:2], np.uint8)
     cv2.putText(mask, text, at, cv2.FONT_HERSHEY_SIMPLEX, scale, 255, thick, cv2.LINE_AA)

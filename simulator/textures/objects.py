@@ -3,7 +3,18 @@
 import cv2
 import numpy as np
 
-from simulator.textures.noise import Image, Rgb, blob, finish, flat, modulate, smooth, spectral_noise, vary, write
+from simulator.textures.noise import (
+    Image,
+    Rgb,
+    blob,
+    finish,
+    flat,
+    modulate,
+    smooth,
+    spectral_noise,
+    vary,
+    write,
+)
 
 SPINES = 32  # spines side by side in one `books` picture
 
@@ -12,7 +23,17 @@ def books(rng: np.random.Generator, colour: Rgb) -> Image:
     """A strip of SPINES book spines of equal width, each with bands, title and author."""
     height, width = 320, 56
     strip = np.empty((height, width * SPINES, 3), np.float32)
-    covers = ((120, 34, 36), (34, 58, 98), (46, 84, 62), (198, 168, 112), (232, 226, 210), (52, 48, 52), (188, 96, 44), (98, 70, 110), (70, 116, 130))
+    covers = (
+        (120, 34, 36),
+        (34, 58, 98),
+        (46, 84, 62),
+        (198, 168, 112),
+        (232, 226, 210),
+        (52, 48, 52),
+        (188, 96, 44),
+        (98, 70, 110),
+        (70, 116, 130),
+    )
     for k in range(SPINES):
         cover = vary(rng, covers[int(rng.integers(len(covers)))], 0.25)
         spine = modulate(flat(height, width, cover), spectral_noise(rng, height, width, 1.0), 0.05)
@@ -22,7 +43,13 @@ def books(rng: np.random.Generator, colour: Rgb) -> Image:
             cv2.line(spine, (0, y), (width, y), ink, int(rng.integers(2, 9)))
         if rng.random() < 0.4:
             y = int(rng.integers(20, 230))
-            cv2.rectangle(spine, (5, y), (width - 5, y + int(rng.integers(20, 70))), tuple(map(float, vary(rng, (200, 170, 120), 0.5))), -1)
+            cv2.rectangle(
+                spine,
+                (5, y),
+                (width - 5, y + int(rng.integers(20, 70))),
+                tuple(map(float, vary(rng, (200, 170, 120), 0.5))),
+                -1,
+            )
         lying = np.rot90(spine, -1).copy()
         word = "".join(chr(int(c)) for c in rng.integers(65, 91, int(rng.integers(5, 12))))
         write(lying, word, (20, 38), 0.95, ink, 3)
@@ -37,11 +64,15 @@ def door(rng: np.random.Generator, colour: Rgb) -> Image:
     del rng
     height, width = 1024, 448
     rng = np.random.default_rng(77)
-    image = modulate(flat(height, width, colour), spectral_noise(rng, height, width, 0.8, stretch=0.333), 0.015)
+    image = modulate(
+        flat(height, width, colour), spectral_noise(rng, height, width, 0.8, stretch=0.333), 0.015
+    )
     for x0, y0, x1, y1 in ((60, 80, 388, 420), (60, 500, 388, 560), (60, 640, 388, 950)):
         for k in range(9):
             shade = 0.78 + 0.03 * k
-            cv2.rectangle(image, (x0 + k, y0 + k), (x1 - k, y1 - k), tuple(float(c * shade) for c in colour), 1)
+            cv2.rectangle(
+                image, (x0 + k, y0 + k), (x1 - k, y1 - k), tuple(float(c * shade) for c in colour), 1
+            )
         cv2.line(image, (x0, y1), (x1, y1), tuple(float(min(255, c * 1.06)) for c in colour), 3)
     return finish(image)
 
@@ -74,7 +105,14 @@ def clock(rng: np.random.Generator, colour: Rgb) -> Image:
         b = (int(128 + 110 * np.cos(angle)), int(128 + 110 * np.sin(angle)))
         cv2.line(image, a, b, (30.0, 30.0, 34.0), 2 if k % 5 else 6, cv2.LINE_AA)
     for angle, length, thick in ((float(rng.uniform(0, 6.28)), 56, 8), (float(rng.uniform(0, 6.28)), 86, 5)):
-        cv2.line(image, (128, 128), (int(128 + length * np.cos(angle)), int(128 + length * np.sin(angle))), (20.0, 20.0, 24.0), thick, cv2.LINE_AA)
+        cv2.line(
+            image,
+            (128, 128),
+            (int(128 + length * np.cos(angle)), int(128 + length * np.sin(angle))),
+            (20.0, 20.0, 24.0),
+            thick,
+            cv2.LINE_AA,
+        )
     return finish(image)
 
 
@@ -85,7 +123,9 @@ def panel(rng: np.random.Generator, colour: Rgb) -> Image:
     cv2.rectangle(image, (30, 30), (160, 96), (58.0, 74.0, 62.0), -1)
     write(image, f"{int(rng.integers(17, 24))}.5", (42, 82), 1.5, (196.0, 222.0, 180.0), 4)
     for k in range(3):
-        cv2.circle(image, (50 + 46 * k, 136), 13, tuple(map(float, vary(rng, (120, 120, 126), 0.3))), -1, cv2.LINE_AA)
+        cv2.circle(
+            image, (50 + 46 * k, 136), 13, tuple(map(float, vary(rng, (120, 120, 126), 0.3))), -1, cv2.LINE_AA
+        )
     return finish(image)
 
 
@@ -93,22 +133,47 @@ def view(rng: np.random.Generator, colour: Rgb) -> Image:
     """Outlook from an upper floor: sky, far town, near trees."""
     height, width = 768, 1024
     rows = np.linspace(0, 1, height, dtype=np.float32)[:, None, None]
-    image = np.broadcast_to(np.array(colour, np.float32) * (1 - rows) + np.array((236, 238, 236), np.float32) * rows, (height, width, 3)).copy()
+    image = np.broadcast_to(
+        np.array(colour, np.float32) * (1 - rows) + np.array((236, 238, 236), np.float32) * rows,
+        (height, width, 3),
+    ).copy()
     clouds = np.clip(spectral_noise(rng, height, width, 1.6, stretch=1.67), 0, 2.2)[..., None] * 0.36
     image = image * (1 - clouds) + 252.0 * clouds
     for distance in (0.45, 0.7, 1.0):
         x = int(rng.integers(-40, 0))
         while x < width:
-            wide, top = int(rng.integers(60, 170) * distance), int(height * (0.66 - 0.2 * distance * rng.random()))
-            wall = np.array(vary(rng, ((206, 190, 166), (176, 120, 98), (222, 218, 208), (150, 156, 160))[int(rng.integers(4))], 0.12))
+            wide, top = (
+                int(rng.integers(60, 170) * distance),
+                int(height * (0.66 - 0.2 * distance * rng.random())),
+            )
+            wall = np.array(
+                vary(
+                    rng,
+                    ((206, 190, 166), (176, 120, 98), (222, 218, 208), (150, 156, 160))[int(rng.integers(4))],
+                    0.12,
+                )
+            )
             wall = wall * distance + np.array((205, 214, 222)) * (1 - distance)
             cv2.rectangle(image, (x, top), (x + wide, height), tuple(map(float, wall)), -1)
-            cv2.rectangle(image, (x, top), (x + wide, top + int(12 * distance)), tuple(map(float, wall * 0.62)), -1)
+            cv2.rectangle(
+                image, (x, top), (x + wide, top + int(12 * distance)), tuple(map(float, wall * 0.62)), -1
+            )
             for wy in range(top + int(24 * distance), height, max(8, int(40 * distance))):
                 for wx in range(x + 6, x + wide - 10, max(8, int(26 * distance))):
-                    cv2.rectangle(image, (wx, wy), (wx + int(12 * distance), wy + int(20 * distance)), tuple(map(float, wall * rng.uniform(0.35, 0.7))), -1)
+                    cv2.rectangle(
+                        image,
+                        (wx, wy),
+                        (wx + int(12 * distance), wy + int(20 * distance)),
+                        tuple(map(float, wall * rng.uniform(0.35, 0.7))),
+                        -1,
+                    )
             x += wide + int(rng.integers(0, 50))
     for _ in range(420):
         x, y = float(rng.uniform(0, width)), height - abs(float(rng.normal(0, 62)))
-        cv2.fillPoly(image, [blob(rng, (x, y), float(rng.uniform(8, 26)))], tuple(map(float, vary(rng, (82, 108, 60), 0.5))), cv2.LINE_AA)
+        cv2.fillPoly(
+            image,
+            [blob(rng, (x, y), float(rng.uniform(8, 26)))],
+            tuple(map(float, vary(rng, (82, 108, 60), 0.5))),
+            cv2.LINE_AA,
+        )
     return finish(modulate(image, spectral_noise(rng, height, width, 0.6), 0.03))

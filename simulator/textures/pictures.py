@@ -3,7 +3,18 @@
 import cv2
 import numpy as np
 
-from simulator.textures.noise import FloatArray, Image, Rgb, blob, finish, flat, modulate, spectral_noise, vary, write
+from simulator.textures.noise import (
+    FloatArray,
+    Image,
+    Rgb,
+    blob,
+    finish,
+    flat,
+    modulate,
+    spectral_noise,
+    vary,
+    write,
+)
 
 HEIGHT, WIDTH = 512, 640
 PALETTES: tuple[tuple[Rgb, ...], ...] = (
@@ -56,7 +67,14 @@ def abstract(rng: np.random.Generator, colour: Rgb) -> Image:
         if kind == 0:
             cv2.fillPoly(image, [blob(rng, (x, y), float(rng.uniform(25, 120)), 9)], ink, cv2.LINE_AA)
         elif kind == 1:
-            cv2.circle(image, (int(x), int(y)), int(rng.integers(10, 70)), ink, int(rng.choice([-1, 4, 9])), cv2.LINE_AA)
+            cv2.circle(
+                image,
+                (int(x), int(y)),
+                int(rng.integers(10, 70)),
+                ink,
+                int(rng.choice([-1, 4, 9])),
+                cv2.LINE_AA,
+            )
         elif kind == 2:
             end = (int(x + rng.normal(0, 160)), int(y + rng.normal(0, 160)))
             cv2.line(image, (int(x), int(y)), end, ink, int(rng.integers(2, 26)), cv2.LINE_AA)
@@ -68,22 +86,51 @@ def abstract(rng: np.random.Generator, colour: Rgb) -> Image:
 
 def still_life(rng: np.random.Generator, colour: Rgb) -> Image:
     """A table with fruit, bottles and flowers before a dark ground."""
-    image = modulate(flat(HEIGHT, WIDTH, vary(rng, (96, 78, 60), 0.4)), spectral_noise(rng, HEIGHT, WIDTH, 1.7), 0.2)
+    image = modulate(
+        flat(HEIGHT, WIDTH, vary(rng, (96, 78, 60), 0.4)), spectral_noise(rng, HEIGHT, WIDTH, 1.7), 0.2
+    )
     table = int(HEIGHT * 0.66)
-    image[table:] = modulate(flat(HEIGHT - table, WIDTH, vary(rng, (176, 140, 102), 0.2)), spectral_noise(rng, HEIGHT - table, WIDTH, 1.2, 5.0), 0.1)
+    image[table:] = modulate(
+        flat(HEIGHT - table, WIDTH, vary(rng, (176, 140, 102), 0.2)),
+        spectral_noise(rng, HEIGHT - table, WIDTH, 1.2, 5.0),
+        0.1,
+    )
     for _ in range(int(rng.integers(2, 5))):
         x, top, half = int(rng.uniform(80, WIDTH - 80)), int(rng.uniform(120, 260)), int(rng.integers(16, 34))
         glass = tuple(float(v) for v in vary(rng, (70, 108, 96), 0.6))
         cv2.rectangle(image, (x - half, top + 60), (x + half, table + 40), glass, -1)
         cv2.rectangle(image, (x - half // 3, top), (x + half // 3, top + 62), glass, -1)
-        cv2.line(image, (x - half // 2, top + 70), (x - half // 2, table + 20), (236.0, 240.0, 236.0), 4, cv2.LINE_AA)
+        cv2.line(
+            image,
+            (x - half // 2, top + 70),
+            (x - half // 2, table + 20),
+            (236.0, 240.0, 236.0),
+            4,
+            cv2.LINE_AA,
+        )
     for _ in range(24):
         x, y = float(rng.uniform(50, WIDTH - 50)), float(table + rng.uniform(-10, 70))
         radius = int(rng.integers(14, 36))
-        fruit = vary(rng, ((200, 70, 40), (224, 170, 50), (126, 150, 60), (110, 40, 70))[int(rng.integers(4))], 0.2)
+        fruit = vary(
+            rng, ((200, 70, 40), (224, 170, 50), (126, 150, 60), (110, 40, 70))[int(rng.integers(4))], 0.2
+        )
         cv2.circle(image, (int(x), int(y)), radius, tuple(float(0.55 * v) for v in fruit), -1, cv2.LINE_AA)
-        cv2.circle(image, (int(x - 3), int(y - 4)), int(radius * 0.82), tuple(float(v) for v in fruit), -1, cv2.LINE_AA)
-        cv2.circle(image, (int(x - radius / 3), int(y - radius / 3)), max(2, radius // 6), (250.0, 244.0, 228.0), -1, cv2.LINE_AA)
+        cv2.circle(
+            image,
+            (int(x - 3), int(y - 4)),
+            int(radius * 0.82),
+            tuple(float(v) for v in fruit),
+            -1,
+            cv2.LINE_AA,
+        )
+        cv2.circle(
+            image,
+            (int(x - radius / 3), int(y - radius / 3)),
+            max(2, radius // 6),
+            (250.0, 244.0, 228.0),
+            -1,
+            cv2.LINE_AA,
+        )
     return _painted(rng, image, colour)
 
 
@@ -93,7 +140,11 @@ def street(rng: np.random.Generator, colour: Rgb) -> Image:
     x = -20
     while x < WIDTH:
         wide, top = int(rng.integers(70, 150)), int(rng.integers(30, 160))
-        wall = vary(rng, ((206, 176, 140), (170, 96, 78), (222, 214, 196), (140, 150, 158))[int(rng.integers(4))], 0.18)
+        wall = vary(
+            rng,
+            ((206, 176, 140), (170, 96, 78), (222, 214, 196), (140, 150, 158))[int(rng.integers(4))],
+            0.18,
+        )
         cv2.rectangle(image, (x, top), (x + wide, HEIGHT - 60), tuple(map(float, wall)), -1)
         for y in range(top + 18, HEIGHT - 130, 58):
             for wx in range(x + 12, x + wide - 24, 34):
@@ -104,7 +155,9 @@ def street(rng: np.random.Generator, colour: Rgb) -> Image:
         cv2.rectangle(image, (x + 8, HEIGHT - 118), (x + wide - 8, HEIGHT - 98), awning, -1)
         cv2.rectangle(image, (x + 14, HEIGHT - 98), (x + wide - 14, HEIGHT - 60), (48.0, 44.0, 46.0), -1)
         x += wide + int(rng.integers(0, 4))
-    image[HEIGHT - 60 :] = modulate(flat(60, WIDTH, (112, 110, 108)), spectral_noise(rng, 60, WIDTH, 0.8), 0.1)
+    image[HEIGHT - 60 :] = modulate(
+        flat(60, WIDTH, (112, 110, 108)), spectral_noise(rng, 60, WIDTH, 0.8), 0.1
+    )
     return finish(modulate(image, spectral_noise(rng, HEIGHT, WIDTH, 0.4), 0.05))
 
 

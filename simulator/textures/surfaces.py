@@ -3,7 +3,17 @@
 import cv2
 import numpy as np
 
-from simulator.textures.noise import FloatArray, Image, Rgb, finish, flat, modulate, smooth, spectral_noise, vary
+from simulator.textures.noise import (
+    FloatArray,
+    Image,
+    Rgb,
+    finish,
+    flat,
+    modulate,
+    smooth,
+    spectral_noise,
+    vary,
+)
 
 
 def plaster(rng: np.random.Generator, colour: Rgb) -> Image:
@@ -16,10 +26,14 @@ def plaster(rng: np.random.Generator, colour: Rgb) -> Image:
         x, y = rng.integers(0, size, 2)
         angle, length = rng.uniform(0, np.pi), rng.uniform(8, 60)
         end = (int(x + length * np.cos(angle)), int(y + length * np.sin(angle)))
-        cv2.line(marks, (int(x), int(y)), end, float(rng.uniform(-1.0, 0.6)), int(rng.integers(1, 4)), cv2.LINE_AA)
+        cv2.line(
+            marks, (int(x), int(y)), end, float(rng.uniform(-1.0, 0.6)), int(rng.integers(1, 4)), cv2.LINE_AA
+        )
     for _ in range(60):
         x, y = rng.integers(0, size, 2)
-        cv2.circle(marks, (int(x), int(y)), int(rng.integers(2, 9)), float(rng.uniform(-1.0, 1.0)), -1, cv2.LINE_AA)
+        cv2.circle(
+            marks, (int(x), int(y)), int(rng.integers(2, 9)), float(rng.uniform(-1.0, 1.0)), -1, cv2.LINE_AA
+        )
     return finish(modulate(image, smooth(marks, 1.5), 0.055))
 
 

@@ -1,0 +1,23 @@
+"""Entry point: `python -m simulator`."""
+
+import sys
+from functools import partial
+
+from shared.lifecycle import run_service
+from simulator.service import run
+from simulator.service_settings import SimulatorSettings
+from simulator.world_file import WorldFileError, load_world
+
+
+def main() -> None:
+    """Run the simulator until a signal; a bad world file ends it with one line."""
+    settings = SimulatorSettings.from_environment()
+    try:
+        load_world(settings.world)
+    except WorldFileError as error:
+        sys.exit(f"simulator: {error}")
+    run_service("simulator", settings, partial(run, settings))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,62 @@
+"""Answers the experimenter's requests: reset, placing the robots, pictures from anywhere."""
+
+from shared.messages import Frame, SimulationReply, SimulationRequest
+from simulator.outbox import MessageMaker
+from simulator.simulation import Pose2, Simulation
+
+
+class RequestError(ValueError):
+    """A request that cannot be carried out; the text goes back to the asker."""
+
+
+class Experimenter:
+    """Carries out requests on a simulation."""
+
+    def __init__(self, simulation: Simulation, maker: MessageMaker, seed: int) -> None:
+        self._simulation, self._maker, self._seed = simulation, maker, seed
+
+    def handle(self, request: SimulationRequest, seq: int, stamp_ns: int) -> tuple[SimulationReply, bool]:
+        """Carry out one request.
+
+        Returns:
+            The reply, and whether what the robot senses has changed, so that the frame in flight is void.
+
+        Raises:
+            RequestError: a pose is missing or lies outside the world.
+        """
+        frame: Frame | None = None
+        if request.action == "reset":
+            pose = self._pose(request) if request.pose is not None else None
+            self._seed = self._seed if request.seed is None else request.seed
+            self._simulation.reset(self._seed, pose)
+        elif request.action == "place_robot":
+            self._simulation.place_robot(*self._pose(request))
+        elif request.action == "place_hider":
+            pose = self._pose(request)
+            self._simulation.place_hider(*pose)
+            frame = self._look(pose, seq, stamp_ns)
+        elif request.action == "remove_hider":
+            self._simulation.remove_hider()
+        elif request.action == "look":
+            true = self._simulation.truth()
+            here = (true.x_m, true.y_m, true.yaw_rad)
+            frame = self._look(here if request.pose is None else self._pose(request), seq, stamp_ns)
+        changed = request.action in {"reset", "place_robot", "place_hider", "remove_hider"}
+        return SimulationReply(
+            seq=seq, stamp_ns=stamp_ns, truth=self._maker.truth(seq, stamp_ns), frame=frame
+        ), changed
+
+    def _look(self, pose: Pose2, seq: int, stamp_ns: int) -> Frame:
+        return self._maker.picture(self._simulation.panorama_at(*pose), seq, stamp_ns)
+
+    def _pose(self, request: SimulationRequest) -> Pose2:
+        if request.pose is None:
+            raise RequestError(f"{request.action} needs a pose (x_m, y_m, yaw_rad), got none")
+        pose = (request.pose.x_m, request.pose.y_m, request.pose.yaw_rad)
+        world = self._simulation.world
+        rects = [(r.x_m, r.y_m) for r in (*world.rooms, *world.openings)]
+        if not any(x[0] < pose[0] < x[1] and y[0] < pose[1] < y[1] for x, y in rects):
+            raise RequestError(
+                f"{request.action}: ({pose[0]}, {pose[1]}) must lie inside a room of {world.name}"
+            )
+        return pose

@@ -1,0 +1,154 @@
+"""Simulator loop: in lockstep one frame per command, else the wall clock leads."""
+
+import logging
+import threading
+import time
+
+from shared.bus import Bus
+from shared.messages import Command, Frame, Ranges, Truth
+from shared.topics import COMMAND, FRAME, RANGES, SIMULATION, TRUTH
+from simulator.experimenter import Experimenter, RequestError
+from simulator.outbox import MessageMaker
+from simulator.service_settings import SimulatorSettings
+from simulator.simulation import Simulation
+from simulator.world_file import load_world
+
+log = logging.getLogger(__name__)
+
+REAL_TIME_TURN_S = 0.02
+CATCH_UP_S = 0.5  # time lost beyond this (a suspended process) is dropped, not driven through
+
+
+class Ports:
+    """Everything the loop sends and receives."""
+
+    def __init__(self, bus: Bus, robot: str) -> None:
+        self._frames = bus.publisher(FRAME, robot=robot)
+        self._ranges = bus.publisher(RANGES, robot=robot)
+        self._truth = bus.publisher(TRUTH, robot=robot)
+        self._commands = bus.subscribe(COMMAND, robot=robot)
+        self.requests = bus.requests(SIMULATION, robot=robot)
+
+    def send(self, *messages: Frame | Ranges | Truth) -> None:
+        """Publish in the order given."""
+        for message in messages:
+            if isinstance(message, Frame):
+                self._frames.put(message)
+            elif isinstance(message, Ranges):
+                self._ranges.put(message)
+            else:
+                self._truth.put(message)
+
+    def newest_command(self) -> Command | None:
+        """The newest command since the last call."""
+        commands = self._commands.take_all()
+        return commands[-1] if commands else None
+
+
+class Loop:
+    """What both modes share: the simulation, sequence numbers and the experimenter's requests."""
+
+    def __init__(self, simulation: Simulation, settings: SimulatorSettings, ports: Ports) -> None:
+        self.simulation, self.settings, self.ports = simulation, settings, ports
+        self.maker = MessageMaker(simulation, settings)
+        self._experimenter = Experimenter(simulation, self.maker, settings.seed)
+        self.seq = 0
+        self.stamp_ns = time.time_ns()
+
+    def serve_requests(self) -> bool:
+        """Answer waiting requests; True if the world has changed under the robot."""
+        changed = False
+        while (request := self.ports.requests.take()) is not None:
+            try:
+                reply, moved = self._experimenter.handle(request.message, self.seq, self.stamp_ns)
+            except RequestError as error:
+                request.refuse(str(error))
+                continue
+            request.reply(reply)
+            changed = changed or moved
+        return changed
+
+    def sense(self) -> tuple[Ranges, Truth, Frame]:
+        """Measure everything for the present sequence number."""
+        self.stamp_ns = time.time_ns()
+        frame = self.maker.frame(self.seq, self.stamp_ns)
+        return self.maker.ranges(self.seq, self.stamp_ns), self.maker.truth(self.seq, self.stamp_ns), frame
+
+
+class LockstepLoop(Loop):
+    """Frame k, command k, control_period_s of physics, frame k + 1. Without a command nothing moves."""
+
+    def start(self) -> None:
+        """Send the first frame."""
+        self._send()
+
+    def turn(self, now_s: float) -> None:
+        """Advance if the awaited command came; send the frame again if none came for a while."""
+        command = self.ports.newest_command()
+        if self.serve_requests():
+            self.seq += 1
+            self._send()
+        elif command is not None and command.seq == self.seq:
+            self.simulation.command(
+                command.steer_rad, command.wheel_speed_radps, self.settings.control_period_s
+            )
+            self.simulation.step(self.settings.control_period_s)
+            self.seq += 1
+            self._send()
+        elif now_s - self._sent_s > self.settings.repeat_s:
+            self._repeat(now_s)
+
+    def _send(self) -> None:
+        self._pending = self.sense()
+        self._repeat(time.monotonic())
+
+    def _repeat(self, now_s: float) -> None:
+        self.ports.send(*self._pending)
+        self._sent_s = now_s
+
+
+class RealTimeLoop(Loop):
+    """Physics follows the wall clock; frames and ranges go out at their own rates; commands expire."""
+
+    def start(self) -> None:
+        """Start the clocks."""
+        self._physics_s = self._frame_s = self._ranges_s = time.monotonic()
+
+    def turn(self, now_s: float) -> None:
+        """Obey the newest command, let physics catch up, send what is due."""
+        self.serve_requests()
+        command = self.ports.newest_command()
+        if command is not None:
+            self.simulation.command(command.steer_rad, command.wheel_speed_radps, command.ttl_ms / 1000.0)
+        self._catch_up(now_s)
+        if now_s >= self._ranges_s:
+            self._ranges_s = max(self._ranges_s + 1.0 / self.settings.range_rate_hz, now_s)
+            stamp_ns = time.time_ns()
+            self.ports.send(self.maker.ranges(self.seq, stamp_ns), self.maker.truth(self.seq, stamp_ns))
+        if now_s >= self._frame_s:
+            self._frame_s = max(self._frame_s + 1.0 / self.settings.frame_rate_hz, now_s)
+            self.seq += 1
+            self.stamp_ns = time.time_ns()
+            self.ports.send(self.maker.frame(self.seq, self.stamp_ns))
+
+    def _catch_up(self, now_s: float) -> None:
+        self._physics_s = max(self._physics_s, now_s - CATCH_UP_S)
+        timestep_s = self.simulation.settings.timestep_s
+        steps = int((now_s - self._physics_s) / timestep_s)
+        if steps > 0:
+            self.simulation.step(steps * timestep_s)
+            self._physics_s += steps * timestep_s
+
+
+def run(settings: SimulatorSettings, bus: Bus, stop: threading.Event) -> None:
+    """Build the world and serve until `stop`."""
+    simulation = Simulation(load_world(settings.world), settings.simulation(), settings.seed)
+    simulation.panorama()  # the first picture builds the shaders: before anyone waits for it
+    ports = Ports(bus, settings.robot)
+    loop = (LockstepLoop if settings.lockstep else RealTimeLoop)(simulation, settings, ports)
+    bus.announce("simulator")
+    log.info("world %s, %s", settings.world, "lockstep" if settings.lockstep else "real time")
+    loop.start()
+    while not stop.is_set():
+        bus.wait(settings.repeat_s / 4 if settings.lockstep else REAL_TIME_TURN_S)
+        loop.turn(time.monotonic())

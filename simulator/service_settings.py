@@ -1,0 +1,47 @@
+"""Settings of the simulator process, from SIMULATOR_* variables."""
+
+from typing import Literal
+
+from pydantic import Field, PositiveFloat
+from pydantic_settings import SettingsConfigDict
+
+from shared.settings import ServiceSettings
+from simulator.settings import CameraSettings, RangeSettings, SimulationSettings
+
+
+class SimulatorSettings(ServiceSettings):
+    """Read from the environment.
+
+    Attributes:
+        world: name of a world that comes with the simulator, or path of a .yaml file.
+        lockstep: send frame k, wait for command k, advance by control_period_s; else follow the wall clock.
+        seed: of the sensors' noise.
+        control_period_s: simulated time per command in lockstep.
+        repeat_s: wall time after which an unanswered frame is sent again in lockstep.
+        frame_rate_hz: most frames a second in real time.
+        range_rate_hz: distance readings a second in real time.
+        encoding: bgr8 is exact; jpeg is smaller and costs time on both sides.
+    """
+
+    model_config = SettingsConfigDict(env_prefix="SIMULATOR_")
+
+    world: str = "apartment"
+    lockstep: bool = False
+    seed: int = Field(default=1, ge=0)
+    control_period_s: PositiveFloat = 0.3
+    repeat_s: PositiveFloat = 0.5
+    frame_rate_hz: PositiveFloat = 5.0
+    range_rate_hz: PositiveFloat = 10.0
+    encoding: Literal["bgr8", "jpeg"] = "bgr8"
+    jpeg_quality: int = Field(default=92, ge=1, le=100)
+    width_px: int = Field(default=2048, ge=64, le=8192, multiple_of=4)
+    camera_height_m: PositiveFloat = 0.8
+    range_max_m: PositiveFloat = 4.0
+    range_noise_m: float = Field(default=0.01, ge=0.0)
+
+    def simulation(self) -> SimulationSettings:
+        """The part that the simulation itself needs."""
+        camera = CameraSettings(width_px=self.width_px, height_m=self.camera_height_m)
+        return SimulationSettings(
+            camera=camera, ranges=RangeSettings(max_m=self.range_max_m, noise_m=self.range_noise_m)
+        )
