@@ -36,7 +36,7 @@ def fit_rotation(
 
 
 def _triad(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Orthonormal frames (H, 3, 3), columns from two bearings (H, 3) each; useless where they are parallel."""
+    """Orthonormal frames (H, 3, 3), columns from two bearings (H, 3) each; useless if parallel."""
     normal = np.cross(a, b)
     normal = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
     return np.stack([a, normal, np.cross(a, normal)], axis=2)

@@ -61,8 +61,8 @@ def _linearise(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Residual e (K, N), its derivative (K, N, 2) and weights (K, N).
 
-    The derivative of the denominator matters, de = ds / n + e t.b d(t.b) / n^2: without it noise in b, entering
-    both s and ds, pulls the direction towards the crowd of features when the baseline is short.
+    The derivative of the denominator matters, de = ds / n + e t.b d(t.b) / n^2: without it noise in b,
+    which enters both s and ds, pulls the direction towards the crowd of features when the baseline is short.
     """
     result = evaluate(matches, phi, phi_target)
     by_phi = _derivative(phi, matches.rows[:, :2], matches.h_current, result)
