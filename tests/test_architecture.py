@@ -22,7 +22,13 @@ PURE = (
     "services/launcher/restart.py",
     "services/launcher/interpolate.py",
 )
-EDGE_FILES = {"__main__.py", "service.py", "settings.py", "remote.py"}  # where a service meets the world
+EDGE_FILES = {
+    "__main__.py",
+    "service.py",
+    "settings.py",
+    "remote.py",
+    "control.py",
+}  # where a service meets the world
 IMPURE = {
     "zenoh",
     "fastapi",

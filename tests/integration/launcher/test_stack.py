@@ -1,0 +1,33 @@
+"""The services of docker-compose.yml under the launcher, without the simulator: they start, and survive kill -9."""
+
+import time
+
+import pytest
+
+from services.launcher.supervisor import Launcher
+
+BACK_WITHIN_S = 5.0
+
+
+@pytest.fixture(scope="module")
+def stack(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("stack")
+    services = ["features", "map-store", "planner", "drive", "gateway"]
+    with Launcher(folder, lockstep=True, seed=1, only=services, timeout_s=120.0) as launcher:
+        yield launcher
+
+
+@pytest.mark.parametrize("service", ["router", "map-store", "features", "planner", "drive", "gateway"])
+def test_a_killed_service_is_back_and_the_others_go_on(stack, service):
+    others = {name: stack.pid(name) for name in stack.status() if name != service}
+    start_s = time.monotonic()
+    old = stack.kill(service)
+    stack.wait_healthy(service, BACK_WITHIN_S, other_than=old)
+    assert time.monotonic() - start_s < BACK_WITHIN_S
+    assert {name: stack.pid(name) for name in others} == others
+    stack.wait_all_healthy(BACK_WITHIN_S)
+
+
+def test_what_must_be_kept_is_kept_in_the_data_folder(stack):
+    assert (stack.settings.data_dir / "maps" / "maps.sqlite3").exists()
+    assert {path.name for path in stack.logs.iterdir()} == {f"{name}.jsonl" for name in stack.status()}
