@@ -1,4 +1,4 @@
-"""Synthetic matches with known motion: points of a furnished room seen by an upright (or tilted) spherical camera."""
+"""Synthetic matches with known motion: a furnished room seen by an upright (or tilted) spherical camera."""
 
 from dataclasses import dataclass
 

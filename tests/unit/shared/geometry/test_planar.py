@@ -168,7 +168,7 @@ def test_same_generator_state_gives_the_same_answer():
 
 def test_turning_the_target_changes_the_yaw_and_nothing_else():
     scene = make_scene(np.random.default_rng(3), 60, 20)
-    turned = scene.target + [1.234, 0.0]
+    turned = scene.target + np.array([1.234, 0.0])
     a = run(scene)
     b = estimate_planar(scene.current, turned, np.random.default_rng(0), LIMITS)
     assert error_deg(a.heading_rad, b.heading_rad) < 1e-3
