@@ -27,6 +27,7 @@ class GatewaySettings(ServiceSettings):
         upload_timeout_s: how long one body may take to arrive.
         max_uploads: pictures read at once; more are told to come again.
         max_sockets: WebSockets open at once.
+        send_timeout_s: how long one WebSocket may take to accept a message before it is dropped.
         max_robots: robots followed at once; further names are ignored.
         ask_timeout_s: how long planner and map store may take.
         compute_timeout_s: how long extraction and matching may take.
@@ -49,6 +50,7 @@ class GatewaySettings(ServiceSettings):
     max_uploads: int = Field(default=8, ge=1)
     max_sockets: int = Field(default=32, ge=1)
     max_robots: int = Field(default=32, ge=1)
+    send_timeout_s: float = Field(default=5.0, gt=0.0)
     ask_timeout_s: float = Field(default=5.0, gt=0.0)
     compute_timeout_s: float = Field(default=20.0, gt=0.0)
     required_services: tuple[str, ...] = ("features", "map_store", "planner")

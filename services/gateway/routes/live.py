@@ -13,7 +13,6 @@ from shared.topics import NAME
 
 router = APIRouter(tags=["live"])
 
-SEND_S = 5.0
 CLOSE_S = 1.0
 TRY_LATER = 1013
 
@@ -62,7 +61,7 @@ def _admit(socket: WebSocket, gateway: Gateway, robot: str) -> None:
 async def _serve(socket: WebSocket, gateway: Gateway, robot: str) -> None:
     outbox = gateway.hub.join(robot)
     assert outbox is not None
-    tasks = [asyncio.create_task(_send(socket, outbox)), asyncio.create_task(_receive(socket))]
+    tasks = [asyncio.create_task(_send(socket, outbox, gateway.settings.send_timeout_s)), asyncio.create_task(_receive(socket))]
     try:
         done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         reason = next(iter(done)).result()
@@ -77,12 +76,12 @@ async def _serve(socket: WebSocket, gateway: Gateway, robot: str) -> None:
         await asyncio.gather(*tasks, return_exceptions=True)
 
 
-async def _send(socket: WebSocket, outbox: Outbox) -> str:
+async def _send(socket: WebSocket, outbox: Outbox, timeout_s: float) -> str:
     """Send until the reader leaves ("") or proves too slow."""
     try:
         while not outbox.overflowed:
             for text in await outbox.take():
-                await asyncio.wait_for(socket.send_text(text), SEND_S)
+                await asyncio.wait_for(socket.send_text(text), timeout_s)
     except TimeoutError:
         return "slow"
     except (WebSocketDisconnect, RuntimeError):

@@ -67,7 +67,9 @@ def gateway(
     endpoint: str, stored: tuple[int, list[tuple[str, str]]], features: FeatureService, planner: Planner
 ) -> Iterator[str]:
     """The gateway's address."""
-    yield from serve_gateway(endpoint, map_store_url=f"http://127.0.0.1:{stored[0]}", max_upload_bytes=2_000_000)
+    yield from serve_gateway(
+        endpoint, map_store_url=f"http://127.0.0.1:{stored[0]}", max_upload_bytes=2_000_000
+    )
 
 
 @pytest.fixture

@@ -67,7 +67,13 @@ class FeatureService:
         self.results: tuple[NodeMatch, ...] = (
             NodeMatch(node_id=3, raw_matches=20, inliers=9, status="inconsistent"),
             NodeMatch(
-                node_id=7, raw_matches=90, inliers=71, status="ok", heading_rad=0.5, yaw_rad=0.1, confidence=0.9
+                node_id=7,
+                raw_matches=90,
+                inliers=71,
+                status="ok",
+                heading_rad=0.5,
+                yaw_rad=0.1,
+                confidence=0.9,
             ),
         )
 
@@ -84,7 +90,9 @@ class FeatureService:
                     question.refuse("no map 'nowhere'")
                     continue
                 question.reply(
-                    MatchReply(map=question.message.map, pipeline=PIPELINE, max_similarity=150, results=self.results)
+                    MatchReply(
+                        map=question.message.map, pipeline=PIPELINE, max_similarity=150, results=self.results
+                    )
                 )
 
         return turn
@@ -134,12 +142,19 @@ def store_app(seen: list[tuple[str, str]], nodes: int = 0, thumbnail: bytes = b"
     app = FastAPI()
 
     def problem(status: int) -> JSONResponse:
-        body = {"type": "urn:topnav:problem:missing", "title": "Not Found", "status": status, "detail": "no map"}
+        body = {
+            "type": "urn:topnav:problem:missing",
+            "title": "Not Found",
+            "status": status,
+            "detail": "no map",
+        }
         return JSONResponse(body, status, media_type="application/problem+json")
 
     @app.middleware("http")
     async def note(request: Request, call_next):  # type: ignore[no-untyped-def]
-        seen.append((request.method, str(request.url.path) + (f"?{request.url.query}" if request.url.query else "")))
+        seen.append(
+            (request.method, str(request.url.path) + (f"?{request.url.query}" if request.url.query else ""))
+        )
         return await call_next(request)
 
     @app.get("/maps")
@@ -168,16 +183,25 @@ def store_app(seen: list[tuple[str, str]], nodes: int = 0, thumbnail: bytes = b"
     @app.get("/maps/{name}/broken")
     @app.post("/maps/{name}/undo")
     def undo(name: str) -> Response:
-        return JSONResponse({"map": name, "revision": 10, "undone": 9}) if name == "flat" else Response("oops", 500)
+        return (
+            JSONResponse({"map": name, "revision": 10, "undone": 9})
+            if name == "flat"
+            else Response("oops", 500)
+        )
 
     @app.get("/maps/{name}/nodes")
     def list_nodes(name: str) -> list[dict[str, object]]:
-        return [{"node_id": n, "open": [False] * 12, "explored": [False] * 12, "thumbnail": True} for n in range(nodes)]
+        return [
+            {"node_id": n, "open": [False] * 12, "explored": [False] * 12, "thumbnail": True}
+            for n in range(nodes)
+        ]
 
     @app.get("/maps/{name}/edges")
     def list_edges(name: str) -> list[dict[str, object]]:
         ring = [(n, (n + 1) % nodes) for n in range(nodes)] if nodes > 2 else []
-        return [{"a": min(e), "b": max(e), "inliers": 60, "confidence": 0.8, "suspended": e[0] == 1} for e in ring]
+        return [
+            {"a": min(e), "b": max(e), "inliers": 60, "confidence": 0.8, "suspended": e[0] == 1} for e in ring
+        ]
 
     return app
 
@@ -185,7 +209,9 @@ def store_app(seen: list[tuple[str, str]], nodes: int = 0, thumbnail: bytes = b"
 @contextmanager
 def served(app: FastAPI, port: int = 0) -> Iterator[int]:
     """Serve an application on a free port of loopback."""
-    config = uvicorn.Config(app, host="127.0.0.1", port=port, log_config=None, ws="none", http="h11", lifespan="off")
+    config = uvicorn.Config(
+        app, host="127.0.0.1", port=port, log_config=None, ws="none", http="h11", lifespan="off"
+    )
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run, daemon=True)
     thread.start()

@@ -19,7 +19,9 @@ def picture(kind: str = "PNG", width: int = 256) -> bytes:
 
 
 @pytest.mark.parametrize("kind", ["PNG", "JPEG", "WEBP"])
-def test_a_raw_picture_is_localised_best_node_first(http: httpx.Client, features: FeatureService, kind: str) -> None:
+def test_a_raw_picture_is_localised_best_node_first(
+    http: httpx.Client, features: FeatureService, kind: str
+) -> None:
     answer = http.post(
         "/api/robots/r1/goal-check?map=flat",
         content=picture(kind),
@@ -41,13 +43,17 @@ def test_a_raw_picture_is_localised_best_node_first(http: httpx.Client, features
 
 
 def test_a_form_with_one_file_is_the_same(http: httpx.Client) -> None:
-    answer = http.post("/api/robots/r1/goal-check?map=flat", files={"picture": ("goal.png", picture(), "image/png")})
+    answer = http.post(
+        "/api/robots/r1/goal-check?map=flat", files={"picture": ("goal.png", picture(), "image/png")}
+    )
     assert answer.status_code == 200, answer.text
 
 
 def test_large_pictures_reach_the_features_at_2048(http: httpx.Client, features: FeatureService) -> None:
     content = picture("PNG", 4096)
-    answer = http.post("/api/robots/r1/goal-check?map=flat", content=content, headers={"content-type": "image/png"})
+    answer = http.post(
+        "/api/robots/r1/goal-check?map=flat", content=content, headers={"content-type": "image/png"}
+    )
     assert answer.json()["picture"]["width_px"] == 4096
     assert features.extracted[-1].frame.width_px == 2048
 
@@ -63,7 +69,9 @@ def test_a_map_nobody_has_is_refused_in_the_services_words(http: httpx.Client) -
 
 def test_goto_by_picture_hands_the_features_to_the_planner(http: httpx.Client, planner: Planner) -> None:
     answer = http.post(
-        "/api/robots/r1/missions/goto?map=flat&seed=4", content=picture(), headers={"content-type": "image/png"}
+        "/api/robots/r1/missions/goto?map=flat&seed=4",
+        content=picture(),
+        headers={"content-type": "image/png"},
     )
     assert answer.status_code == 202, answer.text
     assert (answer.json()["mission_id"], answer.json()["state"]) == ("m1", "running")

@@ -1,0 +1,136 @@
+"""The WebSocket: news, origin, limits, and readers that do not read."""
+
+import json
+import socket
+import time
+from collections.abc import Iterator
+
+import httpx
+import pytest
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.sync.client import ClientConnection, connect
+
+from shared.bus import Bus, wait_until
+from shared.messages.drive import Heading
+from shared.messages.missions import Event
+from shared.topics import EVENT, HEADING
+from tests.integration.gateway.conftest import serve_gateway
+
+ROBOT = "w1"
+
+
+def url(address: str, robot: str = ROBOT) -> str:
+    return f"{address.replace('http', 'ws', 1)}/api/robots/{robot}/live"
+
+
+def opened(address: str, **options: object) -> ClientConnection:
+    return connect(url(address), proxy=None, **options)  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="module")
+def small(endpoint: str) -> Iterator[str]:
+    """A gateway with room for three connections."""
+    yield from serve_gateway(endpoint, max_sockets=3, send_timeout_s=1.0)
+
+
+def next_of(live: ClientConnection, kind: str) -> dict[str, object]:
+    deadline_s = time.monotonic() + 5.0
+    while time.monotonic() < deadline_s:
+        message = json.loads(live.recv(timeout=5.0))
+        if message["type"] == kind:
+            return dict(message["data"])
+    raise AssertionError(f"no {kind}")
+
+
+def test_decisions_and_headings_arrive(small: str, robot_bus: Bus) -> None:
+    events, headings = robot_bus.publisher(EVENT, robot=ROBOT), robot_bus.publisher(HEADING, robot=ROBOT)
+    with opened(small) as live:
+        assert next_of(live, "services")
+        events.put(Event(seq=1, robot=ROBOT, kind="replan", reason="lost: S 31"))
+        assert next_of(live, "event")["reason"] == "lost: S 31"
+
+        def heard() -> bool:  # the event made the robot known; its heading is followed from then on
+            headings.put(Heading(seq=9, robot=ROBOT, heading_rad=0.25))
+            views = httpx.get(f"{small}/api/robots/{ROBOT}", trust_env=False).json()
+            return views["heading"] is not None
+
+        assert wait_until(heard, 5.0)
+        assert next_of(live, "heading")["heading_rad"] == 0.25
+
+
+@pytest.mark.parametrize("origin", ["http://evil.example", "null"])
+def test_pages_of_other_sites_are_refused(small: str, origin: str) -> None:
+    with pytest.raises(InvalidStatus) as caught:
+        opened(small, origin=origin)
+    assert caught.value.response.status_code == 403
+    assert json.loads(caught.value.response.body)["title"] == "foreign origin"
+
+
+def test_the_gateways_own_page_is_welcome(small: str) -> None:
+    with opened(small, origin=small) as live:
+        assert next_of(live, "services") is not None
+
+
+@pytest.mark.parametrize("robot", ["A", "..%5cx", "%00", "a%0a", "x" * 65])
+def test_bad_names_are_refused(small: str, robot: str) -> None:
+    with pytest.raises(InvalidStatus) as caught:
+        connect(url(small, robot), proxy=None)
+    assert caught.value.response.status_code in (403, 404, 422)
+
+
+def test_connections_are_limited_and_freed(small: str) -> None:
+    def room() -> bool:
+        try:
+            with opened(small):
+                return True
+        except InvalidStatus:
+            return False
+
+    assert wait_until(room, 5.0)
+    with opened(small), opened(small), opened(small):
+        with pytest.raises(InvalidStatus) as caught:
+            opened(small)
+        assert caught.value.response.status_code == 503
+    assert wait_until(room, 5.0)
+
+
+def test_a_reader_that_stops_reading_is_dropped_and_blocks_nobody(small: str, robot_bus: Bus) -> None:
+    events = robot_bus.publisher(EVENT, robot=ROBOT)
+    host, port = small.removeprefix("http://").split(":")
+    deaf = socket.create_connection((host, int(port)))
+    deaf.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    deaf.sendall(
+        f"GET /api/robots/{ROBOT}/live HTTP/1.1\r\nHost: {host}:{port}\r\nUpgrade: websocket\r\n"
+        "Connection: Upgrade\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
+    )
+    try:
+        with opened(small) as live:
+            sent = 0
+
+            def dropped() -> bool:
+                nonlocal sent
+                for _ in range(400):
+                    events.put(Event(seq=sent, robot=ROBOT, kind="load", reason="x" * 400))
+                    sent += 1
+                while True:
+                    try:
+                        live.recv(timeout=0)
+                    except TimeoutError:
+                        break
+                text = httpx.get(f"{small}/metrics", trust_env=False).text
+                return "sockets_dropped_total{" in text
+
+            assert wait_until(dropped, 30.0)
+            events.put(Event(seq=10**6, robot=ROBOT, kind="after"))
+            while next_of(live, "event")["kind"] != "after":
+                pass
+    finally:
+        deaf.close()
+
+
+def test_long_messages_of_a_reader_end_its_connection(small: str) -> None:
+    with opened(small) as live:
+        live.send("x" * 100_000)
+        with pytest.raises(ConnectionClosed):
+            while True:
+                live.recv(timeout=5.0)

@@ -1,0 +1,82 @@
+"""Maps through the gateway: paths, bodies, files and problems of the map store unchanged."""
+
+import httpx
+import pytest
+
+from tests.integration.gateway.conftest import free_port, serve_gateway
+
+Stored = tuple[int, list[tuple[str, str]]]
+
+
+def test_lists_are_passed_back(http: httpx.Client) -> None:
+    assert [entry["name"] for entry in http.get("/api/maps").json()] == ["flat"]
+    assert len(http.get("/api/maps/flat/nodes").json()) == 5
+    assert http.get("/api/maps/flat/edges").json()[1]["suspended"] is True
+
+
+def test_query_parameters_reach_the_store(http: httpx.Client, stored: Stored) -> None:
+    http.get("/api/maps/flat/nodes?after=3&limit=2")
+    assert stored[1][-1] == ("GET", "/maps/flat/nodes?after=3&limit=2")
+
+
+def test_thumbnails_are_pictures(http: httpx.Client) -> None:
+    answer = http.get("/api/maps/flat/nodes/2/thumbnail")
+    assert (answer.headers["content-type"], answer.content) == ("image/jpeg", b"jpeg")
+    assert answer.headers["cache-control"] == "private, no-cache"
+
+
+def test_an_export_is_a_download(http: httpx.Client) -> None:
+    answer = http.get("/api/maps/flat/export")
+    assert answer.headers["content-disposition"] == 'attachment; filename="flat.zip"'
+    assert len(answer.content) == 3_000_002
+
+
+def test_an_import_streams_through(http: httpx.Client, stored: Stored) -> None:
+    answer = http.post(
+        "/api/maps/import?name=copy", content=bytes(5_000_000), headers={"content-type": "application/zip"}
+    )
+    assert (answer.status_code, answer.json()) == (201, {"bytes": 5_000_000})
+    assert stored[1][-1] == ("POST", "/maps/import?name=copy")
+
+
+def test_rename_delete_and_undo_reach_the_store(http: httpx.Client, stored: Stored) -> None:
+    assert http.patch("/api/maps/flat", json={"name": "new"}).json()["sent"] == '{"name":"new"}'
+    http.delete("/api/maps/flat")
+    http.post("/api/maps/flat/undo")
+    assert stored[1][-3:] == [("PATCH", "/maps/flat"), ("DELETE", "/maps/flat"), ("POST", "/maps/flat/undo")]
+
+
+def test_the_stores_problems_come_unchanged(http: httpx.Client) -> None:
+    answer = http.get("/api/maps/other")
+    assert answer.status_code == 404
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert answer.json()["type"] == "urn:topnav:problem:missing"
+
+
+def test_an_answer_that_is_no_problem_document_becomes_one(http: httpx.Client) -> None:
+    answer = http.post("/api/maps/other/undo")
+    assert (answer.status_code, answer.json()["title"]) == (502, "bad answer")
+
+
+@pytest.mark.parametrize("name", ["A", "..%5cetc", "%00", "a%0a", "%2e%2e", "a b", "x" * 65, "ä"])
+def test_names_are_checked_before_they_reach_the_store(http: httpx.Client, stored: Stored, name: str) -> None:
+    asked = len(stored[1])
+    answer = http.get(f"/api/maps/{name}/nodes")
+    assert answer.status_code in (404, 422), answer.text
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert len(stored[1]) == asked
+
+
+def test_a_store_that_is_down_is_a_missing_service(endpoint: str) -> None:
+    for address in serve_gateway(endpoint, map_store_url=f"http://127.0.0.1:{free_port()}"):
+        answer = httpx.get(f"{address}/api/maps", trust_env=False)
+        assert answer.status_code == 503
+        assert answer.json()["service"] == "map_store"
+        assert httpx.get(f"{address}/healthz", trust_env=False).status_code == 200
+
+
+def test_an_import_beyond_the_limit_is_refused(endpoint: str, stored: Stored) -> None:
+    store = f"http://127.0.0.1:{stored[0]}"
+    for address in serve_gateway(endpoint, map_store_url=store, max_import_bytes=10_000):
+        answer = httpx.post(f"{address}/api/maps/import", content=bytes(200_000), trust_env=False)
+        assert (answer.status_code, answer.json()["title"]) == (413, "body too large")
