@@ -33,7 +33,7 @@ def heading_errors(pairs):
 
 
 def hand_made(heading, yaw):
-    """Eight points around the camera, which moves 1 m: (current, target), computed without the code under test."""
+    """Eight points around the camera, which moves 1 m, as (current, target); not by the code under test."""
     angles = np.deg2rad([10.0, 55.0, 100.0, 145.0, 190.0, 235.0, 280.0, 325.0])
     points = np.stack([3 * np.cos(angles), 3 * np.sin(angles), [1, -1, 1.5, -0.8, 1.2, -1, 0.7, -1]], axis=1)
     moved = points - [np.cos(heading), np.sin(heading), 0.0]
