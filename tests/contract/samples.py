@@ -1,0 +1,295 @@
+"""One message of every kind, every field filled in. `python -m tests.contract.samples` adds golden files."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from shared.messages import (
+    Command,
+    Event,
+    ExtractRequest,
+    Features,
+    Frame,
+    Heading,
+    MapDelta,
+    MapReply,
+    MapRequest,
+    MatchReply,
+    MatchRequest,
+    Message,
+    MissionRecord,
+    MissionRecordRequest,
+    MissionRequest,
+    MissionStatus,
+    Ranges,
+    SimulationReply,
+    SimulationRequest,
+    Truth,
+)
+from shared.messages.maps import (
+    AddNode,
+    DeleteEdge,
+    DeleteNode,
+    Edge,
+    Node,
+    NodeFeatures,
+    PutEdge,
+    UpdateNode,
+)
+from shared.messages.matching import NodeMatch
+from shared.messages.missions import EventValue
+from shared.messages.simulation import Pose
+from shared.wire import encode
+
+GOLDEN = Path(__file__).parent / "golden"
+STAMP_NS = 1_700_000_000_000_000_000
+HALF = (True, False) * 6
+
+
+def features() -> Features:
+    return Features(
+        seq=7,
+        stamp_ns=STAMP_NS,
+        robot="r1",
+        lockstep=True,
+        pipeline="sift/tangent/150",
+        lonlat_rad=np.array([[0.5, -0.25], [-3.0, 0.125]], np.float32),
+        scores=np.array([2.0, 1.0], np.float32),
+        descriptors=np.arange(16, dtype=np.float32).reshape(2, 8),
+        thumbnail=b"\xff\xd8\xff\xd9",
+    )
+
+
+def frame() -> Frame:
+    return Frame(
+        seq=7,
+        stamp_ns=STAMP_NS,
+        robot="r1",
+        lockstep=True,
+        encoding="bgr8",
+        width_px=4,
+        height_px=2,
+        data=bytes(range(24)),
+    )
+
+
+def node(node_id: int) -> Node:
+    return Node(
+        node_id=node_id,
+        stamp_ns=STAMP_NS,
+        frame_seq=7,
+        pipeline="sift",
+        keypoints=2,
+        open=HALF,
+        explored=HALF,
+    )
+
+
+def edge() -> Edge:
+    return Edge(
+        a=1,
+        b=2,
+        raw_matches=60,
+        inliers=40,
+        confidence=0.75,
+        heading_ab_rad=0.5,
+        heading_ba_rad=-2.5,
+        yaw_ab_rad=0.125,
+        disparity_rad=0.25,
+        s_min=30,
+        s_max=60,
+        pipeline="sift",
+        clear=True,
+        traversals=2,
+        failures=1,
+        suspended=True,
+        why="seen from one another",
+    )
+
+
+def operations() -> tuple[AddNode | UpdateNode | DeleteNode | PutEdge | DeleteEdge, ...]:
+    return (
+        AddNode(node=node(1), features=features()),
+        UpdateNode(node=node(1)),
+        PutEdge(edge=edge()),
+        DeleteEdge(a=1, b=2),
+        DeleteNode(node_id=2),
+    )
+
+
+def mission() -> MissionRecord:
+    return MissionRecord(
+        seq=7,
+        stamp_ns=STAMP_NS,
+        robot="r1",
+        epoch=3,
+        mission_id="m-1",
+        action="goto",
+        map="flat",
+        goal=features(),
+        goal_node=4,
+        seed=1,
+        max_steps=500,
+        step=12,
+        paused=True,
+    )
+
+
+def truth() -> Truth:
+    return Truth(
+        seq=7,
+        stamp_ns=STAMP_NS,
+        robot="r1",
+        world="apartment",
+        pose=Pose(x_m=1.0, y_m=-2.0, yaw_rad=0.5),
+        hider=Pose(x_m=3.0, y_m=4.0, yaw_rad=-0.5),
+        sim_time_s=12.5,
+        speed_mps=0.25,
+        collisions=1,
+        render_ms=60.5,
+    )
+
+
+def node_match() -> NodeMatch:
+    return NodeMatch(
+        node_id=1,
+        raw_matches=2,
+        inliers=1,
+        status="ok",
+        heading_rad=0.5,
+        heading_std_rad=0.0625,
+        yaw_rad=-0.5,
+        disparity_rad=0.25,
+        confidence=0.75,
+        matches_rad=np.array([[0.5, 0.25, 0.75, 0.125], [1.0, 0.0, 2.0, 0.0]], np.float32),
+        inlier_mask=np.array([1, 0], np.uint8),
+    )
+
+
+def samples() -> dict[type[Message], Message]:
+    """Message type -> a full example."""
+    at = {"seq": 7, "stamp_ns": STAMP_NS}
+    drive = at | {"robot": "r1", "epoch": 3, "ttl_ms": 300, "why": "ahead"}
+    examples: tuple[Message, ...] = (
+        frame(),
+        Ranges(
+            **at, robot="r1", lockstep=True, angles_rad=(0.5,) * 12, distances_m=(2.5,) * 12, max_range_m=5.0
+        ),
+        features(),
+        ExtractRequest(**at, frame=frame()),
+        MatchRequest(
+            **at,
+            map="flat",
+            map_revision=5,
+            features=features(),
+            node_ids=(1, 2),
+            best_k=3,
+            targets=(features(),),
+            with_matches=False,
+        ),
+        MatchReply(
+            **at,
+            map="flat",
+            map_revision=5,
+            pipeline="sift",
+            max_similarity=150,
+            results=(node_match(),),
+            match_ms=1.5,
+            verify_ms=2.5,
+        ),
+        Heading(
+            **drive,
+            mission_id="m-1",
+            action="hold",
+            heading_rad=0.5,
+            s_cv=70,
+            s_slow=90,
+            s_max=150,
+            speed_fraction=0.5,
+            method="epipolar",
+        ),
+        Command(**drive, steer_rad=0.25, wheel_speed_radps=4.0, avoiding=True),
+        MissionRequest(
+            **at,
+            action="goto",
+            map="flat",
+            mission_id="m-1",
+            goal=features(),
+            goal_node=4,
+            seed=1,
+            max_steps=9,
+        ),
+        MissionStatus(
+            **at,
+            robot="r1",
+            mission_id="m-1",
+            action="goto",
+            map="flat",
+            state="failed",
+            failure="lost",
+            reason="no node looks like this",
+            step=12,
+            nodes=5,
+            edges=6,
+            open_directions=7,
+            via_points=(1, 2),
+            via_index=1,
+            nearest_node=2,
+            similarity=70,
+            disparity_rad=0.25,
+            epoch=3,
+        ),
+        Event(
+            **at,
+            robot="r1",
+            mission_id="m-1",
+            step=12,
+            kind="edge",
+            reason="similar",
+            values=(EventValue(name="s", value=70), EventValue(name="heading", value=0.5)),
+        ),
+        MapRequest(
+            **at,
+            action="transact",
+            author="planner",
+            base_revision=4,
+            operations=operations(),
+            node_ids=(1, 2),
+        ),
+        MapReply(
+            **at,
+            map="flat",
+            revision=5,
+            nodes=(node(1), node(2)),
+            edges=(edge(),),
+            features=(NodeFeatures(node_id=1, features=features()),),
+        ),
+        MapDelta(**at, map="flat", revision=5, reset=True, author="planner", operations=operations()),
+        mission(),
+        MissionRecordRequest(**at, action="save", record=mission()),
+        truth(),
+        SimulationRequest(**at, action="look", pose=Pose(x_m=1.0, y_m=2.0, yaw_rad=0.5), seed=3),
+        SimulationReply(**at, truth=truth(), frame=frame()),
+    )
+    return {type(example): example for example in examples}
+
+
+def golden_files(kind: type[Message]) -> list[Path]:
+    """Bytes of one kind that were sent at some time, newest last: NAME.msgpack, NAME-2.msgpack, ..."""
+    return sorted(GOLDEN.glob(f"{kind.SCHEMA}[-.]*msgpack"), key=lambda path: (len(path.name), path.name))
+
+
+def main() -> int:
+    """Add a golden file for each message that got a field; old ones stay: old programs still send them."""
+    GOLDEN.mkdir(exist_ok=True)
+    for kind, example in samples().items():
+        known = golden_files(kind)
+        if not known or known[-1].read_bytes() != encode(example):
+            number = f"-{len(known) + 1}" if known else ""
+            (GOLDEN / f"{kind.SCHEMA}{number}.msgpack").write_bytes(encode(example))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

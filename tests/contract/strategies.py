@@ -1,0 +1,139 @@
+"""Hypothesis strategies for every message, derived from the models' own annotations and limits."""
+
+import types
+from collections.abc import Callable
+from functools import cache
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+import annotated_types as limits
+import numpy as np
+import numpy.typing as npt
+from hypothesis import strategies as st
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from shared.messages import Features, Frame
+from shared.messages.arrays import ArraySpec
+from shared.messages.maps import Edge
+from shared.messages.matching import NodeMatch
+
+Fields = dict[str, Any]
+
+LONG = 3
+"""Length of open lists and axes; limits themselves are tested by hand."""
+WIDEST = 2**63 - 1
+
+
+@cache
+def messages(kind: type[BaseModel]) -> st.SearchStrategy[Any]:
+    """Valid messages of one kind."""
+    fields = {
+        name: _value(field.annotation, tuple(field.metadata)) for name, field in kind.model_fields.items()
+    }
+    fit = FITS.get(kind, _as_drawn)
+    return st.tuples(st.fixed_dictionaries(fields), st.integers(0, LONG), st.integers(0, 2**32 - 1)).map(
+        lambda drawn: kind(**fit(*drawn))
+    )
+
+
+def _value(annotation: Any, metadata: tuple[Any, ...]) -> st.SearchStrategy[Any]:
+    if any(isinstance(entry, ArraySpec) for entry in metadata):
+        return st.none()  # filled in by FITS, because arrays of one message must fit together
+    origin = get_origin(annotation)
+    if origin is Annotated:
+        inner, *more = get_args(annotation)
+        told = [m for entry in more for m in (entry.metadata if isinstance(entry, FieldInfo) else [entry])]
+        return _value(inner, (*told, *metadata))
+    if origin in (Union, types.UnionType):
+        return st.one_of([_value(choice, metadata) for choice in get_args(annotation)])
+    if origin is Literal:
+        return st.sampled_from(get_args(annotation))
+    if origin is tuple:
+        least = _limit(metadata, limits.MinLen, "min_length", 0)
+        return st.lists(_value(get_args(annotation)[0], ()), min_size=least, max_size=max(LONG, least)).map(
+            tuple
+        )
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return messages(annotation)
+    return _scalar(annotation, metadata)
+
+
+def _scalar(kind: Any, metadata: tuple[Any, ...]) -> st.SearchStrategy[Any]:
+    if kind is bool:
+        return st.booleans()
+    if kind is int:
+        least = _limit(metadata, limits.Ge, "ge", -WIDEST)
+        most = min(
+            _limit(metadata, limits.Le, "le", WIDEST), _limit(metadata, limits.Lt, "lt", WIDEST + 1) - 1
+        )
+        return st.integers(least, most)
+    if kind is float:
+        low, high = _limit(metadata, limits.Ge, "ge", None), _limit(metadata, limits.Le, "le", None)
+        above = _limit(metadata, limits.Gt, "gt", None)
+        low = above if low is None else low
+        return st.floats(low, high, exclude_min=above is not None, allow_nan=False, allow_infinity=False)
+    if kind is str:
+        pattern = next((p for entry in metadata if (p := getattr(entry, "pattern", None))), None)
+        if pattern:
+            return st.from_regex(pattern, fullmatch=True)
+        return st.text(max_size=min(20, _limit(metadata, limits.MaxLen, "max_length", 20)))
+    if kind is bytes:
+        return st.binary(max_size=50)
+    assert kind is type(None), f"no strategy for {kind}"
+    return st.none()
+
+
+def _limit(metadata: tuple[Any, ...], kind: type, name: str, otherwise: Any) -> Any:
+    return next((getattr(entry, name) for entry in metadata if isinstance(entry, kind)), otherwise)
+
+
+def _array(spec: ArraySpec, count: int, seed: int) -> npt.NDArray[Any]:
+    """Random bits of a random allowed dtype, with the odd value that is not finite replaced."""
+    rng = np.random.default_rng(seed)
+    dtype = np.dtype(spec.dtypes[seed % len(spec.dtypes)])
+    shape = tuple(count if axis is None else axis for axis in spec.shape)
+    array = np.frombuffer(rng.bytes(int(np.prod(shape)) * dtype.itemsize), dtype).reshape(shape)
+    return np.nan_to_num(array) if dtype.kind == "f" else array
+
+
+def _spec(kind: type[BaseModel], name: str) -> ArraySpec:
+    field = kind.model_fields[name]
+    pool = [*field.metadata, *(entry for choice in get_args(field.annotation) for entry in get_args(choice))]
+    return next(entry for entry in pool if isinstance(entry, ArraySpec))
+
+
+def _as_drawn(fields: Fields, _count: int, _seed: int) -> Fields:
+    return fields
+
+
+def _fit_features(fields: Fields, count: int, seed: int) -> Fields:
+    names = ("lonlat_rad", "scores", "descriptors")
+    return fields | {name: _array(_spec(Features, name), count, seed) for name in names}
+
+
+def _fit_match(fields: Fields, count: int, seed: int) -> Fields:
+    names = ("matches_rad", "inlier_mask")
+    if seed % 4 == 0:
+        return fields | dict.fromkeys(names)
+    return fields | {name: _array(_spec(NodeMatch, name), count, seed) for name in names}
+
+
+def _fit_frame(fields: Fields, count: int, seed: int) -> Fields:
+    height = count + 1
+    size = 6 * height * height if fields["encoding"] == "bgr8" else count
+    data = np.random.default_rng(seed).bytes(size)
+    return fields | {"height_px": height, "width_px": 2 * height, "data": data}
+
+
+def _fit_edge(fields: Fields, _count: int, _seed: int) -> Fields:
+    ends = fields["a"], fields["b"]
+    return fields | {"a": min(ends) // 2, "b": max(ends) // 2 + 1}
+
+
+FITS: dict[type[BaseModel], Callable[[Fields, int, int], Fields]] = {
+    Features: _fit_features,
+    NodeMatch: _fit_match,
+    Frame: _fit_frame,
+    Edge: _fit_edge,
+}
+"""What fields of one message owe each other, beyond what each of them must be by itself."""
