@@ -51,7 +51,7 @@ def explore(
     request = MissionRequest(action="explore", map=map_name, seed=seed, max_steps=max_steps)
     run = client.run(request, watch)
     hand_moves = hand.moves - moved
-    final = hand.settled_truth().pose
+    final = hand.settled_truth(run.last_seq).pose
     client.collect()
     graph = require_map(stack, map_name)
     truth = join_truth(world, graph.nodes, client.trail, before)

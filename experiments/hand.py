@@ -1,5 +1,6 @@
 """The experimenter's hand in the simulation: reset, hide the other robot, look, read the true state."""
 
+import math
 import time
 
 from experiments.failure import ExperimentError
@@ -10,8 +11,8 @@ from shared.messages.simulation import Pose
 from shared.topics import SIMULATION
 
 TIMEOUT_S = 30.0
-STILL_MPS = 0.01
-SETTLED_POLLS = 3
+STILL_M = 0.001
+STILL_POLLS = 2
 POLL_S = 0.1
 
 
@@ -23,7 +24,7 @@ class Hand:
         self.moves = 0
 
     def reset(self, seed: int) -> Truth:
-        """Put the robot at the world's start and seed the noise."""
+        """Put the robot at the world's start and seed the noise; returns the state, stamped before that."""
         self.moves += 1
         return self._ask(SimulationRequest(action="reset", seed=seed)).truth
 
@@ -48,15 +49,15 @@ class Hand:
         """The true state now."""
         return self._ask(SimulationRequest(action="truth")).truth
 
-    def settled_truth(self, timeout_s: float = 10.0) -> Truth:
-        """The true state once the robot stands and, in lockstep, no frame is being answered any more."""
+    def settled_truth(self, after_seq: int = -1, timeout_s: float = 10.0) -> Truth:
+        """The true state once frame `after_seq` is answered and the robot stands still."""
         deadline_s = time.monotonic() + timeout_s
-        last, equal = self.truth(), 0
-        while equal < SETTLED_POLLS and time.monotonic() < deadline_s:
+        last, still = self.truth(), 0
+        while still < STILL_POLLS and time.monotonic() < deadline_s:
             time.sleep(POLL_S)
             now = self.truth()
-            still = now.pose == last.pose or (now.seq == last.seq and now.speed_mps < STILL_MPS)
-            equal = equal + 1 if still else 0
+            moved_m = math.hypot(now.pose.x_m - last.pose.x_m, now.pose.y_m - last.pose.y_m)
+            still = still + 1 if moved_m < STILL_M and now.seq > after_seq else 0
             last = now
         return last
 

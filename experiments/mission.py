@@ -9,7 +9,7 @@ from experiments.trail import Trail
 from shared.bus import Bus
 from shared.messages import Features, MissionRequest, MissionStatus, Truth
 from shared.queries import QueryError
-from shared.topics import FEATURES, MISSION, STATUS, TRUTH
+from shared.topics import FEATURES, HEADING, MISSION, STATUS, TRUTH
 
 TERMINAL = frozenset({"succeeded", "failed", "cancelled"})
 ASK_TIMEOUT_S = 10.0
@@ -26,6 +26,7 @@ class MissionRun:
     Attributes:
         status: its last status.
         truths: true states from just before it to its end.
+        last_seq: number of the last frame that was answered; the robot stands once the next one is out.
         via: all via points it ever planned, in the order of the plans.
     """
 
@@ -33,6 +34,7 @@ class MissionRun:
     truths: list[Truth]
     wall_s: float
     via: tuple[int, ...] = ()
+    last_seq: int = 0
 
     @property
     def succeeded(self) -> bool:
@@ -53,20 +55,21 @@ class MissionClient:
         self._statuses = bus.subscribe(STATUS, robot=robot)
         self._truths = bus.subscribe(TRUTH, robot=robot)
         self._features = bus.subscribe(FEATURES, robot=robot)
+        self._headings = bus.subscribe(HEADING, robot=robot)
         self.trail = Trail()
 
     def ask(self, request: MissionRequest) -> MissionStatus:
         """Send one request to the planner."""
         return self._bus.ask(MISSION, request, ASK_TIMEOUT_S, robot=self._robot)
 
-    def wait_for_frame(self, stamp_ns: int, timeout_s: float = 30.0) -> Features:
-        """Wait for the features of a frame at or after `stamp_ns`, so that no older one is answered."""
+    def wait_for_frame(self, after_ns: int, timeout_s: float = 30.0) -> Features:
+        """Wait for the features of a frame later than `after_ns`, so that no older one is answered."""
         deadline_s = time.monotonic() + timeout_s
         while time.monotonic() < deadline_s:
             self._bus.wait(PERIOD_S)
             self.collect()
             features = self._features.take()
-            if features is not None and features.stamp_ns >= stamp_ns:
+            if features is not None and features.stamp_ns > after_ns:
                 return features
         raise ExperimentError(f"no frame came through the feature service within {timeout_s:.0f} s")
 
@@ -90,7 +93,9 @@ class MissionClient:
             raise
         wall_s = time.monotonic() - start_s
         self.collect()
-        return MissionRun(status, self.trail.since(mark), wall_s, tuple(via))
+        heading = self._headings.take()
+        last_seq = heading.seq if heading is not None else 0
+        return MissionRun(status, self.trail.since(mark), wall_s, tuple(via), last_seq)
 
     def collect(self) -> None:
         """Put the true states that came in into the trail."""

@@ -111,7 +111,9 @@ class Game:
         """Hide the other robot: seeker's pose, hider's pose, shortest way, the hider's picture."""
         start = self.hand.settled_truth().pose
         hider, way_m = hiding_place(self._space, start, self._rng)
-        return start, hider, way_m, self.hand.place_hider(hider)
+        picture = self.hand.place_hider(hider)
+        self.client.wait_for_frame(picture.stamp_ns)  # from now on the hider may be seen
+        return start, hider, way_m, picture
 
     def play(self, seed: int, max_steps: int, watch: Watch | None = None) -> Round:
         """Hide, extract the picture's features, seek."""
@@ -126,7 +128,7 @@ class Game:
         self, start: Pose, hider: Pose, way_m: float, goal: Frame, run: MissionRun, hand_moves: int
     ) -> Round:
         """Read where the seeker stands now."""
-        final = self.hand.settled_truth().pose
+        final = self.hand.settled_truth(run.last_seq).pose
         self.client.collect()
         return Round(start, hider, final, goal, run, way_m, hand_moves)
 

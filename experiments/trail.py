@@ -1,6 +1,7 @@
 """The true way of a robot, kept by frame. For evaluation only: no service ever sees it. Pure."""
 
 import math
+from bisect import bisect_left
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -11,6 +12,8 @@ JUMP_M = 0.4
 TOP_SPEED_MPS = 1.5
 """No robot of ours moves further than JUMP_M + TOP_SPEED_MPS * dt between two frames: somebody moved it."""
 
+MAX_GAP_S = 0.5
+
 
 @dataclass
 class Trail:
@@ -18,14 +21,14 @@ class Trail:
 
     truths: list[Truth] = field(default_factory=list)
     _seen: set[tuple[int, int]] = field(default_factory=set)
-    _pose_of: dict[int, Pose] = field(default_factory=dict)
+    _stamps_ns: list[int] = field(default_factory=list)
 
     def add(self, truths: Iterable[Truth]) -> None:
         """Append those of frames not seen before; lockstep repeats a frame until it is answered."""
         for truth in truths:
             if (truth.seq, truth.stamp_ns) not in self._seen:
                 self._seen.add((truth.seq, truth.stamp_ns))
-                self._pose_of[truth.stamp_ns] = truth.pose
+                self._stamps_ns.append(truth.stamp_ns)
                 self.truths.append(truth)
 
     def mark(self) -> int:
@@ -37,8 +40,20 @@ class Trail:
         return self.truths[max(0, mark - 1) :]
 
     def pose_at(self, stamp_ns: int) -> Pose | None:
-        """True pose of the frame captured at `stamp_ns`."""
-        return self._pose_of.get(stamp_ns)
+        """True pose at a capture time: that of the frame, or in real time between its two neighbours.
+
+        None where the nearest states are further than MAX_GAP_S apart.
+        """
+        after = bisect_left(self._stamps_ns, stamp_ns)
+        if after == len(self._stamps_ns):
+            return None
+        if self._stamps_ns[after] == stamp_ns:
+            return self.truths[after].pose
+        if after == 0 or self._stamps_ns[after] - self._stamps_ns[after - 1] > MAX_GAP_S * 1e9:
+            return None
+        span_ns = self._stamps_ns[after] - self._stamps_ns[after - 1]
+        share = (stamp_ns - self._stamps_ns[after - 1]) / span_ns
+        return _between(self.truths[after - 1].pose, self.truths[after].pose, share)
 
 
 def driven_m(truths: list[Truth]) -> float:
@@ -61,3 +76,12 @@ def manual_moves(truths: list[Truth]) -> int:
 
 def _apart_m(a: Pose, b: Pose) -> float:
     return math.hypot(b.x_m - a.x_m, b.y_m - a.y_m)
+
+
+def _between(a: Pose, b: Pose, share: float) -> Pose:
+    turn_rad = math.remainder(b.yaw_rad - a.yaw_rad, math.tau)
+    return Pose(
+        x_m=a.x_m + share * (b.x_m - a.x_m),
+        y_m=a.y_m + share * (b.y_m - a.y_m),
+        yaw_rad=math.remainder(a.yaw_rad + share * turn_rad, math.tau),
+    )

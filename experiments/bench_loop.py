@@ -1,0 +1,72 @@
+"""`topnav bench loop`: how long each stage of the loop takes over a real mission, in lockstep."""
+
+import os
+import platform
+import tempfile
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from experiments import options
+from experiments.bench_listener import Listener
+from experiments.bench_stages import stage_durations_ms, table
+from experiments.exploration import explore
+from experiments.failure import ExperimentError, one_line_errors
+from experiments.output import rounded, write_json
+from experiments.progress import mission_progress
+from experiments.stack import StackChoice, open_stack
+from experiments.tables import row_table
+
+MAP = "bench"
+
+
+def main(
+    world: options.World = "apartment",
+    steps: Annotated[int, typer.Option(min=20, help="Length of the mission.")] = 300,
+    seed: options.Seed = 1,
+    json_file: options.JsonFile = None,
+    pipeline: options.PipelineName = None,
+) -> None:
+    """Time the stages of the control loop while a robot explores; uses a stack and a map of its own."""
+    with tempfile.TemporaryDirectory(prefix="topnav-bench-") as folder, one_line_errors():
+        choice = StackChoice(Path(folder), world, seed, lockstep=True, pipeline=pipeline)
+        with (
+            open_stack(choice) as stack,
+            Listener(stack.endpoint, stack.robot) as listener,
+            mission_progress(Console(stderr=True), "timing") as watch,
+        ):
+            result = explore(stack, world, MAP, seed, steps, watch=watch)
+    if result.run.status.step < min(20, steps):
+        raise ExperimentError(
+            f"the mission ended after {result.run.status.step} steps: {result.run.status.reason}"
+        )
+    durations = stage_durations_ms(listener.arrivals)
+    stages = table(durations)
+    rate = rounded(result.run.steps_per_s, 2)
+    if json_file is not None:
+        counts = {stage: len(d) for stage, d in durations.items()}
+        figures = {"steps_per_s": rate, "stages": stages, "machine": machine(), "samples": counts}
+        write_json(json_file, {**figures, "steps": result.run.status.step, "nodes": result.run.status.nodes})
+    Console().print(row_table(f"{rate} steps/s", [{"stage": name, **row} for name, row in stages.items()]))
+
+
+def machine() -> dict[str, object]:
+    """What the figures were measured on."""
+    pages = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    return {
+        "processor": _processor(),
+        "cpus": os.cpu_count(),
+        "memory_gb": rounded(pages / 1e9, 1),
+        "system": platform.platform(),
+        "python": platform.python_version(),
+        "load_1min": rounded(os.getloadavg()[0], 2),
+    }
+
+
+def _processor() -> str:
+    path = Path("/proc/cpuinfo")
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.machine()
