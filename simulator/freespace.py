@@ -88,7 +88,7 @@ class FreeSpace:
         return sum(math.dist(a, b) for a, b in zip(path[:-1], path[1:], strict=True)) if path else math.inf
 
     def line_of_sight(self, a: Point, b: Point, height_m: float = 0.8) -> bool:
-        """Whether nothing opaque stands between two points at a height (thin leaves and glass count as nothing)."""
+        """Whether no wall and no solid furniture stands between two points at a height."""
         return not _blocked(self.parts, (*a, height_m), (*b, height_m))
 
     def _nearest(self, point: Point) -> tuple[int, int]:
@@ -198,10 +198,10 @@ def _flood(free: npt.NDArray[np.bool_], start: tuple[int, int]) -> npt.NDArray[n
 
 
 def _blocked(parts: tuple[Part, ...], a: tuple[float, float, float], b: tuple[float, float, float]) -> bool:
-    """Whether the segment a-b meets the bounding box of an opaque part (leaves and pictures excepted)."""
+    """Whether the segment a-b meets a solid part; ornaments, leaves, cloth and pictures hide too little to count."""
     start, delta = np.array(a), np.array(b) - np.array(a)
     for part in parts:
-        if part.shape == "leaf" or (not part.solid and part.shape == "box" and min(part.size_m) < 0.05):
+        if not part.solid:
             continue
         rotation = rotation_of(part)
         local, step = rotation.T @ (start - np.array(part.centre_m)), rotation.T @ delta

@@ -10,9 +10,9 @@ from simulator.robot_shape import wheel_mounts
 from simulator.settings import RobotSettings
 from simulator.steering import LegTarget, next_target
 
-CHASSIS_KG, LEG_KG, WHEEL_KG = 9.0, 0.5, 0.5
+CHASSIS_KG, LEG_KG, WHEEL_KG = 14.0, 0.5, 0.5
 STEER_STIFFNESS, STEER_DAMPING, STEER_FORCE = 220.0, 6.0, 60.0
-WHEEL_STIFFNESS, WHEEL_DAMPING, WHEEL_FORCE = 60.0, 4.0, 12.0
+WHEEL_STIFFNESS, WHEEL_DAMPING, WHEEL_FORCE = 60.0, 4.0, 3.0
 WHEEL_LAG_RAD = 0.4  # a blocked wheel does not wind up further than this
 UPRIGHT = [math.sqrt(0.5), 0.0, -math.sqrt(0.5), 0.0]  # joint axis x -> world z
 ACROSS = [math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)]  # joint axis x -> leg y
@@ -101,7 +101,7 @@ def _build(
     )
     inertia = CHASSIS_KG * settings.body_radius_m**2
     chassis.set_mass_and_inertia(
-        CHASSIS_KG, sapien.Pose([0, 0, 0.1]), [inertia / 3, inertia / 3, inertia / 2]
+        CHASSIS_KG, sapien.Pose([0, 0, 0.08]), [inertia / 3, inertia / 3, inertia / 2]
     )
     for k, (x, y) in enumerate(wheel_mounts(settings)):
         leg = builder.create_link_builder(chassis)

@@ -101,6 +101,10 @@ class Simulation:
         self._readings += 1
         return measure(*self._physics.robot.pose(), self._shapes, self.settings.ranges, rng)
 
+    def steer_angles_rad(self) -> list[float]:
+        """Measured angles of the four steer servos."""
+        return self._physics.robot.steer_angles_rad()
+
     def range_angles_rad(self) -> npt.NDArray[np.float64]:
         """Axes of the sensors, robot frame."""
         return sensor_angles_rad(self.settings.ranges)
