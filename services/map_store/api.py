@@ -1,6 +1,7 @@
 """REST over the same store: `create_app(store)`. The schema is at /openapi.json, a page at /docs."""
 
 from collections.abc import Callable
+from typing import Any
 
 from fastapi import APIRouter, Depends, FastAPI
 
@@ -15,7 +16,7 @@ MAX_BODY_BYTES = 100_000
 """Of every request but an import."""
 
 DESCRIPTION = "Maps of places: their nodes, edges, pictures and history. Errors are RFC 9457 problems."
-ERRORS = {
+ERRORS: dict[int | str, dict[str, Any]] = {
     status: {"model": Problem, "description": "problem+json"} for status in (401, 404, 409, 413, 422, 507)
 }
 
@@ -44,7 +45,7 @@ def create_app(
         graph_routes.build(store, write),
         archive_routes.build(store, write, max_archive_bytes),
     ):
-        app.include_router(router, responses=ERRORS)  # type: ignore[arg-type]
+        app.include_router(router, responses=ERRORS)
     app.include_router(_health(store, ready))
     return app
 

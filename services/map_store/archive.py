@@ -1,12 +1,14 @@
-"""A map as one file: a zip of `map.json` and `blobs/<sha256>`. The same map gives the same bytes; no pickle."""
+"""A map as one file: a zip of `map.json` and `blobs/<sha256>`; the same map gives the same bytes."""
 
 import zipfile
+import zlib
 from collections.abc import Callable
 from typing import IO, Literal
 
 from pydantic import Field, ValidationError
 
 from services.map_store.blobs import checksum, unpack_features
+from services.map_store.contents import Kind
 from services.map_store.errors import CorruptError, InvalidError
 from services.map_store.graph import AddPlace, Graph, Place, Step, apply
 from shared.messages.base import Name, Part
@@ -32,13 +34,13 @@ class Index(Part):
 
 
 def write_archive(
-    file: IO[bytes], name: str, revision: int, graph: Graph, read_blob: Callable[[Place, str], bytes]
+    file: IO[bytes], name: str, revision: int, graph: Graph, read_blob: Callable[[Place, Kind], bytes]
 ) -> None:
     """Write one map; `read_blob(place, kind)` gives the bytes of its "features" or "thumbnail"."""
     places = tuple(graph.places[node_id] for node_id in sorted(graph.places))
     links = tuple(graph.edges[key] for key in sorted(graph.edges))
     index = Index(name=name, revision=revision, places=places, edges=links)
-    owners = {place.features: (place, "features") for place in places}
+    owners: dict[str, tuple[Place, Kind]] = {place.features: (place, "features") for place in places}
     owners |= {place.thumbnail: (place, "thumbnail") for place in places if place.thumbnail}
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
         _write(archive, INDEX, index.model_dump_json(indent=1).encode())
@@ -99,9 +101,15 @@ class Archive:
             # A header may lie about the size: read one byte more than allowed, never all there is.
             with self._zip.open(name) as entry:
                 data = entry.read(max_bytes + 1)
-        except (zipfile.BadZipFile, zipfile.LargeZipFile, OSError, EOFError, KeyError, ValueError) as error:
-            raise InvalidError(f"{name[:80]}: cannot be read: {error}") from error
-        except Exception as error:  # noqa: BLE001  zlib.error is no OSError, and its module need not be there
+        except (
+            zipfile.BadZipFile,
+            OSError,
+            EOFError,
+            KeyError,
+            ValueError,
+            RuntimeError,
+            zlib.error,
+        ) as error:
             raise InvalidError(f"{name[:80]}: cannot be unpacked: {error}") from error
         if len(data) > max_bytes:
             raise InvalidError(f"{name[:80]}: at most {max_bytes} bytes expected")

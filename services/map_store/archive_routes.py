@@ -2,7 +2,8 @@
 
 import tempfile
 from collections.abc import Iterator, Sequence
-from typing import IO, Annotated
+from functools import partial
+from typing import IO, Annotated, Any
 
 from fastapi import APIRouter, Query, Request
 from fastapi.concurrency import run_in_threadpool
@@ -10,13 +11,13 @@ from fastapi.params import Depends
 from fastapi.responses import StreamingResponse
 
 from services.map_store.archive import Archive, write_archive
-from services.map_store.errors import CorruptError, InvalidError
+from services.map_store.errors import CorruptError
 from services.map_store.map_routes import AUTHOR
 from services.map_store.names import MapName
 from services.map_store.schemas import MapView, map_view
 from services.map_store.store import MapStore
 
-ZIP = {200: {"content": {"application/zip": {}}}}
+ZIP: dict[int | str, dict[str, Any]] = {200: {"content": {"application/zip": {}}}}
 IN_MEMORY_BYTES = 8_000_000
 CHUNK_BYTES = 1_000_000
 NewName = Annotated[str | None, Query(alias="name", pattern=r"^[a-z0-9_-]{1,64}$")]
@@ -26,15 +27,13 @@ def build(store: MapStore, write: Sequence[Depends], max_bytes: int) -> APIRoute
     """Routes /maps/{map}/export and /maps/import."""
     router = APIRouter(prefix="/maps", tags=["archives"])
 
-    @router.get("/{map}/export", response_class=StreamingResponse, responses=ZIP)  # type: ignore[arg-type]
+    @router.get("/{map}/export", response_class=StreamingResponse, responses=ZIP)
     def export_map(name: MapName) -> StreamingResponse:
         """The newest revision as a zip; the same map always gives the same bytes."""
         revision, graph = store.graph(name)
         file = tempfile.SpooledTemporaryFile(IN_MEMORY_BYTES)  # noqa: SIM115  closed by _chunks
         try:
-            write_archive(
-                file, name, revision, graph, lambda place, kind: store.blob(name, place.node.node_id, kind)
-            )
+            write_archive(file, name, revision, graph, partial(store.contents.read, name))
         except CorruptError as error:
             file.close()
             raise CorruptError(f"{error}, then export again") from None

@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 from sqlalchemy import Column, Connection, Select, delete, insert, select, update
 
@@ -84,10 +85,9 @@ def drop(connection: Connection, map_id: int) -> None:
     connection.execute(delete(tables.blobs).where(~used.exists()))
 
 
-def _existing(
-    connection: Connection, query: Select[tuple[str]], column: Column[str], names: list[str]
-) -> set[str]:
+def _existing(connection: Connection, query: Select[Any], column: Column[str], names: list[str]) -> set[str]:
     found: set[str] = set()
     for start in range(0, len(names), CHUNK):
-        found |= set(connection.execute(query.where(column.in_(names[start : start + CHUNK]))).scalars())
+        chunk = query.where(column.in_(names[start : start + CHUNK]))
+        found.update(str(name) for name in connection.execute(chunk).scalars())
     return found

@@ -1,6 +1,7 @@
 """Maps by name: find, list, create, rename, delete. Every function works inside the caller's transaction."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from sqlalchemy import Connection, Row, delete, func, insert, select, update
 
@@ -32,10 +33,11 @@ def check_name(name: str) -> str:
     return name
 
 
-def find(connection: Connection, name: str) -> Row[tuple[int, int]]:
+def find(connection: Connection, name: str) -> Row[Any]:
     """`map_id` and `revision` of a map; MissingError lists what there is."""
     check_name(name)
-    row = connection.execute(select(maps.c.map_id, maps.c.revision).where(maps.c.name == name)).first()
+    query = select(maps.c.map_id, maps.c.revision).where(maps.c.name == name)
+    row = connection.execute(query).first()
     if row is None:
         names = connection.execute(select(maps.c.name).order_by(maps.c.name).limit(LISTED)).scalars().all()
         raise MissingError(f"no map {name!r}; maps: {list(names)}")

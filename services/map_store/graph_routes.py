@@ -1,11 +1,12 @@
 """REST: nodes, their pictures and edges."""
 
 from collections.abc import Sequence
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Response
 from fastapi.params import Depends
 
+from services.map_store.contents import place_of
 from services.map_store.errors import MissingError
 from services.map_store.graph import MAX_NODE_ID
 from services.map_store.map_routes import AUTHOR
@@ -16,7 +17,7 @@ from services.map_store.views import edge_views, node_views
 from shared.messages.maps import DeleteEdge, DeleteNode
 from shared.wire import MAX_CONTAINER
 
-JPEG = {200: {"content": {"image/jpeg": {}}}}
+JPEG: dict[int | str, dict[str, Any]] = {200: {"content": {"image/jpeg": {}}}}
 Limit = Annotated[int, Query(ge=1, le=MAX_CONTAINER)]
 After = Annotated[int, Query(ge=-1, le=MAX_NODE_ID, description="last node id of the page before")]
 
@@ -38,10 +39,11 @@ def build(store: MapStore, write: Sequence[Depends]) -> APIRouter:
             raise MissingError(f"map {name!r}: node {node_id} does not exist")
         return found[0]
 
-    @router.get("/nodes/{node_id}/thumbnail", response_class=Response, responses=JPEG)  # type: ignore[arg-type]
+    @router.get("/nodes/{node_id}/thumbnail", response_class=Response, responses=JPEG)
     def read_thumbnail(name: MapName, node_id: NodeId) -> Response:
         """The small picture of a node."""
-        data = store.blob(name, node_id, "thumbnail")
+        _, graph = store.graph(name)
+        data = store.contents.read(name, place_of(graph, name, node_id), "thumbnail")
         if not data:
             raise MissingError(f"map {name!r}: node {node_id} has no thumbnail")
         # A node's picture never changes, but another node may get its number after an undo.

@@ -1,4 +1,4 @@
-"""Mission records, one per robot: what a planner that restarts goes on with, and which planner is the newest."""
+"""Mission records, one per robot: what a restarted planner goes on with, and which planner is the newest."""
 
 from sqlalchemy import Connection, delete, insert, select
 
@@ -37,7 +37,7 @@ class MissionStore:
             stored = self._read(connection, record.robot)
             if record.epoch < stored.epoch:
                 raise ConflictError(
-                    f"robot {record.robot!r}: epoch {record.epoch} is over, {stored.epoch} took its place; stop"
+                    f"robot {record.robot!r}: epoch {record.epoch} is over, {stored.epoch} has begun; stop"
                 )
             self._write(connection, record)
         return record

@@ -17,7 +17,7 @@ STOP_TIMEOUT_S = 5
 
 @contextmanager
 def serve(app: FastAPI, host: str, port: int) -> Iterator[int]:
-    """Serve `app` while the block runs; gives the port, which is bound here so that a taken one is an error."""
+    """Serve `app` while the block runs and give the port; it is bound here, so a taken one is an error."""
     with socket.create_server((host, port), family=_family(host), backlog=256) as listening:
         bound = int(listening.getsockname()[1])
         config = uvicorn.Config(

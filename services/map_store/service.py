@@ -1,18 +1,23 @@
-"""The bus side of the map store: answers questions, publishes deltas. Nothing here works inside a callback."""
+"""The bus side of the map store: answers questions and publishes deltas, all in one loop."""
 
 import logging
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from threading import Event
+from typing import TypeVar
 
 from services.map_store.errors import ConflictError, InvalidError, MapError
 from services.map_store.missions import MissionStore
 from services.map_store.store import MapStore
-from shared.bus import Bus, Publisher
+from shared.bus import Bus, Publisher, Request
+from shared.messages.base import Message
 from shared.messages.maps import MapDelta, MapReply, MapRequest, MissionRecord, MissionRecordRequest
-from shared.topics import MAP, MAP_DELTA, MISSION_RECORD, NAME
+from shared.topics import MAP, MAP_DELTA, MISSION_RECORD
 from shared.wire import encode
 
+Q = TypeVar("Q", bound=Message)
+R = TypeVar("R", bound=Message)
 log = logging.getLogger(__name__)
 
 PERIOD_S = 0.5
@@ -50,7 +55,7 @@ def answer_map(store: MapStore, name: str, request: MapRequest) -> MapReply:
         revision = store.transact(name, request.operations, request.author, request.base_revision)
         return MapReply(map=name, revision=revision)
     if request.action == "read_features":
-        revision, features = store.features(name, request.node_ids)
+        revision, features = store.contents.features(name, request.node_ids)
         return MapReply(map=name, revision=revision, features=features)
     revision, graph = store.graph(name)
     nodes = tuple(place.node for place in graph.places.values())
@@ -81,17 +86,15 @@ def run(
     while not stop.is_set():
         bus.wait(PERIOD_S)
         while (question := maps.take()) is not None:
-            _answer(question, lambda name, request: answer_map(store, name, request))
+            _answer(question, partial(answer_map, store))
             deltas.publish()
         while (mission := records.take()) is not None:
-            _answer(mission, lambda name, request: answer_mission(missions, name, request))
+            _answer(mission, partial(answer_mission, missions))
         deltas.publish()
 
 
-def _answer(question, answer) -> None:  # type: ignore[no-untyped-def]
+def _answer(question: Request[Q, R], answer: Callable[[str, Q], R]) -> None:
     try:
-        if not NAME.match(question.name):
-            raise InvalidError(f"one name must be given, got {question.name[:80]!r}")
         reply = answer(question.name, question.message)
     except MapError as error:
         level = logging.INFO if isinstance(error, InvalidError | ConflictError) else logging.WARNING
