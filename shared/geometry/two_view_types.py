@@ -35,6 +35,10 @@ class TwoViewSettings:
         fallback_noise: a planar answer whose residuals spread over more than this share of the threshold is
             doubted: those of a wrong model fill the band and give 0.58.
         fallback_near: so is one that leaves more than this share of the matches, plus two, just out of reach.
+        fallback_probe: where the planar model found nothing, the fallback is only asked if at least this
+            many matches lie just out of its reach; 0 asks always. Wrong matches alone stay below 1.5 nine
+            times in ten, a tilt of three degrees rarely does, a tilt beyond ten among many wrong matches
+            often does.
         fallback_share: so is one that explains less than this share of the matches.
         fallback_min_matches: fewer matches than this are not worth the price of the fallback.
         fallback_samples: five-point samples drawn by the fallback.
@@ -54,6 +58,7 @@ class TwoViewSettings:
     fallback: bool = True
     fallback_noise: float = 0.45
     fallback_near: float = 0.15
+    fallback_probe: float = 1.5
     fallback_share: float = 0.3
     fallback_min_matches: int = 20
     fallback_samples: int = 200

@@ -85,6 +85,10 @@ def test_straight_back_is_column_zero_and_longitude_minus_pi():
     np.testing.assert_array_equal(lonlat_from_bearings(back)[:, 0], -np.pi)
 
 
+def test_longitude_a_rounding_error_beyond_the_seam_stays_in_the_image():
+    assert FULL.pixels_from_lonlat((np.pi + 1e-15, 0.0))[0] < 2048.0
+
+
 def test_columns_wrap():
     np.testing.assert_allclose(
         FULL.lonlat_from_pixels((2048.0 + 10.0, 300.0)), FULL.lonlat_from_pixels((10.0, 300.0)), atol=1e-12

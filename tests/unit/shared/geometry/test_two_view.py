@@ -15,6 +15,7 @@ from shared.geometry.two_view import TwoViewSettings, two_view
 from tests.unit.shared.geometry.synthetic_room import error_deg, make_scene
 
 LIMITS = TwoViewSettings()
+ALWAYS = TwoViewSettings(fallback_probe=0.0)
 ROTATION = rotation_z(0.8) @ rotation_y(0.2) @ rotation_x(-0.1)
 TRAVEL = np.array([0.6, 0.7, 0.3]) / np.linalg.norm([0.6, 0.7, 0.3])
 
@@ -68,7 +69,7 @@ def test_tilted_camera_is_answered_by_the_general_model(tilt_deg):
     errors = []
     for k in range(12):
         scene = make_scene(rng, 80, 30, noise_deg=0.15, tilt_deg=tilt_deg)
-        result = two_view(scene.current, scene.target, np.random.default_rng(k))
+        result = two_view(scene.current, scene.target, np.random.default_rng(k), ALWAYS)
         assert result.usable
         errors.append(error_deg(result.heading_rad, scene.heading_rad))
     assert np.median(errors) < 0.6
@@ -81,6 +82,26 @@ def test_flat_floor_is_answered_by_the_planar_model():
         scene = make_scene(rng, 60, 30, noise_deg=0.15)
         result = two_view(scene.current, scene.target, np.random.default_rng(k))
         assert (result.status, result.model) == ("ok", "planar")
+
+
+def test_small_tilt_is_noticed_and_wrong_matches_alone_do_not_start_the_costly_model(monkeypatch):
+    asked = []
+
+    def count(current, target, rng, limits):
+        asked.append(1)
+        return estimate_essential(current, target, rng, limits)
+
+    monkeypatch.setattr("shared.geometry.two_view.estimate_essential", count)
+    rng = np.random.default_rng(16)
+    for k in range(12):
+        scene = make_scene(rng, 60, 30, noise_deg=0.15, tilt_deg=3.0)
+        two_view(scene.current, scene.target, np.random.default_rng(k))
+    assert len(asked) >= 10
+    asked.clear()
+    for k in range(20):
+        scene = make_scene(rng, 60, 60)
+        two_view(scene.current, scene.target, np.random.default_rng(k))
+    assert len(asked) <= 4
 
 
 def test_without_fallback_the_planar_answer_stands():
@@ -102,7 +123,7 @@ def test_turning_on_the_spot_with_tilt_has_no_baseline():
     rng, statuses = np.random.default_rng(14), []
     for k in range(12):
         scene = make_scene(rng, 60, 10, distance_m=0.0, tilt_deg=6.0, noise_deg=0.15)
-        statuses.append(two_view(scene.current, scene.target, np.random.default_rng(k)).status)
+        statuses.append(two_view(scene.current, scene.target, np.random.default_rng(k), ALWAYS).status)
     assert statuses.count("no_baseline") >= 11
 
 
@@ -111,7 +132,7 @@ def test_wrong_matches_alone_are_refused_by_both_models():
     results = []
     for k in range(12):
         scene = make_scene(rng, 60, 60)
-        results.append(two_view(scene.current, scene.target, np.random.default_rng(k)))
+        results.append(two_view(scene.current, scene.target, np.random.default_rng(k), ALWAYS))
     assert sum(r.usable for r in results) == 0
 
 
