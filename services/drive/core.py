@@ -5,11 +5,11 @@ from typing import Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, PositiveFloat, PositiveInt
 
-from services.drive.clearance import Obstacles
 from services.drive.momentary import obstacle_heading, steer_away
 from services.drive.passing import Passing, PassingLimits, steer_past
 from services.drive.steering import Steering
 from services.drive.velocity import WheelLimits, wheel_speed
+from shared.geometry.clearance import Obstacles
 from shared.messages import Command, Heading, Ranges
 
 FULL_SPEED_CLEARANCE_M = 0.5

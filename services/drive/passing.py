@@ -2,7 +2,8 @@
 
 The rule is Pledge's (Abelson and diSessa, Turtle Geometry, 1981) with a compass that is the planner's
 heading: the deflection from the wished heading is counted, also beyond half a turn, and the border is left
-only when it has come back to zero. Which side is being passed is the only memory; it ages in steps.
+only when it has come back to zero. A side that does not lead past in time is given up for the other, with
+twice the patience each time: without a map of the obstacle no search wastes less. This memory ages in steps.
 """
 
 import math
@@ -11,8 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from pydantic import BaseModel, ConfigDict, PositiveFloat, PositiveInt
 
-from services.drive.clearance import Obstacles
 from services.drive.steering import Steering
+from shared.geometry.clearance import Obstacles
 
 STEP_RAD = math.radians(10.0)
 BACKTRACK_RAD = math.radians(100.0)
@@ -25,10 +26,12 @@ class PassingLimits(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     radius_m: PositiveFloat = 0.31
+    radius_slow_m: PositiveFloat = 0.28
     lookahead_m: PositiveFloat = 0.45
     lookahead_min_m: PositiveFloat = 0.12
     memory_steps: PositiveInt = 15
-    patience_steps: PositiveInt = 120
+    patience_steps: PositiveInt = 14
+    patience_growth: PositiveFloat = 2.0
 
 
 @dataclass(frozen=True)
@@ -39,12 +42,14 @@ class Passing:
         side: +1 passes obstacles with turns to the left, -1 to the right, 0 undecided.
         deflection_rad: turning away from the wished heading so far, towards `side`, never negative.
         steps: steps on this border; idle_steps: steps since it was left.
+        turns_back: times the side was changed on this border; each doubles the patience.
     """
 
     side: int = 0
     deflection_rad: float = 0.0
     steps: int = 0
     idle_steps: int = 0
+    turns_back: int = 0
 
 
 def steer_past(
@@ -61,19 +66,21 @@ def steer_past(
     """
     span_m = limits.lookahead_m - limits.lookahead_min_m
     lookahead_m = limits.lookahead_min_m + span_m * speed_fraction
-    if memory.steps > limits.patience_steps or memory.deflection_rad > 1.5 * FULL_TURN_RAD:
-        memory = Passing(side=-memory.side)
+    radius_m = limits.radius_slow_m + (limits.radius_m - limits.radius_slow_m) * speed_fraction
+    if memory.steps > limits.patience_steps * limits.patience_growth**memory.turns_back:
+        memory = Passing(side=-memory.side, turns_back=memory.turns_back + 1)
     if memory.deflection_rad == 0.0:
-        clearance_m = float(obstacles.clearance_m(np.array([wished_rad]), limits.radius_m)[0])
+        clearance_m = float(obstacles.clearance_m(np.array([wished_rad]), radius_m)[0])
         if clearance_m >= lookahead_m:
             idle = memory.idle_steps + 1
-            side = memory.side if idle < limits.memory_steps else 0
-            return Steering(wished_rad, False, "free", clearance_m), Passing(side=side, idle_steps=idle)
-    side = memory.side or _easier_side(wished_rad, obstacles, lookahead_m, limits)
+            kept = replace(memory, steps=max(0, memory.steps - 1), idle_steps=idle)
+            kept = kept if idle < limits.memory_steps else Passing()
+            return Steering(wished_rad, False, "free", clearance_m), kept
+    side = memory.side or _easier_side(wished_rad, obstacles, lookahead_m, radius_m)
     first_rad = max(0.0, memory.deflection_rad - BACKTRACK_RAD)
     offsets_rad = np.arange(first_rad, first_rad + FULL_TURN_RAD, STEP_RAD)
     headings_rad = wished_rad + side * offsets_rad
-    clearances_m = obstacles.clearance_m(headings_rad, limits.radius_m)
+    clearances_m = obstacles.clearance_m(headings_rad, radius_m)
     free = np.flatnonzero(clearances_m >= lookahead_m)
     if not len(free):
         free = np.flatnonzero(clearances_m >= limits.lookahead_min_m)
@@ -84,15 +91,17 @@ def steer_past(
     name = "left" if side > 0 else "right"
     why = f"passing on the {name}, {math.degrees(deflection_rad):.0f} deg off"
     steering = Steering(_wrap(float(headings_rad[chosen])), True, why, float(clearances_m[chosen]))
-    return steering, Passing(side=side, deflection_rad=deflection_rad, steps=memory.steps + 1)
+    return steering, replace(
+        memory, side=side, deflection_rad=deflection_rad, steps=memory.steps + 1, idle_steps=0
+    )
 
 
-def _easier_side(wished_rad: float, obstacles: Obstacles, lookahead_m: float, limits: PassingLimits) -> int:
+def _easier_side(wished_rad: float, obstacles: Obstacles, lookahead_m: float, radius_m: float) -> int:
     """The side on which a free direction lies nearer to the wished one; left when equal."""
     offsets_rad = np.arange(STEP_RAD, FULL_TURN_RAD, STEP_RAD)
     best: dict[int, float] = {}
     for side in (1, -1):
-        free = obstacles.clearance_m(wished_rad + side * offsets_rad, limits.radius_m) >= lookahead_m
+        free = obstacles.clearance_m(wished_rad + side * offsets_rad, radius_m) >= lookahead_m
         best[side] = float(offsets_rad[free.argmax()]) if free.any() else math.inf
     return 1 if best[1] <= best[-1] else -1
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from services.planner.following import PathFollower, Target
+from services.planner.following import Leg, PathFollower, Target
 from services.planner.frontiers import (
     best_sector,
     frontier_sectors,
@@ -20,8 +20,9 @@ from services.planner.frontiers import (
 from services.planner.mapping import add_place, is_new_place
 from services.planner.ports import Decision, MapAccess, Matcher, Note, Observation, Progress
 from services.planner.profiles import Profile
-from services.planner.routing import edge_cost, visible
+from services.planner.routing import plan_path, visible
 from services.planner.similarity import ranked, similarity, trusted
+from services.planner.surroundings import is_clear, room_m
 from shared.messages.maps import Node, UpdateNode
 from shared.messages.matching import NodeMatch
 
@@ -54,6 +55,7 @@ class FrontierExploration:
         self._here: int | None = None
         self._last_heading_rad = 0.0
         self._failures: dict[int, int] = {}
+        self._doubted: set[Leg] = set()
         self._lost = 0
         self.progress = Progress()
 
@@ -64,8 +66,8 @@ class FrontierExploration:
         if self._departure is not None:
             return self._depart(observation, self._departure)
         if self._travel is not None:
-            return self._go_on(self._travel)
-        return self._choose()
+            return self._go_on(observation, self._travel)
+        return self._choose(observation)
 
     def _first(self, observation: Observation) -> Decision:
         """The only node: random heading (thesis section 4.2)."""
@@ -106,7 +108,7 @@ class FrontierExploration:
             if is_new_place(merged, self._profile):
                 return self._new_place(observation, departure, merged)
             return self._known(departure, merged)
-        if _room_m(observation, departure.heading_rad) < self._profile.wall_range_m:
+        if room_m(observation.ranges, departure.heading_rad) < self._profile.wall_range_m:
             return self._close_departure(departure, "blocked by an obstacle")
         if departure.steps > MAX_DEPARTURE_STEPS:
             return self._close_departure(departure, "nothing new on the way")
@@ -154,7 +156,7 @@ class FrontierExploration:
         if node is not None and not node.explored[departure.sector]:
             self._maps.commit([UpdateNode(node=mark_explored(node, departure.sector))])
 
-    def _choose(self) -> Decision:
+    def _choose(self, observation: Observation) -> Decision:
         """Nearest node with something unexplored; none left: the map is complete."""
         graph = self._maps.graph
         frontier = {n: 0.0 for n, node in graph.nodes.items() if frontier_sectors(node)}
@@ -162,20 +164,18 @@ class FrontierExploration:
             why = f"nothing unexplored is left: {len(graph.nodes)} places, {len(graph.edges)} edges"
             return Decision("hold", why=why, outcome="succeeded")
         matches = self._matcher.match([], NEAR_NODES)
-        starts = visible(matches, self._profile, self._profile.s_via_min)
-        costs = graph.costs_to(frontier, edge_cost(self._profile))
-        reachable = [(leg + costs[n], n) for n, leg in starts.items() if n in costs]
-        if not reachable:
+        clear = {n for n, m in matches.items() if is_clear(m, observation.ranges, self._profile)}
+        starts = visible(matches, self._profile, self._profile.s_via_min, clear)
+        path = plan_path(graph, starts, frontier, self._profile, self._doubted)
+        if not path:
             return self._search(matches, bool(starts))
         self._lost = 0
-        path = graph.path(min(reachable)[1], frontier, edge_cost(self._profile))
-        self._travel = PathFollower(
-            self._profile, self._maps, path, Target(None, self._profile.travel_arrival_rad)
-        )
-        return self._go_on(self._travel)
+        target = Target(None, self._profile.travel_arrival_rad)
+        self._travel = PathFollower(self._profile, self._maps, path, target, self._doubted)
+        return self._go_on(observation, self._travel)
 
-    def _go_on(self, travel: PathFollower) -> Decision:
-        state, decision = travel.step(self._matcher)
+    def _go_on(self, observation: Observation, travel: PathFollower) -> Decision:
+        state, decision = travel.step(observation, self._matcher)
         self.progress = travel.progress
         end = travel.path[-1]
         if state == "going":
@@ -185,6 +185,9 @@ class FrontierExploration:
             match = self._matcher.match([end]).get(end)
             yaw = match.yaw_rad if match is not None and match.yaw_rad is not None else 0.0
             return self._leave(end, yaw, decision.notes)
+        if state == "unclear":
+            self._doubted.add(travel.next_leg())
+            return Decision("hold", why=f"planning again: {decision.why}", notes=decision.notes)
         return self._travel_failed(end, decision)
 
     def _travel_failed(self, end: int, decision: Decision) -> Decision:
@@ -231,10 +234,3 @@ def _inliers(graph: object, first: int, second: int) -> int:
 
 def _closed(node: Node) -> Node:
     return node.model_copy(update={"explored": (True,) * len(node.explored)})
-
-
-def _room_m(observation: Observation, heading_rad: float) -> float:
-    """Distance reported by the sensor nearest to a direction."""
-    ranges = observation.ranges
-    offsets = [abs(math.remainder(angle - heading_rad, math.tau)) for angle in ranges.angles_rad]
-    return ranges.distances_m[offsets.index(min(offsets))]

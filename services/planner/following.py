@@ -1,23 +1,30 @@
 """Following a path of places: which via point to aim at, when to go on to the next, when to give up."""
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
-from services.planner.ports import GOAL, Decision, MapAccess, Matcher, Note, Progress
+from services.planner.ports import GOAL, Decision, MapAccess, Matcher, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.similarity import heading_of, similarity, trusted
+from services.planner.surroundings import is_clear
 from shared.messages.features import Features
 from shared.messages.maps import PutEdge
 from shared.messages.matching import NodeMatch
+from shared.messages.sensors import Ranges
 
 WINDOW = 4
 """Via points compared at each step: the current one and those after it."""
 
-STUCK_STEPS = 45
-BLIND_STEPS = 3
-CLOSER = 0.93
+STUCK_STEPS = 35
+CLOSER = 0.95
+SLOW_RAD = math.radians(6.0)
+SLOWEST = 0.15
+NEAREST_STEPS = 8
+"""Steps without coming closer after which a place within `near_rad` is as near as obstacles allow."""
 
-FollowState = Literal["going", "arrived", "lost", "stuck"]
+Leg = tuple[int, int]
+FollowState = Literal["going", "arrived", "lost", "stuck", "unclear"]
 
 
 @dataclass
@@ -31,8 +38,12 @@ class Target:
 class PathFollower:
     """Drives along `path` (node ids; GOAL may be last) with equation 4.3 and looks ahead along it."""
 
-    def __init__(self, profile: Profile, maps: MapAccess, path: list[int], target: Target) -> None:
+    def __init__(
+        self, profile: Profile, maps: MapAccess, path: list[int], target: Target, doubted: set[Leg]
+    ) -> None:
         self._profile, self._maps, self._target = profile, maps, target
+        self._strict = profile.path_cost == "nodes"
+        self._doubted = doubted
         self.path = path
         self.index = 0
         self._bad = 0
@@ -41,71 +52,88 @@ class PathFollower:
         self._stale = 0
         self.progress = Progress(via_points=tuple(path))
 
-    def step(self, matcher: Matcher) -> tuple[FollowState, Decision]:
+    def step(self, observation: Observation, matcher: Matcher) -> tuple[FollowState, Decision]:
         """Compare with the next via points, advance, and head for the current one."""
         matches = self._look(matcher)
-        notes = self._advance(matches)
+        notes = self._advance(matches, observation.ranges)
         via = self.path[self.index]
         match = matches.get(via)
         s_cv = similarity(match, self._profile) if match is not None else 0
         self._report(via, s_cv, match)
-        if self.index == len(self.path) - 1 and match is not None and self._arrived(match, s_cv):
+        if self._at_end() and match is not None and self._arrived(match, s_cv):
             return "arrived", self._hold(f"arrived at {_name(via)}, S {s_cv}", notes)
+        if self._unclear_leg(match) is not None:
+            return "unclear", self._hold(f"no free ground seen beyond {_name(via)}", notes)
         found = heading_of(match, self._profile) if match is not None else None
         if match is None or found is None or s_cv < self._profile.s_via_min:
             return self._unseen(via, s_cv, notes)
         self._bad = 0
         self._heading_rad, method = found
         if self._no_progress(match):
+            if self._at_end() and self._best_rad < self._profile.near_rad:
+                return "arrived", self._hold(f"as near to {_name(via)} as obstacles allow, S {s_cv}", notes)
             return "stuck", self._hold(f"no progress towards {_name(via)}", notes)
         why = f"to {_name(via)}, S {s_cv}"
         return "going", Decision("go", self._heading_rad, s_cv, self._speed(match), method, why, notes)
 
-    def current_edge(self) -> tuple[int, int] | None:
-        """The edge being driven; None at index 0, where there is none (thesis equation 6.4)."""
-        if self.index == 0 or GOAL in self.path[self.index - 1 : self.index + 1]:
+    def current_leg(self) -> Leg | None:
+        """The leg being driven; None at index 0, where there is none (thesis equation 6.4)."""
+        return leg(*self.path[self.index - 1 : self.index + 1]) if self.index else None
+
+    def next_leg(self) -> Leg:
+        """The leg from the current via point to the one after it."""
+        return leg(*self.path[self.index : self.index + 2])
+
+    def _at_end(self) -> bool:
+        return self.index == len(self.path) - 1
+
+    def _unclear_leg(self, match: NodeMatch | None) -> Leg | None:
+        """At a via point with no sight of free ground to the next: better ask for another way, once per leg."""
+        if self._strict or self._at_end() or not self._is_at(match) or self._known_leg():
             return None
-        first, second = self.path[self.index - 1 : self.index + 1]
-        return (min(first, second), max(first, second))
+        return self.next_leg()
+
+    def _is_at(self, match: NodeMatch | None) -> bool:
+        if match is None or match.inliers < self._profile.s_via_min:
+            return False
+        near = match.disparity_rad is not None and match.disparity_rad < self._profile.travel_arrival_rad
+        return match.status == "no_baseline" or near
+
+    def _known_leg(self) -> bool:
+        """Driven before, or there was no other way when it was doubted."""
+        edge = self._maps.graph.edge(*self.next_leg())
+        return self.next_leg() in self._doubted or (edge is not None and edge.traversals > 0)
 
     def _look(self, matcher: Matcher) -> dict[int, NodeMatch]:
         ahead = self.path[self.index : self.index + WINDOW]
         targets = (self._target.features,) if self._target.features is not None else ()
         return matcher.match([n for n in ahead if n != GOAL], targets=targets)
 
-    def _advance(self, matches: dict[int, NodeMatch]) -> tuple[Note, ...]:
-        """Equation 4.3 for the next via point; with two-view geometry also straight to one well in sight."""
-        notes = []
-        strict = self._profile.path_cost == "nodes"
-        for step in (1, 2, 3):
-            later = self.index + step
-            if later >= len(self.path) or (strict and step > 1):
-                break
-            here, there = matches.get(self.path[self.index]), matches.get(self.path[later])
-            if there is None:
+    def _advance(self, matches: dict[int, NodeMatch], ranges: Ranges) -> tuple[Note, ...]:
+        """Equation 4.3; by default also straight to a later via point over ground that is seen free."""
+        here = matches.get(self.path[self.index])
+        s_here = similarity(here, self._profile) if here is not None else 0
+        reach = 1 if self._strict else WINDOW - 1
+        for later in range(min(self.index + reach, len(self.path) - 1), self.index, -1):
+            there = matches.get(self.path[later])
+            if there is None or not self._may_advance(here, there, later, ranges):
                 continue
-            s_here = similarity(here, self._profile) if here is not None else 0
             s_there = similarity(there, self._profile)
-            near = s_here > self._profile.s_via_max and s_there > self._profile.s_via_min
-            overtaken = (
-                not strict
-                and trusted(there, self._profile)
-                and s_there > max(s_here, self._profile.s_edge_min)
-            )
-            reached = (
-                not strict
-                and here is not None
-                and here.disparity_rad is not None
-                and here.disparity_rad < self._target.arrival_rad * 3
-                and s_there > self._profile.s_via_min
-            )
-            if near or overtaken or reached:
-                values = {"s_cv": s_here, "s_nv": s_there, "via": self.path[later]}
-                notes.append(Note("via_advanced", f"next via {_name(self.path[later])}", dict(values)))
-                self._mark_driven(self.index, later)
-                self.index, self._best_rad, self._stale = later, float("inf"), 0
-                break
-        return tuple(notes)
+            self._mark_driven(self.index, later)
+            self.index, self._best_rad, self._stale = later, float("inf"), 0
+            values = {"s_cv": s_here, "s_nv": s_there, "via": self.path[later]}
+            return (Note("via_advanced", f"next via {_name(self.path[later])}", dict(values)),)
+        return ()
+
+    def _may_advance(self, here: NodeMatch | None, there: NodeMatch, later: int, ranges: Ranges) -> bool:
+        s_here = similarity(here, self._profile) if here is not None else 0
+        s_there = similarity(there, self._profile)
+        if self._strict:
+            return s_here > self._profile.s_via_max and s_there > self._profile.s_via_min
+        if trusted(there, self._profile) and is_clear(there, ranges, self._profile):
+            return s_there > self._profile.s_edge_min
+        beyond = later == self.index + 1 and self._is_at(here) and self._known_leg()
+        return beyond and s_there > self._profile.s_via_min
 
     def _mark_driven(self, start: int, end: int) -> None:
         """A via point passed: the edge was driven once more."""
@@ -125,9 +153,9 @@ class PathFollower:
 
     def _speed(self, match: NodeMatch) -> float:
         """Slow down over the last few degrees of disparity, so that a step does not overshoot the goal."""
-        if self.index < len(self.path) - 1 or match.disparity_rad is None or self._target.arrival_rad <= 0.0:
+        if not self._at_end() or match.disparity_rad is None or self._target.arrival_rad <= 0.0:
             return 1.0
-        return min(1.0, max(0.1, match.disparity_rad / (2.5 * self._target.arrival_rad)))
+        return min(1.0, max(SLOWEST, match.disparity_rad / SLOW_RAD))
 
     def _unseen(self, via: int, s_cv: int, notes: tuple[Note, ...]) -> tuple[FollowState, Decision]:
         """The via point is not seen: keep going for a few frames, then report lost."""
@@ -143,7 +171,8 @@ class PathFollower:
             self._best_rad, self._stale = disparity, 0
         else:
             self._stale += 1
-        return self._stale > STUCK_STEPS
+        near_end = self._at_end() and self._best_rad < self._profile.near_rad
+        return self._stale > (NEAREST_STEPS if near_end else STUCK_STEPS)
 
     def _report(self, via: int, s_cv: int, match: NodeMatch | None) -> None:
         disparity = match.disparity_rad if match is not None else None
@@ -151,6 +180,11 @@ class PathFollower:
 
     def _hold(self, why: str, notes: tuple[Note, ...]) -> Decision:
         return Decision("hold", why=why, notes=notes)
+
+
+def leg(first: int, second: int) -> Leg:
+    """A leg without direction."""
+    return (min(first, second), max(first, second))
 
 
 def _name(node_id: int) -> str:

@@ -1,14 +1,16 @@
 """Mission goto: drive to where a picture was taken (thesis sections 4.1 and 4.3)."""
 
-from services.planner.following import PathFollower, Target
+from services.planner.following import Leg, PathFollower, Target
 from services.planner.ports import GOAL, Decision, MapAccess, Matcher, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.routing import plan_path, visible
 from services.planner.similarity import ranked, similarity, trusted
+from services.planner.surroundings import is_clear, is_clear_from
 from shared.messages.features import Features
 from shared.messages.maps import DeleteEdge, PutEdge
 from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
+from shared.messages.sensors import Ranges
 
 LOCALISE_K = 8
 MAX_LOST = 12
@@ -24,22 +26,21 @@ class Goto:
         self._follower: PathFollower | None = None
         self._lost = self._stuck = 0
         self._avoid: dict[int, float] = {}
+        self._doubted: set[Leg] = set()
         self.progress = Progress()
 
-    def decide(self, _observation: Observation) -> Decision:
+    def decide(self, observation: Observation) -> Decision:
         """One step; the frame itself is already with the matcher."""
         notes: tuple[Note, ...] = ()
         if self._targets is None:
-            self._targets = visible(
-                self._matcher.locate(self._goal, LOCALISE_K), self._profile, self._profile.s_edge_min
-            )
+            self._targets = self._locate_goal()
             notes = (Note("goal_located", f"goal resembles nodes {sorted(self._targets)}"),)
         if self._follower is None:
-            failed = self._plan()
+            failed = self._plan(observation.ranges)
             if failed is not None:
                 return failed
         assert self._follower is not None
-        state, decision = self._follower.step(self._matcher)
+        state, decision = self._follower.step(observation, self._matcher)
         self.progress = self._follower.progress
         if state == "arrived":
             return self._end("succeeded", "", decision.why, notes + decision.notes)
@@ -47,18 +48,19 @@ class Goto:
             return _with_notes(decision, notes)
         return self._recover(state, decision, notes)
 
-    def _plan(self) -> Decision | None:
+    def _plan(self, ranges: Ranges) -> Decision | None:
         """Set a follower, or return how the mission goes on without one."""
         assert self._targets is not None
         here = self._matcher.match([], LOCALISE_K, (self._goal,))
         seen_goal = here.pop(GOAL, None)
-        if seen_goal is not None and not self._stuck and self._in_sight(seen_goal):
+        if seen_goal is not None and not self._stuck and self._in_sight(seen_goal, ranges):
             return self._follow([GOAL])
         if not self._targets:
             return self._end("failed", "goal_not_in_map", "the goal resembles no place of the map", ())
-        starts = visible(here, self._profile, self._profile.s_via_min)
+        clear = {n for n, m in here.items() if is_clear(m, ranges, self._profile)}
+        starts = visible(here, self._profile, self._profile.s_via_min, clear)
         starts = {node: cost + self._avoid.get(node, 0.0) for node, cost in starts.items()}
-        path = plan_path(self._maps.graph, starts, self._targets, self._profile)
+        path = plan_path(self._maps.graph, starts, self._targets, self._profile, self._doubted)
         if path:
             return self._follow([*path, GOAL])
         self._lost += 1
@@ -71,22 +73,32 @@ class Goto:
         heading = nearest[0][1].heading_rad if nearest else None
         return Decision("go", heading if heading is not None else 0.0, 0, 1.0, "searching", why)
 
-    def _in_sight(self, match: NodeMatch) -> bool:
-        return trusted(match, self._profile) and similarity(match, self._profile) > self._profile.s_edge_min
+    def _locate_goal(self) -> dict[int, float]:
+        """Places the goal resembles, with the cost of the last leg from each."""
+        found = self._matcher.locate(self._goal, LOCALISE_K)
+        nodes = self._maps.graph.nodes
+        clear = {n for n, m in found.items() if n in nodes and is_clear_from(nodes[n], m, self._profile)}
+        return visible(found, self._profile, self._profile.s_edge_min, clear)
+
+    def _in_sight(self, match: NodeMatch, ranges: Ranges) -> bool:
+        seen = trusted(match, self._profile) and is_clear(match, ranges, self._profile)
+        return seen and similarity(match, self._profile) > self._profile.s_edge_min
 
     def _follow(self, path: list[int]) -> None:
         target = Target(self._goal, self._profile.arrival_rad)
-        self._follower = PathFollower(self._profile, self._maps, path, target)
+        self._follower = PathFollower(self._profile, self._maps, path, target, self._doubted)
 
     def _recover(self, state: str, decision: Decision, notes: tuple[Note, ...]) -> Decision:
         """Give up the edge that failed and plan again from what is seen now."""
         assert self._follower is not None
-        ends = self._follower.current_edge()
+        if state == "unclear":
+            return self._doubt(self._follower.next_leg(), decision, notes)
+        ends = self._follower.current_leg()
         via = self._follower.path[self._follower.index]
         self._follower = None
         self._avoid[via] = self._avoid.get(via, 0.0) + 0.5
         notes += (*decision.notes, Note("replan", f"{state}: {decision.why}"))
-        if ends is not None:
+        if ends is not None and GOAL not in ends:
             notes += (self._give_up(ends, state),)
         if state == "stuck":
             self._stuck += 1
@@ -96,6 +108,13 @@ class Goto:
             self._lost += 1
             if self._lost > MAX_LOST:
                 return self._end("failed", "lost", decision.why, notes)
+        return Decision("hold", why=f"planning again: {decision.why}", notes=notes)
+
+    def _doubt(self, doubted: Leg, decision: Decision, notes: tuple[Note, ...]) -> Decision:
+        """No free ground is seen along a leg: plan again with it as the last resort."""
+        self._doubted.add(doubted)
+        self._follower = None
+        notes += (*decision.notes, Note("leg_doubted", f"leg {doubted}: {decision.why}"))
         return Decision("hold", why=f"planning again: {decision.why}", notes=notes)
 
     def _give_up(self, ends: tuple[int, int], why: str) -> Note:

@@ -9,6 +9,9 @@ from shared.messages.maps import AddNode, DeleteEdge, DeleteNode, Edge, Node, Op
 
 EdgeCost = Callable[[Edge], float]
 
+UNSEEN_GROUND = 6.0
+"""Ground nobody has driven or seen free counts this much more: furniture may stand there."""
+
 
 class MapGraph:
     """Undirected graph of places (thesis section 4.2)."""
@@ -95,9 +98,9 @@ def fewest_nodes(_edge: Edge) -> float:
 
 
 def least_disparity(edge: Edge) -> float:
-    """Sum of angular disparities: grows with distance, prefers edges the robot has driven without trouble."""
+    """Sum of angular disparities: grows with distance, prefers edges driven or seen free."""
     disparity = edge.disparity_rad if edge.disparity_rad is not None else 0.5
-    trust = 1.0 if edge.traversals else 1.3
+    trust = 1.0 if edge.traversals or edge.clear else UNSEEN_GROUND
     return trust * disparity + 0.03 + 0.3 * edge.failures
 
 

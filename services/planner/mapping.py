@@ -5,6 +5,7 @@ from services.planner.graph import MapGraph, edge_between
 from services.planner.ports import MapAccess, Observation
 from services.planner.profiles import Profile
 from services.planner.similarity import heading_of, ranked, similarity, trusted
+from services.planner.surroundings import is_clear, is_clear_from
 from shared.messages.maps import AddNode, Edge, Node, Operation, PutEdge, UpdateNode
 from shared.messages.matching import NodeMatch
 
@@ -36,7 +37,15 @@ def add_place(
     """
     node_id = maps.graph.next_id()
     edges = [
-        _edge(node_id, other, match, profile, driven=other == driven_from)
+        _edge(
+            node_id,
+            other,
+            match,
+            profile,
+            clear=is_clear(match, observation.ranges, profile)
+            or is_clear_from(maps.graph.nodes[other], match, profile),
+            driven=other == driven_from,
+        )
         for other, match in matches.items()
         if other in maps.graph.nodes and _admitted(match, profile)
     ]
@@ -67,7 +76,7 @@ def _admitted(match: NodeMatch, profile: Profile) -> bool:
     return profile.similarity == "raw" or (trusted(match, profile) and match.heading_rad is not None)
 
 
-def _edge(node_id: int, other: int, match: NodeMatch, profile: Profile, *, driven: bool) -> Edge:
+def _edge(node_id: int, other: int, match: NodeMatch, profile: Profile, *, clear: bool, driven: bool) -> Edge:
     found = heading_of(match, profile)
     return Edge.model_validate(
         {
@@ -78,6 +87,7 @@ def _edge(node_id: int, other: int, match: NodeMatch, profile: Profile, *, drive
             "disparity_rad": match.disparity_rad,
             "s_min": profile.s_edge_min,
             "s_max": profile.s_node_max,
+            "clear": clear,
             "traversals": int(driven),
             "why": "driven" if driven else "seen",
         }

@@ -8,6 +8,8 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, PositiveFloat, PositiveInt
 
+from services.planner.heading.registry import MethodName
+
 
 class Profile(BaseModel):
     """How the planner decides.
@@ -21,6 +23,7 @@ class Profile(BaseModel):
         exploration: "frontier" or the thesis's "strategies".
         path_cost: "disparity" or the thesis's "nodes".
         suspend_after: bad frames in a row before an edge is given up; delete_edges: for good (equation 6.4).
+        disparity_rad_per_m: how fast bearings change with distance in this kind of place.
         arrival_rad: angular disparity at which a place is reached; 0 uses s_final.
     """
 
@@ -35,19 +38,22 @@ class Profile(BaseModel):
     s_final: PositiveInt = 1_000_000
     s_slow: PositiveInt = 150
     s_max: PositiveInt = 300
-    heading_method: str = "epipolar"
+    heading_method: MethodName = "epipolar"
     exploration: Literal["frontier", "strategies"] = "frontier"
     path_cost: Literal["disparity", "nodes"] = "disparity"
     suspend_after: PositiveInt = 5
     delete_edges: bool = False
     arrival_rad: float = Field(default=math.radians(1.0), ge=0.0)
-    travel_arrival_rad: PositiveFloat = math.radians(3.0)
+    travel_arrival_rad: PositiveFloat = math.radians(3.5)
+    near_rad: PositiveFloat = math.radians(3.5)
     heading_std_max_rad: PositiveFloat = math.radians(6.0)
     saturation_steps: PositiveInt = 5
     exploration_noise_rad: float = math.radians(50.0)
     admissible_noise_rad: float = math.radians(90.0)
     open_range_m: PositiveFloat = 1.0
     wall_range_m: PositiveFloat = 0.45
+    robot_radius_m: PositiveFloat = 0.3
+    disparity_rad_per_m: PositiveFloat = math.radians(9.0)
 
 
 DEFAULT = Profile(name="default")

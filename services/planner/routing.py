@@ -1,16 +1,17 @@
 """Localisation and path planning (thesis section 4.1): from what is seen now to what the goal resembles."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
-from services.planner.graph import EdgeCost, MapGraph, fewest_nodes, least_disparity
+from services.planner.graph import UNSEEN_GROUND, EdgeCost, MapGraph, fewest_nodes, least_disparity
+from services.planner.ports import GOAL
 from services.planner.profiles import Profile
 from services.planner.similarity import ranked, similarity, trusted
+from shared.messages.maps import Edge
 from shared.messages.matching import NodeMatch
 
 UNKNOWN_DISPARITY_RAD = 0.5
 HOP_RAD = 0.03
-FIRST_LEG = 1.3
-"""A leg to a place that is only seen, never driven, counts this much more."""
+DOUBT_RAD = 2.0
 
 
 def edge_cost(profile: Profile) -> EdgeCost:
@@ -18,23 +19,49 @@ def edge_cost(profile: Profile) -> EdgeCost:
     return fewest_nodes if profile.path_cost == "nodes" else least_disparity
 
 
-def visible(matches: Mapping[int, NodeMatch], profile: Profile, s_min: int) -> dict[int, float]:
-    """Places similar enough to drive to, with the cost of the leg there."""
+def visible(
+    matches: Mapping[int, NodeMatch], profile: Profile, s_min: int, clear: Collection[int]
+) -> dict[int, float]:
+    """Places similar enough to drive to, with the cost of the leg there.
+
+    Args:
+        matches: the picture against the map.
+        profile: thresholds and kind of cost.
+        s_min: similarity needed.
+        clear: places with free ground in between.
+    """
     if profile.path_cost == "nodes":
         best = ranked(dict(matches), profile)[:1]
         return {node: 0.0 for node, match in best if similarity(match, profile) > s_min}
     return {
-        node: _leg(match)
+        node: _leg(match, clear=node in clear)
         for node, match in matches.items()
         if similarity(match, profile) > s_min and trusted(match, profile)
     }
 
 
 def plan_path(
-    graph: MapGraph, starts: Mapping[int, float], targets: Mapping[int, float], profile: Profile
+    graph: MapGraph,
+    starts: Mapping[int, float],
+    targets: Mapping[int, float],
+    profile: Profile,
+    doubted: Collection[tuple[int, int]] = (),
 ) -> list[int]:
-    """Cheapest node sequence from any start to any target; empty when there is none."""
-    cost = edge_cost(profile)
+    """Cheapest node sequence from any start to any target; empty when there is none.
+
+    Args:
+        graph: the map.
+        starts: nodes in sight, with the cost of the leg there.
+        targets: nodes to reach, with the cost of the leg beyond.
+        profile: kind of cost.
+        doubted: legs on which no free ground was seen; taken only when there is hardly another way.
+    """
+    base = edge_cost(profile)
+
+    def cost(edge: Edge) -> float:
+        return base(edge) + DOUBT_RAD * ((edge.a, edge.b) in doubted)
+
+    targets = {node: extra + DOUBT_RAD * ((GOAL, node) in doubted) for node, extra in targets.items()}
     to_go = graph.costs_to(targets, cost)
     reachable = [(leg + to_go[node], node) for node, leg in starts.items() if node in to_go]
     if not reachable:
@@ -42,6 +69,6 @@ def plan_path(
     return graph.path(min(reachable)[1], targets, cost)
 
 
-def _leg(match: NodeMatch) -> float:
+def _leg(match: NodeMatch, *, clear: bool) -> float:
     disparity = match.disparity_rad if match.disparity_rad is not None else UNKNOWN_DISPARITY_RAD
-    return FIRST_LEG * disparity + HOP_RAD
+    return (1.0 if clear else UNSEEN_GROUND) * disparity + HOP_RAD

@@ -1,6 +1,6 @@
 """Reading a match: similarity, trust, and the heading it gives."""
 
-from services.planner.heading.choose import choose_heading
+from services.planner.heading.choose import HeadingSettings, choose_heading
 from services.planner.profiles import Profile
 from shared.messages.matching import NodeMatch
 
@@ -30,4 +30,14 @@ def ranked(matches: dict[int, NodeMatch], profile: Profile) -> list[tuple[int, N
 
 def heading_of(match: NodeMatch, profile: Profile) -> tuple[float, str] | None:
     """Heading to the matched place by the profile's method, and the method used; None when there is none."""
-    return choose_heading(match, profile.heading_method)
+    settings = HeadingSettings(method=profile.heading_method, verified_only=profile.similarity == "verified")
+    if settings.method == "epipolar" and match.status == "ok" and match.confidence >= settings.min_confidence:
+        return (match.heading_rad, "epipolar") if match.heading_rad is not None else None
+    if match.matches_rad is None or match.inlier_mask is None or match.status == "no_baseline":
+        return None
+    pairs = match.matches_rad
+    if settings.verified_only and match.status == "ok":
+        pairs = pairs[match.inlier_mask.astype(bool)]
+    choice = choose_heading(settings, pairs[:, :2], pairs[:, 2:], None)
+    heading_rad = choice.estimate.heading_rad
+    return (heading_rad, choice.method) if heading_rad is not None else None

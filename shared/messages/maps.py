@@ -39,6 +39,7 @@ class Edge(Part):
         heading_ba_rad: direction from b to a in b's camera frame.
         yaw_ab_rad: rotation from a's camera to b's.
         s_min, s_max: thresholds in force when it was made.
+        clear: the distance sensors saw free ground all the way.
         traversals: times the robot drove it; failures: times it tried in vain.
     """
 
@@ -54,6 +55,7 @@ class Edge(Part):
     s_min: int = Field(default=0, ge=0)
     s_max: int = Field(default=0, ge=0)
     pipeline: str = ""
+    clear: bool = False
     traversals: int = Field(default=0, ge=0)
     failures: int = Field(default=0, ge=0)
     suspended: bool = False

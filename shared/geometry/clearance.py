@@ -1,5 +1,7 @@
 """How far the robot can go in a direction, from 12 distances with wide beams."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,8 +9,10 @@ import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 
-BEAM_OFFSETS_RAD = np.deg2rad([-12.0, -6.0, 0.0, 6.0, 12.0])
-"""An echo may come from anywhere in the beam: these points of its arc stand for it."""
+HALF_BEAM_RAD = math.radians(12.0)
+ARC_POINTS = 5
+NEARER_M = 0.08
+"""A neighbour that reads this much less has the nearer end of the same surface."""
 
 
 @dataclass(frozen=True)
@@ -23,13 +27,27 @@ class Obstacles:
 
     @staticmethod
     def from_ranges(
-        angles_rad: tuple[float, ...], distances_m: tuple[float, ...], max_range_m: float
+        angles_rad: Sequence[float], distances_m: Sequence[float], max_range_m: float
     ) -> "Obstacles":
-        """Spread each echo nearer than `max_range_m` over its beam."""
+        """Spread each echo nearer than `max_range_m` over the part of its beam it may come from.
+
+        An echo can come from anywhere in the beam. Where a neighbouring sensor reads clearly less, both see
+        one surface that runs towards that neighbour: the echo then lies in that half of the beam. So a
+        passage little wider than the robot stays open.
+
+        Args:
+            angles_rad: axes of the sensors in ascending order round the robot.
+            distances_m: one reading each.
+            max_range_m: reading of a sensor that sees nothing.
+        """
         angles, distances = np.asarray(angles_rad), np.asarray(distances_m)
+        left, right = np.roll(distances, -1), np.roll(distances, 1)
+        low = np.where((left < distances - NEARER_M) & (left <= right), 0.2, -1.0) * HALF_BEAM_RAD
+        high = np.where((right < distances - NEARER_M) & (right < left), -0.2, 1.0) * HALF_BEAM_RAD
+        share = np.linspace(0.0, 1.0, ARC_POINTS)
+        arcs_rad = angles[:, None] + low[:, None] + (high - low)[:, None] * share
         seen = distances < max_range_m * 0.98
-        arc_rad = (angles[seen, None] + BEAM_OFFSETS_RAD).ravel()
-        reach_m = np.repeat(distances[seen], len(BEAM_OFFSETS_RAD))
+        arc_rad, reach_m = arcs_rad[seen].ravel(), np.repeat(distances[seen], ARC_POINTS)
         return Obstacles(np.stack([reach_m * np.cos(arc_rad), reach_m * np.sin(arc_rad)], axis=-1))
 
     def clearance_m(self, headings_rad: FloatArray, radius_m: float) -> FloatArray:

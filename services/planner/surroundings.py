@@ -1,0 +1,45 @@
+"""What twelve distances say about the way to a place that is only known by its bearing and disparity."""
+
+import math
+
+import numpy as np
+
+from services.planner.profiles import Profile
+from shared.geometry.clearance import Obstacles
+from shared.messages.base import SECTORS
+from shared.messages.maps import Node
+from shared.messages.matching import NodeMatch
+from shared.messages.sensors import Ranges
+
+SECTOR_RAD = math.tau / SECTORS
+
+
+def room_m(ranges: Ranges, heading_rad: float) -> float:
+    """Distance reported by the sensor whose beam holds a direction (robot frame)."""
+    offsets = [abs(math.remainder(angle - heading_rad, math.tau)) for angle in ranges.angles_rad]
+    return ranges.distances_m[offsets.index(min(offsets))]
+
+
+def length_m(disparity_rad: float, profile: Profile) -> float:
+    """Rough length of a leg: disparity grows with distance by a factor calibrated per kind of place."""
+    return disparity_rad / profile.disparity_rad_per_m
+
+
+def is_clear(match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
+    """Whether the sensors see free ground all the way to the matched place."""
+    if match.status == "no_baseline":
+        return True
+    if match.heading_rad is None or match.disparity_rad is None:
+        return False
+    obstacles = Obstacles.from_ranges(ranges.angles_rad, ranges.distances_m, ranges.max_range_m)
+    free_m = obstacles.clearance_m(np.array([match.heading_rad]), profile.robot_radius_m)[0]
+    return bool(length_m(match.disparity_rad, profile) <= free_m + profile.robot_radius_m)
+
+
+def is_clear_from(node: Node, match: NodeMatch, profile: Profile) -> bool:
+    """Whether the way from a node to the picture that was matched with it is free, as the node remembers."""
+    if match.heading_rad is None or match.yaw_rad is None or match.disparity_rad is None:
+        return match.status == "no_baseline"
+    back_rad = match.heading_rad + math.pi - match.yaw_rad
+    sector = round(back_rad / SECTOR_RAD) % SECTORS
+    return node.open[sector] and length_m(match.disparity_rad, profile) <= profile.open_range_m

@@ -1,0 +1,191 @@
+"""A flat stand-in for pictures: the apartment's true floor plan, where similarity and headings follow distance.
+
+Missions and the drive core run here thousands of steps a second. The figures of similarity and disparity
+against distance are those measured on rendered frames; headings carry noise and rare outliers.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from services.drive.core import DriveLimits, compute_command
+from services.drive.passing import Passing
+from services.planner.graph import MapGraph
+from services.planner.ports import Decision, Mission, Observation
+from shared.messages import Features, Heading, Ranges
+from shared.messages.maps import AddNode, Operation
+from shared.messages.matching import NodeMatch
+from simulator.footprints import cast_rays, footprints
+from simulator.freespace import FreeSpace, free_space
+from simulator.world_file import load_world
+
+DISTANCES_M = (0.0, 0.35, 0.75, 1.25, 1.75, 2.25, 3.0, 5.0)
+INLIERS = (260, 109, 81, 54, 43, 33, 22, 12)
+DISPARITY_DEG = (0.1, 4.5, 8.1, 12.4, 15.0, 18.3, 22.0, 30.0)
+BEAM_RAYS = np.deg2rad(np.linspace(-15.0, 15.0, 7))
+MAX_RANGE_M = 4.0
+STEP_S = 0.3
+WHEEL_RADIUS_M = 0.08
+Pose = tuple[float, float, float]
+
+
+@dataclass
+class PlaneWorld:
+    """The robot's true pose and everything that can be sensed from it."""
+
+    pose: Pose
+    rng: np.random.Generator
+    space: FreeSpace = field(default_factory=lambda: free_space(load_world("apartment")))
+    seq: int = 0
+    collisions: int = 0
+    driven_m: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.shapes = footprints(self.space.parts, 0.02, 0.79)
+        self.opaque = footprints(self.space.parts, 0.79, 0.81)
+
+    def sees(self, here: Pose, there: Pose) -> bool:
+        """Whether nothing at camera height stands between two poses."""
+        distance_m = math.dist(here[:2], there[:2])
+        bearing = math.atan2(there[1] - here[1], there[0] - here[0])
+        free_m = cast_rays(np.array(here[:2]), np.array([bearing]), self.opaque, distance_m)
+        return bool(free_m[0] >= distance_m - 1e-6)
+
+    def observe(self) -> Observation:
+        """Features that carry the true pose for `PlaneMatcher` only, and 12 distances."""
+        angles = np.arange(12) * math.tau / 12
+        rays = (self.pose[2] + angles[:, None] + BEAM_RAYS).ravel()
+        hits = cast_rays(np.array(self.pose[:2]), rays, self.shapes, MAX_RANGE_M).reshape(12, -1).min(axis=1)
+        noisy = np.clip(hits + self.rng.normal(0.0, 0.01, 12), 0.0, MAX_RANGE_M)
+        ranges = Ranges(
+            seq=self.seq,
+            robot="r1",
+            angles_rad=tuple(angles),
+            distances_m=tuple(np.where(hits < MAX_RANGE_M, noisy, MAX_RANGE_M)),
+            max_range_m=MAX_RANGE_M,
+        )
+        return Observation(picture(self.pose, self.seq), ranges)
+
+    def move(self, steer_rad: float, wheel_speed_radps: float) -> None:
+        """Drive one control step; an obstacle stops the robot and counts as a collision."""
+        length_m = wheel_speed_radps * WHEEL_RADIUS_M * STEP_S
+        heading = self.pose[2] + steer_rad
+        for _ in range(4):
+            x = self.pose[0] + math.cos(heading) * length_m / 4
+            y = self.pose[1] + math.sin(heading) * length_m / 4
+            if not self.space.is_free((x, y)):
+                self.collisions += 1
+                break
+            self.pose = (x, y, self.pose[2])
+            self.driven_m += length_m / 4
+        self.seq += 1
+
+
+def picture(pose: Pose, seq: int = 0) -> Features:
+    """What a camera at `pose` sees: here, the pose itself."""
+    return Features(
+        seq=seq,
+        stamp_ns=seq,
+        pipeline="plane",
+        lonlat_rad=np.zeros((1, 2), np.float32),
+        scores=np.zeros(1, np.float32),
+        descriptors=np.array([pose], np.float32),
+    )
+
+
+@dataclass
+class PlaneMap:
+    """The map in memory, with the true pose of each node kept aside."""
+
+    graph: MapGraph = field(default_factory=MapGraph)
+    poses: dict[int, Pose] = field(default_factory=dict)
+
+    def commit(self, operations: Sequence[Operation]) -> None:
+        """Apply, and remember where new nodes were seen from."""
+        self.graph.apply(operations)
+        for operation in operations:
+            if isinstance(operation, AddNode):
+                self.poses[operation.node.node_id] = _pose_of(operation.features)
+
+
+class PlaneMatcher:
+    """Matches by true distance and line of sight."""
+
+    def __init__(self, world: PlaneWorld, maps: PlaneMap) -> None:
+        self._world, self._maps = world, maps
+
+    def match(
+        self, node_ids: Sequence[int], best_k: int = 0, targets: Sequence[Features] = ()
+    ) -> dict[int, NodeMatch]:
+        """As the feature service answers for the current frame."""
+        found = self._compare(self._world.pose, node_ids, best_k)
+        for number, target in enumerate(targets, start=1):
+            found[-number] = self._pair(-number, self._world.pose, _pose_of(target))
+        return found
+
+    def locate(self, features: Features, best_k: int) -> dict[int, NodeMatch]:
+        """As the feature service answers for a goal picture."""
+        return self._compare(_pose_of(features), (), best_k)
+
+    def _compare(self, pose: Pose, node_ids: Sequence[int], best_k: int) -> dict[int, NodeMatch]:
+        poses = self._maps.poses
+        near = sorted(poses, key=lambda n: math.dist(pose[:2], poses[n][:2]))[:best_k]
+        pairs = [self._pair(n, pose, poses[n]) for n in dict.fromkeys([*node_ids, *near])]
+        return {match.node_id: match for match in sorted(pairs, key=lambda m: -m.inliers)}
+
+    def _pair(self, node_id: int, here: Pose, there: Pose) -> NodeMatch:
+        distance_m = math.dist(here[:2], there[:2])
+        rng = self._world.rng
+        seen = 1.0 if self._world.sees(here, there) else 0.3
+        inliers = int(np.interp(distance_m, DISTANCES_M, INLIERS) * seen * rng.uniform(0.85, 1.15))
+        disparity_deg = float(np.interp(distance_m, DISTANCES_M, DISPARITY_DEG))
+        heading = math.atan2(there[1] - here[1], there[0] - here[0]) - here[2]
+        wild = rng.uniform() < 0.02 * (1.0 if inliers > 30 else 5.0)
+        noise = rng.uniform(-math.pi, math.pi) if wild else rng.normal(0.0, math.radians(0.5))
+        status = "too_few" if inliers < 12 else "no_baseline" if disparity_deg < 0.3 else "ok"
+        return NodeMatch(
+            node_id=node_id,
+            raw_matches=int(inliers * 1.4) + 8,
+            inliers=inliers,
+            status=status,
+            heading_rad=math.remainder(heading + noise, math.tau) if status == "ok" else None,
+            heading_std_rad=math.radians(0.5),
+            yaw_rad=math.remainder(there[2] - here[2], math.tau),
+            disparity_rad=math.radians(disparity_deg),
+            confidence=0.9,
+        )
+
+
+def run(
+    world: PlaneWorld, mission: Mission, limits: DriveLimits, max_steps: int, path: list[Pose] | None = None
+) -> tuple[Decision, int]:
+    """Observe, decide, drive until the mission ends; the last decision and the number of steps."""
+    memory = Passing()
+    for step in range(max_steps):
+        observation = world.observe()
+        decision = mission.decide(observation)
+        if decision.outcome:
+            return decision, step
+        heading = Heading(
+            robot="r1",
+            seq=world.seq,
+            action=decision.action,
+            heading_rad=decision.heading_rad,
+            s_cv=decision.s_cv,
+            s_slow=150,
+            s_max=300,
+            speed_fraction=decision.speed_fraction,
+            why=decision.why,
+        )
+        command, memory = compute_command(heading, observation.ranges, memory, world.rng, limits)
+        world.move(command.steer_rad, command.wheel_speed_radps)
+        if path is not None:
+            path.append(world.pose)
+    return decision, max_steps
+
+
+def _pose_of(features: Features) -> Pose:
+    x, y, yaw = (float(v) for v in features.descriptors[0])
+    return x, y, yaw
