@@ -141,7 +141,9 @@ async def _only_part(request: Request, body: bytes, limit_bytes: int) -> tuple[b
     try:
         parts = [value for _, value in form.multi_items() if isinstance(value, UploadFile)]
         if len(parts) != 1:
-            raise PictureError(422, "bad_form", "one file in the form", f"{len(parts)} files", "send one file")
+            raise PictureError(
+                422, "bad_form", "one file in the form", f"{len(parts)} files", "send one file"
+            )
         data = await parts[0].read()
     finally:
         await form.close()

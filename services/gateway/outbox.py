@@ -3,7 +3,8 @@
 import asyncio
 from collections import deque
 
-MAX_WAITING = 512
+MAX_WAITING = 4096
+"""Four full event queues of the bus: one burst must not look like a slow reader."""
 
 
 class Outbox:

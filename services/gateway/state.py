@@ -27,7 +27,6 @@ class Gateway:
     Attributes:
         store: client of the map store's REST interface.
         pictures: the one thread that decodes and encodes pictures: a large one needs 200 MB while it decodes.
-        stopping: set when the application ends; long requests answer early.
     """
 
     settings: GatewaySettings
@@ -36,7 +35,6 @@ class Gateway:
     hub: Hub
     store: httpx.AsyncClient
     pictures: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1, "pictures"))
-    stopping: asyncio.Event = field(default_factory=asyncio.Event)
     uploading: int = 0
     sockets: int = 0
 

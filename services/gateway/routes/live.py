@@ -61,7 +61,10 @@ def _admit(socket: WebSocket, gateway: Gateway, robot: str) -> None:
 async def _serve(socket: WebSocket, gateway: Gateway, robot: str) -> None:
     outbox = gateway.hub.join(robot)
     assert outbox is not None
-    tasks = [asyncio.create_task(_send(socket, outbox, gateway.settings.send_timeout_s)), asyncio.create_task(_receive(socket))]
+    tasks = [
+        asyncio.create_task(_send(socket, outbox, gateway.settings.send_timeout_s)),
+        asyncio.create_task(_receive(socket)),
+    ]
     try:
         done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         reason = next(iter(done)).result()
@@ -81,7 +84,8 @@ async def _send(socket: WebSocket, outbox: Outbox, timeout_s: float) -> str:
     try:
         while not outbox.overflowed:
             for text in await outbox.take():
-                await asyncio.wait_for(socket.send_text(text), timeout_s)
+                async with asyncio.timeout(timeout_s):
+                    await socket.send_text(text)
     except TimeoutError:
         return "slow"
     except (WebSocketDisconnect, RuntimeError):

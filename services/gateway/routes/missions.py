@@ -112,14 +112,14 @@ async def wait(
     while True:
         status = await _ask_patiently(gateway, robot, deadline_s)
         done = _ended(status, mission_id)
-        if done or time.monotonic() >= deadline_s or gateway.stopping.is_set():
+        if done or time.monotonic() >= deadline_s:
             return WaitAnswer(done=done, mission=_facts(status))
         await _next_end(gateway, robot, mission_id, min(deadline_s, time.monotonic() + ASK_AGAIN_S))
 
 
 async def _next_end(gateway: Gateway, robot: str, mission_id: str, until_s: float) -> None:
     """Return when a status message says the mission ended, at `until_s`, or when the gateway stops."""
-    while (left_s := until_s - time.monotonic()) > 0.0 and not gateway.stopping.is_set():
+    while (left_s := until_s - time.monotonic()) > 0.0:
         view = gateway.hub.view(robot)
         if view is None:
             await asyncio.sleep(left_s)
@@ -144,7 +144,7 @@ async def _ask_patiently(gateway: Gateway, robot: str, deadline_s: float) -> Mis
             return await _ask(gateway, robot, MissionRequest(action="status"))
         except ProblemError as problem:
             gone = problem.status in (503, 504) and robot in gateway.hub.robots
-            if not gone or time.monotonic() + 0.5 > deadline_s or gateway.stopping.is_set():
+            if not gone or time.monotonic() + 0.5 > deadline_s:
                 raise
         await asyncio.sleep(0.5)
 

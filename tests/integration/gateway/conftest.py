@@ -14,6 +14,9 @@ from shared.bus import Bus, open_bus, wait_until
 from shared.bus_config import router_config
 from tests.integration.gateway.standins import FeatureService, Peer, Planner, served, store_app
 
+Stored = tuple[int, list[tuple[str, str]]]
+"""The map store's port and what it was asked: method and path."""
+
 
 def free_port() -> int:
     """A port that was free a moment ago."""
@@ -55,7 +58,7 @@ def planner(endpoint: str) -> Iterator[Planner]:
 
 
 @pytest.fixture(scope="module")
-def stored() -> Iterator[tuple[int, list[tuple[str, str]]]]:
+def stored() -> Iterator[Stored]:
     """The map store's stand-in: its port and what it was asked."""
     seen: list[tuple[str, str]] = []
     with served(store_app(seen, nodes=5)) as port:
@@ -63,13 +66,12 @@ def stored() -> Iterator[tuple[int, list[tuple[str, str]]]]:
 
 
 @pytest.fixture(scope="module")
-def gateway(
-    endpoint: str, stored: tuple[int, list[tuple[str, str]]], features: FeatureService, planner: Planner
-) -> Iterator[str]:
-    """The gateway's address."""
-    yield from serve_gateway(
-        endpoint, map_store_url=f"http://127.0.0.1:{stored[0]}", max_upload_bytes=2_000_000
-    )
+def gateway(endpoint: str, stored: Stored, features: FeatureService, planner: Planner) -> Iterator[str]:
+    """The gateway's address; its neighbours are up before it."""
+    assert features
+    assert planner
+    store = f"http://127.0.0.1:{stored[0]}"
+    yield from serve_gateway(endpoint, map_store_url=store, max_upload_bytes=2_000_000)
 
 
 @pytest.fixture

@@ -137,73 +137,50 @@ class Planner:
             self.status = self.status.model_copy(update={"state": states.get(wish.action, "running")})
 
 
-def store_app(seen: list[tuple[str, str]], nodes: int = 0, thumbnail: bytes = b"jpeg") -> FastAPI:
-    """A map store with one map `flat`; other names give its kind of problem."""
+def store_app(seen: list[tuple[str, str]], nodes: int) -> FastAPI:
+    """A map store with one map, `flat`, a ring of places; `seen` gets method and path of every request."""
     app = FastAPI()
 
-    def problem(status: int) -> JSONResponse:
-        body = {
-            "type": "urn:topnav:problem:missing",
-            "title": "Not Found",
-            "status": status,
-            "detail": "no map",
-        }
-        return JSONResponse(body, status, media_type="application/problem+json")
-
-    @app.middleware("http")
-    async def note(request: Request, call_next):  # type: ignore[no-untyped-def]
-        seen.append(
-            (request.method, str(request.url.path) + (f"?{request.url.query}" if request.url.query else ""))
-        )
-        return await call_next(request)
-
-    @app.get("/maps")
-    def maps() -> list[dict[str, object]]:
-        return [{"name": "flat", "revision": 9, "nodes": nodes, "edges": nodes}]
-
-    @app.post("/maps/import", status_code=201)
-    async def load(request: Request) -> dict[str, int]:
-        return {"bytes": len(await request.body())}
-
-    @app.api_route("/maps/{name}", methods=["GET", "PATCH", "DELETE"])
-    async def one(name: str, request: Request) -> Response:
-        if name != "flat":
-            return problem(404)
-        return JSONResponse({"name": name, "revision": 9, "sent": (await request.body()).decode()})
-
-    @app.get("/maps/{name}/nodes/{node_id}/thumbnail")
-    def picture(name: str, node_id: int) -> Response:
-        return Response(thumbnail, media_type="image/jpeg", headers={"Cache-Control": "private, no-cache"})
-
-    @app.get("/maps/{name}/export")
-    def export(name: str) -> Response:
-        headers = {"Content-Disposition": f'attachment; filename="{name}.zip"'}
-        return Response(b"PK" + bytes(3_000_000), media_type="application/zip", headers=headers)
-
-    @app.get("/maps/{name}/broken")
-    @app.post("/maps/{name}/undo")
-    def undo(name: str) -> Response:
-        return (
-            JSONResponse({"map": name, "revision": 10, "undone": 9})
-            if name == "flat"
-            else Response("oops", 500)
-        )
-
-    @app.get("/maps/{name}/nodes")
-    def list_nodes(name: str) -> list[dict[str, object]]:
-        return [
-            {"node_id": n, "open": [False] * 12, "explored": [False] * 12, "thumbnail": True}
-            for n in range(nodes)
-        ]
-
-    @app.get("/maps/{name}/edges")
-    def list_edges(name: str) -> list[dict[str, object]]:
-        ring = [(n, (n + 1) % nodes) for n in range(nodes)] if nodes > 2 else []
-        return [
-            {"a": min(e), "b": max(e), "inliers": 60, "confidence": 0.8, "suspended": e[0] == 1} for e in ring
-        ]
+    @app.api_route("/{path:path}", methods=["GET", "POST", "PATCH", "DELETE"])
+    async def answer(path: str, request: Request) -> Response:
+        query = f"?{request.url.query}" if request.url.query else ""
+        seen.append((request.method, f"/{path}{query}"))
+        body = await request.body()
+        if path == "maps/import":
+            return JSONResponse({"bytes": len(body)}, 201)
+        if path.startswith("maps/broken"):
+            return Response("oops", 500)
+        return _stored(path, nodes, body)
 
     return app
+
+
+def _stored(path: str, nodes: int, body: bytes) -> Response:
+    if path == "maps":
+        return JSONResponse([{"name": "flat", "revision": 9, "nodes": nodes, "edges": nodes}])
+    if path.endswith("/thumbnail"):
+        return Response(b"jpeg", media_type="image/jpeg", headers={"Cache-Control": "private, no-cache"})
+    if path == "maps/flat/export":
+        name = {"Content-Disposition": 'attachment; filename="flat.zip"'}
+        return Response(b"PK" + bytes(3_000_000), media_type="application/zip", headers=name)
+    ring = [sorted((node, (node + 1) % nodes)) for node in range(nodes)]
+    known: dict[str, object] = {
+        "maps/flat": {"name": "flat", "revision": 9, "sent": body.decode()},
+        "maps/flat/undo": {"map": "flat", "revision": 10, "undone": 9},
+        "maps/flat/nodes": [{"node_id": node, "thumbnail": True} for node in range(nodes)],
+        "maps/flat/edges": [
+            {"a": a, "b": b, "inliers": 60, "confidence": 0.8, "suspended": (a, b) == (1, 2)} for a, b in ring
+        ],
+    }
+    if path in known:
+        return JSONResponse(known[path])
+    problem = {
+        "type": "urn:topnav:problem:missing",
+        "title": "Not Found",
+        "status": 404,
+        "detail": "no such map",
+    }
+    return JSONResponse(problem, 404, media_type="application/problem+json")
 
 
 @contextmanager

@@ -3,9 +3,7 @@
 import httpx
 import pytest
 
-from tests.integration.gateway.conftest import free_port, serve_gateway
-
-Stored = tuple[int, list[tuple[str, str]]]
+from tests.integration.gateway.conftest import Stored, free_port, serve_gateway
 
 
 def test_lists_are_passed_back(http: httpx.Client) -> None:
@@ -54,7 +52,7 @@ def test_the_stores_problems_come_unchanged(http: httpx.Client) -> None:
 
 
 def test_an_answer_that_is_no_problem_document_becomes_one(http: httpx.Client) -> None:
-    answer = http.post("/api/maps/other/undo")
+    answer = http.post("/api/maps/broken/undo")
     assert (answer.status_code, answer.json()["title"]) == (502, "bad answer")
 
 

@@ -2,7 +2,6 @@
 
 import threading
 import time
-from collections.abc import Iterator
 
 import httpx
 import pytest
@@ -15,9 +14,8 @@ from tests.integration.gateway.standins import Planner
 
 
 @pytest.fixture(autouse=True)
-def _idle(planner: Planner) -> Iterator[None]:
+def _idle(planner: Planner) -> None:
     planner.status = MissionStatus(robot="r1")
-    yield
 
 
 def test_explore_is_handed_on(http: httpx.Client, planner: Planner) -> None:

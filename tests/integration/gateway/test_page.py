@@ -1,0 +1,150 @@
+"""The page in a real browser: it loads offline, uploads a picture, shows the answer, steers the robot."""
+
+import io
+import shutil
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from shared.bus import Bus, wait_until
+from shared.messages.missions import Event, MissionStatus
+from shared.messages.sensors import Frame
+from shared.topics import EVENT, FRAME, STATUS
+from tests.integration.gateway.standins import Planner
+
+sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium in PATH")
+
+FLAGS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+WAIT_MS = 15_000
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator["sync_api.Browser"]:
+    """A headless Chromium."""
+    with sync_api.sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture
+def page(browser: "sync_api.Browser", gateway: str) -> Iterator["sync_api.Page"]:
+    """The page, with everything it complains about or fetches from elsewhere collected."""
+    opened = browser.new_page(viewport={"width": 1400, "height": 1000})
+    faults: list[str] = []
+    opened.on("pageerror", lambda error: faults.append(str(error)))
+    opened.on("console", lambda message: faults.append(message.text) if message.type == "error" else None)
+    opened.on("request", lambda request: faults.append(request.url) if gateway not in request.url else None)
+    opened.goto(gateway)
+    yield opened
+    opened.close()
+    assert [fault for fault in faults if "status of 415" not in fault] == []  # the refusal one test provokes
+
+
+def picture() -> bytes:
+    out = io.BytesIO()
+    Image.fromarray(np.random.default_rng(1).integers(0, 255, (128, 256, 3), np.uint8)).save(out, "PNG")
+    return out.getvalue()
+
+
+def test_an_uploaded_picture_is_localised_and_driven_to(page: "sync_api.Page", planner: Planner) -> None:
+    page.wait_for_selector('#graph [data-node="3"]', timeout=WAIT_MS)
+    goal = {"name": "goal.png", "mimeType": "image/png", "buffer": picture()}
+    page.set_input_files("#picture", files=[goal])
+    page.wait_for_selector("#goal-answer .verdict.found", timeout=WAIT_MS)
+    assert "71 of 150" in page.inner_text("#goal-answer")
+    page.click("#go")
+    assert wait_until(lambda: any(w.goal is not None and w.action == "goto" for w in planner.asked[-1:]), 10.0)
+    page.wait_for_selector("#state.running", timeout=WAIT_MS)
+    page.click("#cancel")
+    page.wait_for_selector("#state.cancelled", timeout=WAIT_MS)
+
+
+def test_a_broken_picture_is_explained(page: "sync_api.Page") -> None:
+    page.wait_for_selector("#map option", state="attached", timeout=WAIT_MS)
+    goal = {"name": "goal.gif", "mimeType": "image/gif", "buffer": b"GIF89a"}
+    with page.expect_response(lambda response: "goal-check" in response.url) as answer:
+        page.set_input_files("#picture", files=[goal])
+    assert answer.value.status == 415
+    page.wait_for_selector("#goal-answer .bad", timeout=WAIT_MS)
+    assert "image/png" in page.inner_text("#goal-answer")
+    assert page.is_disabled("#go")
+
+
+def test_picture_status_and_decisions_are_live(
+    page: "sync_api.Page", robot_bus: Bus, planner: Planner
+) -> None:
+    frames, events = robot_bus.publisher(FRAME, robot="r1"), robot_bus.publisher(EVENT, robot="r1")
+    statuses = robot_bus.publisher(STATUS, robot="r1")
+    pixels = np.full((128, 256, 3), 90, np.uint8).tobytes()
+    seq = 1000
+
+    def shown() -> bool:
+        nonlocal seq
+        seq += 1
+        frames.put(Frame(seq=seq, robot="r1", encoding="bgr8", width_px=256, height_px=128, data=pixels))
+        page.wait_for_timeout(100)
+        return page.is_visible("#frame")
+
+    assert wait_until(shown, 15.0)
+    events.put(Event(seq=1, robot="r1", kind="replan", reason="<b>lost</b>: S 31 below 60"))
+    page.wait_for_selector("#events li.bad", timeout=WAIT_MS)
+    assert "<b>lost</b>" in page.inner_text("#events")
+    planner.status = MissionStatus(
+        robot="r1",
+        mission_id="m1",
+        action="goto",
+        map="flat",
+        state="running",
+        via_points=(0, 1, -1),
+        nearest_node=1,
+    )
+    statuses.put(planner.status)
+    page.wait_for_selector("#graph .node-mark.start[data-node='0']", timeout=WAIT_MS)
+    assert (
+        page.get_attribute("#graph .node-mark.via", "aria-label")
+        == "Place 1, via point, nearest to the robot"
+    )
+    assert page.locator("#graph .node-mark.target").count() == 1
+
+
+def test_a_place_shows_its_connections_and_takes_the_robot_there(
+    page: "sync_api.Page", planner: Planner
+) -> None:
+    planner.status = MissionStatus(robot="r1")
+    page.wait_for_selector('#graph [data-node="2"]', timeout=WAIT_MS)
+    page.focus('#graph [data-node="2"]')
+    page.keyboard.press("Enter")
+    page.wait_for_selector("#node table", timeout=WAIT_MS)
+    assert "suspended" in page.inner_text("#node")
+    page.click("#go-there")
+    assert wait_until(lambda: any(wish.goal_node == 2 for wish in planner.asked[-1:]), 10.0)
+
+
+def test_positions_follow_the_headings(page: "sync_api.Page") -> None:
+    """An L of three places: ahead, then left, though the second camera looks backwards."""
+    spots = page.evaluate(
+        """async () => {
+            const { place } = await import("/static/layout.js");
+            const edge = (a, b, ab, ba, yaw) =>
+                ({ a, b, heading_ab_rad: ab, heading_ba_rad: ba, yaw_ab_rad: yaw, confidence: 1 });
+            const nodes = [0, 1, 2].map((node_id) => ({ node_id }));
+            const edges = [edge(0, 1, 0, 0, Math.PI), edge(1, 2, -Math.PI / 2, 0, -Math.PI / 2)];
+            const spots = place(nodes, edges);
+            return [0, 1, 2].map((id) => [spots.get(id).x, spots.get(id).y]);
+        }"""
+    )
+    found = np.array(spots) - spots[0]
+    np.testing.assert_allclose(found, [[0, 0], [1, 0], [1, 1]], atol=0.2)

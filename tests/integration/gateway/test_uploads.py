@@ -1,0 +1,185 @@
+"""Broken goal uploads against the gateway as a process: refused, counted, nothing written, no memory lost."""
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import httpx
+import pytest
+from websockets.sync.client import connect
+
+from shared.bus import Bus, wait_until
+from shared.topics import MISSION
+from tests.integration.gateway.conftest import answers, free_port
+from tests.integration.gateway.corpus import LIMIT_BYTES, Upload, bomb, broken, convertible
+from tests.integration.gateway.standins import FeatureService
+
+ROOT = Path(__file__).resolve().parents[3]
+BROKEN = broken()
+
+
+@dataclass
+class Process:
+    """The gateway as a process."""
+
+    address: str
+    pid: int
+    folder: Path
+    process: "subprocess.Popen[bytes]"
+
+    def rss_bytes(self) -> int:
+        return int(Path(f"/proc/{self.pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+    def files(self) -> list[str]:
+        """What lies in its working and temporary folder."""
+        return sorted(str(path) for path in self.folder.rglob("*"))
+
+
+def started(endpoint: str, folder: Path) -> Process:
+    port = free_port()
+    environment = {
+        **{name: value for name, value in os.environ.items() if not name.startswith(("GATEWAY_", "TOPNAV_"))},
+        "TOPNAV_ENDPOINT": endpoint,
+        "GATEWAY_PORT": str(port),
+        "GATEWAY_MAX_UPLOAD_BYTES": str(LIMIT_BYTES),
+        "PYTHONPATH": str(ROOT),
+        "TMPDIR": str(folder),
+    }
+    process = subprocess.Popen([sys.executable, "-m", "services.gateway"], cwd=folder, env=environment)
+    address = f"http://127.0.0.1:{port}"
+    assert wait_until(lambda: answers(address), 20.0)
+    return Process(address, process.pid, folder, process)
+
+
+@pytest.fixture(scope="module")
+def process(
+    endpoint: str, features: FeatureService, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Process]:
+    """The gateway as a process, beside a feature service."""
+    assert features
+    running = started(endpoint, tmp_path_factory.mktemp("gateway"))
+    yield running
+    running.process.terminate()
+    assert running.process.wait(10.0) == 0
+
+
+def send(
+    process: Process, content_type: str, body: bytes, robot: str = "r1", name: str = "flat"
+) -> httpx.Response:
+    url = f"{process.address}/api/robots/{robot}/goal-check?map={name}"
+    headers = {"content-type": content_type} if content_type else {}
+    return httpx.post(url, content=body, headers=headers, trust_env=False, timeout=30.0)
+
+
+def refused(process: Process) -> dict[str, float]:
+    counts = {}
+    for line in httpx.get(f"{process.address}/metrics", trust_env=False).text.splitlines():
+        if line.startswith("topnav_gateway_uploads_refused_total{"):
+            counts[line.split('"')[1]] = float(line.split()[-1])
+    return counts
+
+
+def test_the_corpus_is_large_enough() -> None:
+    assert len(BROKEN) >= 25
+    assert len({upload.name for upload in BROKEN}) == len(BROKEN)
+
+
+@pytest.mark.parametrize("upload", BROKEN, ids=lambda upload: upload.name)
+def test_a_broken_upload_is_refused_counted_and_leaves_nothing(
+    process: Process, features: FeatureService, upload: Upload
+) -> None:
+    before, asked, files = refused(process), len(features.extracted), process.files()
+    answer = send(process, upload.content_type, upload.body)
+    assert answer.status_code == upload.status, answer.text
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert answer.json()["type"] == f"urn:topnav:problem:{upload.reason}"
+    assert answer.json()["expected"]
+    assert refused(process).get(upload.reason, 0.0) == before.get(upload.reason, 0.0) + 1.0
+    assert len(features.extracted) == asked
+    assert process.files() == files
+    assert answers(process.address)
+
+
+@pytest.mark.parametrize(("name", "content_type", "body"), convertible(), ids=lambda value: str(value)[:24])
+def test_unusual_pictures_are_converted(process: Process, name: str, content_type: str, body: bytes) -> None:
+    files = process.files()
+    answer = send(process, content_type, body)
+    assert answer.status_code == 200, f"{name}: {answer.text}"
+    assert process.files() == files
+
+
+def test_a_bomb_is_refused_at_once_and_costs_no_memory(process: Process) -> None:
+    body = bomb(30_000, 30_000)
+    assert len(body) < 200_000
+    before = process.rss_bytes()
+    for _ in range(10):
+        began_s = time.monotonic()
+        assert send(process, "image/png", body).status_code == 413
+        assert time.monotonic() - began_s < 1.0
+    assert process.rss_bytes() - before < 50_000_000
+
+
+@pytest.mark.parametrize(
+    "name", ["%00", "a%0a", "..%5cx", "..%2f..%2fetc", "%2e%2e", "A", "x" * 65, "r1;ls", "%C3%A4", "*"]
+)
+def test_names_that_are_paths_or_patterns_are_refused(process: Process, name: str) -> None:
+    good = convertible()[-1]
+    for answer in (send(process, good[1], good[2], robot=name), send(process, good[1], good[2], name=name)):
+        assert answer.status_code in (404, 422), answer.text
+        assert answer.headers["content-type"] == "application/problem+json"
+
+
+def test_an_absent_feature_service_is_named(tmp_path: Path) -> None:
+    lonely = started("tcp/127.0.0.1:9", tmp_path)
+    try:
+        good = convertible()[-1]
+        answer = send(lonely, good[1], good[2])
+        assert (answer.status_code, answer.json()["service"]) == (503, "features")
+    finally:
+        lonely.process.terminate()
+        assert lonely.process.wait(10.0) == 0
+
+
+def test_sigterm_ends_it_within_two_seconds_even_with_open_sockets_and_waiting_requests(
+    endpoint: str, robot_bus: Bus, tmp_path: Path
+) -> None:
+    unanswered = robot_bus.requests(MISSION, robot="mute")
+    running = started(endpoint, tmp_path)
+    live = f"{running.address.replace('http', 'ws', 1)}/api/robots/r1/live"
+    with connect(live, proxy=None) as one, connect(live, proxy=None) as two:
+        one.recv(timeout=5.0)
+        two.recv(timeout=5.0)
+        asking = threading.Thread(target=_ask_in_vain, args=(f"{running.address}/api/robots/mute/mission",))
+        asking.start()
+        assert wait_until(lambda: unanswered.take() is not None, 5.0)
+        began_s = time.monotonic()
+        running.process.send_signal(signal.SIGTERM)
+        assert running.process.wait(10.0) == 0
+        assert time.monotonic() - began_s < 2.0
+        asking.join(5.0)
+
+
+def _ask_in_vain(url: str) -> None:
+    with contextlib.suppress(httpx.HTTPError):
+        httpx.get(url, trust_env=False, timeout=30.0)
+
+
+def test_a_reachable_address_without_a_token_ends_the_start(tmp_path: Path) -> None:
+    environment = {**os.environ, "GATEWAY_HOST": "0.0.0.0", "PYTHONPATH": str(ROOT)}
+    ended = subprocess.run(
+        [sys.executable, "-m", "services.gateway"],
+        cwd=tmp_path,
+        env=environment,
+        capture_output=True,
+        timeout=30.0,
+        check=False,
+    )
+    assert ended.returncode == 2
+    assert b"GATEWAY_TOKEN is empty" in ended.stderr
