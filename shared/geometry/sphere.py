@@ -102,7 +102,6 @@ class EquirectGrid:
         """Map (..., 2) longitude, latitude (rad) to (..., 2) pixels, equation (4); v may leave the crop."""
         lonlat = with_last_axis("lonlat_rad", lonlat_rad, 2)
         u = np.mod(self.width * (0.5 - lonlat[..., 0] / (2.0 * np.pi)), self.width)
-        u = np.where(u >= self.width, 0.0, u)  # a tiny negative number rounds up to the modulus
         v = self.full_height * (0.5 - lonlat[..., 1] / np.pi) - self.crop_top
         return np.stack([u, v], axis=-1)
 

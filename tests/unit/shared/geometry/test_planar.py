@@ -64,6 +64,24 @@ def test_two_matches_contain_the_true_motion_among_their_solutions():
     assert residue.min() < 1e-9
 
 
+@pytest.mark.parametrize(
+    ("from_travel_deg", "forward", "backward"),
+    [
+        pytest.param((40.0, 50.0), True, False, id="moves away from the travel direction: in front for +t"),
+        pytest.param((50.0, 40.0), False, True, id="moves towards it: in front for -t"),
+        pytest.param((40.0, -50.0), False, False, id="changes sides: in front for neither"),
+    ],
+)
+def test_point_in_the_epipolar_plane_must_lie_in_front(from_travel_deg, forward, backward):
+    travel, up = np.array([1.0, 0.0, 0.0]), np.array([0.0, np.cos(0.6), np.sin(0.6)])
+    rays = [np.cos(a) * travel + np.sin(a) * up for a in np.deg2rad(from_travel_deg)]
+    matches = PlanarMatches.from_lonlat(*(lonlat_from_bearings(ray)[None] for ray in rays))
+    result = evaluate(matches, np.zeros(1), np.zeros(1))
+    plus, minus = result.consistent(LIMITS.threshold_rad)
+    assert abs(result.residual[0, 0]) < 1e-12
+    assert (plus[0, 0], minus[0, 0]) == (forward, backward)
+
+
 def test_matches_on_the_horizon_give_no_hypothesis():
     flat = np.stack([np.linspace(-3, 3, 10), np.zeros(10)], axis=1)
     phi, _ = solve_pairs(PlanarMatches.from_lonlat(flat, flat).rows, np.array([[0, 1], [2, 3]]))
