@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from shared.geometry.planar import estimate_planar
+from shared.geometry.planar_fit import leverage_weights
 from shared.geometry.planar_model import PlanarMatches, evaluate, solve_pairs
 from shared.geometry.planar_refine import _linearise
 from shared.geometry.sphere import lonlat_from_bearings
@@ -125,6 +126,18 @@ def test_inliers_are_the_right_matches():
     for scene, result in run_many(20, count=60, outliers=36, noise_deg=0.1):
         assert result.inlier_mask[scene.correct].mean() > 0.9
         assert result.inlier_mask[~scene.correct].mean() < 0.25
+
+
+def test_displacement_far_above_the_lower_quartile_loses_its_influence():
+    weights = leverage_weights(np.deg2rad([1.0, 1.0, 1.0, 6.0, 60.0]))
+    np.testing.assert_allclose(weights, [36 / 37, 36 / 37, 36 / 37, 0.5, 1 / 101], rtol=1e-9)
+
+
+def test_short_baseline_survives_wrong_matches_that_lie_near_the_plane():
+    errors = heading_errors(run_many(40, count=60, outliers=30, distance_m=0.1, noise_deg=0.1))
+    assert len(errors) >= 38
+    assert np.median(errors) < 2.5
+    assert np.quantile(errors, 0.9) < 8.0
 
 
 def test_disparity_is_the_median_angle_after_the_yaw():
