@@ -22,7 +22,7 @@ from services.planner.ports import Decision, MapAccess, Matcher, Note, Observati
 from services.planner.profiles import Profile
 from services.planner.routing import plan_path, visible
 from services.planner.similarity import ranked, similarity, trusted
-from services.planner.surroundings import is_clear, room_m
+from services.planner.surroundings import free_way_m, is_clear
 from shared.messages.maps import Node, UpdateNode
 from shared.messages.matching import NodeMatch
 
@@ -30,6 +30,7 @@ EDGE_CANDIDATES = 12
 NEAR_NODES = 5
 MAX_DEPARTURE_STEPS = 30
 KNOWN_STEPS = 4
+CORNER_STEPS = 2
 MAX_TRAVEL_FAILURES = 2
 
 
@@ -43,6 +44,7 @@ class Departure:
     steps: int = 0
     known_steps: int = 0
     unseen_steps: int = 0
+    retreating: bool = False
 
 
 class FrontierExploration:
@@ -99,21 +101,32 @@ class FrontierExploration:
         if origin is not None and trusted(origin, self._profile) and origin.yaw_rad is not None:
             departure.heading_rad = math.remainder(sector_rad(departure.sector) + origin.yaw_rad, math.tau)
         if s_best <= self._profile.s_edge_min:
-            departure.unseen_steps += 1
-            if departure.unseen_steps > self._profile.saturation_steps:
-                return self._close_departure(departure, "out of sight of the map", lost=True)
+            return self._out_of_sight(departure, s_best)
+        if departure.retreating:
+            everything = {**self._matcher.match([], EDGE_CANDIDATES), **matches}
+            return self._new_place(observation, departure, everything)
         if is_new_place(matches, self._profile):
             everything = self._matcher.match([], EDGE_CANDIDATES)
             merged = {**everything, **matches}
             if is_new_place(merged, self._profile):
                 return self._new_place(observation, departure, merged)
             return self._known(departure, merged)
-        if room_m(observation.ranges, departure.heading_rad) < self._profile.wall_range_m:
+        if free_way_m(observation.ranges, departure.heading_rad, self._profile) < self._profile.blocked_m:
             return self._close_departure(departure, "blocked by an obstacle")
         if departure.steps > MAX_DEPARTURE_STEPS:
             return self._close_departure(departure, "nothing new on the way")
         why = f"leaving node {departure.node_id}, S {s_best}"
         return Decision("go", departure.heading_rad, 0, 1.0, "frontier", why)
+
+    def _out_of_sight(self, departure: Departure, s_best: int) -> Decision:
+        """The view changed within a few steps, as at a corner: go back and make a place there."""
+        departure.unseen_steps += 1
+        if departure.unseen_steps > self._profile.saturation_steps:
+            return self._close_departure(departure, "out of sight of the map", lost=True)
+        departure.retreating = departure.steps > CORNER_STEPS
+        heading = departure.heading_rad + (math.pi if departure.retreating else 0.0)
+        why = f"out of sight of the map, S {s_best}"
+        return Decision("go", math.remainder(heading, math.tau), 0, 1.0, "frontier", why)
 
     def _known(self, departure: Departure, matches: dict[int, NodeMatch]) -> Decision:
         """Another node is too similar: after a few such frames this direction is known."""

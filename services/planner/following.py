@@ -88,7 +88,7 @@ class PathFollower:
         return self.index == len(self.path) - 1
 
     def _unclear_leg(self, match: NodeMatch | None) -> Leg | None:
-        """At a via point with no sight of free ground to the next: better ask for another way, once per leg."""
+        """At a via point with no sight of free ground to the next: ask for another way, once."""
         if self._strict or self._at_end() or not self._is_at(match) or self._known_leg():
             return None
         return self.next_leg()

@@ -5,17 +5,11 @@ import math
 from services.planner.graph import MapGraph
 from shared.messages.base import SECTORS
 from shared.messages.maps import Node
-from shared.messages.sensors import Ranges
 
 SECTOR_RAD = math.tau / SECTORS
 EXPLORED_HALF_RAD = math.radians(28.0)
 EXPLORED_DISPARITY_RAD = math.radians(13.0)
 """An edge to a place farther than this leaves the ground in between unexplored."""
-
-
-def openings(ranges: Ranges, open_range_m: float) -> tuple[bool, ...]:
-    """Directions with at least `open_range_m` of room."""
-    return tuple(distance >= open_range_m for distance in ranges.distances_m)
 
 
 def sector_rad(sector: int) -> float:

@@ -1,11 +1,11 @@
 """Making a place and its edges from the current frame (thesis equations 4.1 and 4.2)."""
 
-from services.planner.frontiers import openings, with_explored
+from services.planner.frontiers import with_explored
 from services.planner.graph import MapGraph, edge_between
 from services.planner.ports import MapAccess, Observation
 from services.planner.profiles import Profile
 from services.planner.similarity import heading_of, ranked, similarity, trusted
-from services.planner.surroundings import is_clear, is_clear_from
+from services.planner.surroundings import is_clear, is_clear_from, openings
 from shared.messages.maps import AddNode, Edge, Node, Operation, PutEdge, UpdateNode
 from shared.messages.matching import NodeMatch
 
@@ -56,7 +56,7 @@ def add_place(
         frame_seq=features.seq,
         pipeline=features.pipeline,
         keypoints=len(features.lonlat_rad),
-        open=openings(observation.ranges, profile.open_range_m),
+        open=openings(observation.ranges, profile),
     )
     grown = MapGraph([*maps.graph.nodes.values(), node], [*maps.graph.edges.values(), *edges])
     node = with_explored(node, grown)

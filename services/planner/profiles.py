@@ -23,6 +23,7 @@ class Profile(BaseModel):
         exploration: "frontier" or the thesis's "strategies".
         path_cost: "disparity" or the thesis's "nodes".
         suspend_after: bad frames in a row before an edge is given up; delete_edges: for good (equation 6.4).
+        opening_m: free way that makes a direction worth exploring; blocked_m: too little to go on.
         disparity_rad_per_m: how fast bearings change with distance in this kind of place.
         arrival_rad: angular disparity at which a place is reached; 0 uses s_final.
     """
@@ -50,8 +51,8 @@ class Profile(BaseModel):
     saturation_steps: PositiveInt = 5
     exploration_noise_rad: float = math.radians(50.0)
     admissible_noise_rad: float = math.radians(90.0)
-    open_range_m: PositiveFloat = 1.0
-    wall_range_m: PositiveFloat = 0.45
+    opening_m: PositiveFloat = 0.6
+    blocked_m: PositiveFloat = 0.12
     robot_radius_m: PositiveFloat = 0.3
     disparity_rad_per_m: PositiveFloat = math.radians(9.0)
 

@@ -12,12 +12,18 @@ from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
 
 SECTOR_RAD = math.tau / SECTORS
+WITHIN_SECTOR_RAD = np.deg2rad([0.0, -12.0, 12.0])
 
 
-def room_m(ranges: Ranges, heading_rad: float) -> float:
-    """Distance reported by the sensor whose beam holds a direction (robot frame)."""
-    offsets = [abs(math.remainder(angle - heading_rad, math.tau)) for angle in ranges.angles_rad]
-    return ranges.distances_m[offsets.index(min(offsets))]
+def free_way_m(ranges: Ranges, heading_rad: float, profile: Profile) -> float:
+    """How far the robot can go in about a direction: the best heading within a sector."""
+    obstacles = Obstacles.from_ranges(ranges.angles_rad, ranges.distances_m, ranges.max_range_m)
+    return float(obstacles.clearance_m(heading_rad + WITHIN_SECTOR_RAD, profile.robot_radius_m).max())
+
+
+def openings(ranges: Ranges, profile: Profile) -> tuple[bool, ...]:
+    """Per sector, whether the robot can go at least the profile's opening that way."""
+    return tuple(free_way_m(ranges, s * SECTOR_RAD, profile) >= profile.opening_m for s in range(SECTORS))
 
 
 def length_m(disparity_rad: float, profile: Profile) -> float:
@@ -42,4 +48,7 @@ def is_clear_from(node: Node, match: NodeMatch, profile: Profile) -> bool:
         return match.status == "no_baseline"
     back_rad = match.heading_rad + math.pi - match.yaw_rad
     sector = round(back_rad / SECTOR_RAD) % SECTORS
-    return node.open[sector] and length_m(match.disparity_rad, profile) <= profile.open_range_m
+    return (
+        node.open[sector]
+        and length_m(match.disparity_rad, profile) <= profile.opening_m + profile.robot_radius_m
+    )
