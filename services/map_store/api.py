@@ -6,6 +6,7 @@ from typing import Any
 from fastapi import APIRouter, Depends, FastAPI
 
 from services.map_store import archive_routes, graph_routes, map_routes, problems
+from services.map_store.body_limit import BodyLimit
 from services.map_store.errors import UnavailableError
 from services.map_store.guard import writer_guard
 from services.map_store.schemas import Health, Problem
@@ -35,9 +36,8 @@ def create_app(
         max_archive_bytes: largest archive to import.
         ready: whether the bus side answers too.
     """
-    app = FastAPI(
-        title="topnav map store", version=VERSION, description=DESCRIPTION, max_body_size=MAX_BODY_BYTES
-    )
+    app = FastAPI(title="topnav map store", version=VERSION, description=DESCRIPTION)
+    app.add_middleware(BodyLimit, most=MAX_BODY_BYTES, exceptions={"/maps/import": max_archive_bytes})
     problems.install(app)
     write = [Depends(writer_guard(token))]
     for router in (

@@ -9,7 +9,7 @@ from pydantic import Field, ValidationError
 
 from services.map_store.blobs import checksum, unpack_features
 from services.map_store.contents import Kind
-from services.map_store.errors import CorruptError, InvalidError
+from services.map_store.errors import CorruptError, InvalidError, MapError
 from services.map_store.graph import AddPlace, Graph, Place, Step, apply
 from shared.messages.base import Name, Part
 from shared.messages.maps import Edge, PutEdge
@@ -128,7 +128,10 @@ class Archive:
         steps += [PutEdge(edge=edge) for edge in self.index.edges]
         if len({(edge.a, edge.b) for edge in self.index.edges}) != len(self.index.edges):
             raise InvalidError(f"{INDEX}: an edge stands there twice")
-        apply(Graph(), steps)
+        try:
+            apply(Graph(), steps)
+        except MapError as error:
+            raise InvalidError(f"{INDEX}: {error}") from error
         return tuple(steps)
 
     def _check_blobs(self) -> None:

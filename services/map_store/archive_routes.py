@@ -44,7 +44,6 @@ def build(store: MapStore, write: Sequence[Depends], max_bytes: int) -> APIRoute
         "/import",
         status_code=201,
         dependencies=write,
-        max_body_size=max_bytes,
         openapi_extra={"requestBody": {"content": {"application/zip": {}}, "required": True}},
     )
     async def import_map(request: Request, name: NewName = None) -> MapView:

@@ -1,7 +1,6 @@
 """Maps by name: find, list, create, rename, delete. Every function works inside the caller's transaction."""
 
 from dataclasses import dataclass
-from typing import Any
 
 from sqlalchemy import Connection, Row, delete, func, insert, select, update
 
@@ -33,7 +32,7 @@ def check_name(name: str) -> str:
     return name
 
 
-def find(connection: Connection, name: str) -> Row[Any]:
+def find(connection: Connection, name: str) -> Row[int, int]:
     """`map_id` and `revision` of a map; MissingError lists what there is."""
     check_name(name)
     query = select(maps.c.map_id, maps.c.revision).where(maps.c.name == name)

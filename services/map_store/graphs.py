@@ -2,7 +2,6 @@
 
 import threading
 from collections import OrderedDict
-from typing import Any
 
 from sqlalchemy import Connection, Row
 
@@ -19,7 +18,7 @@ class Graphs:
         self._graphs: OrderedDict[int, tuple[int, Graph]] = OrderedDict()
         self._lock = threading.Lock()
 
-    def get(self, connection: Connection, found: Row[Any]) -> Graph:
+    def get(self, connection: Connection, found: Row[int, int]) -> Graph:
         """The graph of the map that `catalogue.find` found, as this transaction sees it."""
         with self._lock:
             revision, graph = self._graphs.get(found.map_id, (-1, Graph()))

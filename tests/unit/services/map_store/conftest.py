@@ -1,0 +1,57 @@
+"""A store in a fresh database with a clock that ticks, and what it told its followers."""
+
+from collections.abc import Iterator
+from itertools import count
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from services.map_store.database import Database
+from services.map_store.store import MapStore
+from shared.messages import Features, MapDelta
+from shared.messages.maps import AddNode, Node
+
+Told = list[MapDelta]
+
+
+def features(number: int, thumbnail: bool = True) -> Features:
+    """Small features that differ by `number`."""
+    rng = np.random.default_rng(number)
+    return Features(
+        pipeline="sift",
+        lonlat_rad=rng.random((4, 2), dtype=np.float32),
+        scores=rng.random(4, dtype=np.float32),
+        descriptors=rng.random((4, 8), dtype=np.float32),
+        thumbnail=b"\xff\xd8 picture %d" % number if thumbnail else b"",
+    )
+
+
+def add(number: int) -> AddNode:
+    """The operation that adds node `number`."""
+    node = Node(node_id=number, stamp_ns=number + 1, pipeline="sift", keypoints=4)
+    return AddNode(node=node, features=features(number))
+
+
+@pytest.fixture
+def told() -> Told:
+    """Deltas in the order they were told."""
+    return []
+
+
+@pytest.fixture
+def database(tmp_path: Path) -> Iterator[Database]:
+    """An empty database in a file."""
+    opened = Database(f"sqlite:///{tmp_path}/maps.sqlite3")
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def store(database: Database, told: Told) -> MapStore:
+    """A store with one empty map, "flat"."""
+    ticks = count(1_000)
+    opened = MapStore(database, lambda: next(ticks), told.append)
+    opened.create("flat")
+    told.clear()
+    return opened
