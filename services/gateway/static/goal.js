@@ -87,9 +87,9 @@ export class Goal {
       html("td", {}, html("img", { src: `/api/maps/${map}/nodes/${node.node_id}/thumbnail`, alt: "", width: 74, height: 37,
         onerror: (event) => event.target.remove() }), ` ${node.node_id}`),
       html("td", {}, `${node.inliers} of ${answer.max_similarity || node.raw_matches}`),
-      html("td", {}, html("meter", { min: 0, max: 1, low: 0.25, high: 0.5, optimum: 1, value: node.confidence,
+      html("td", {}, node.status === "no_baseline" ? "same spot" : html("meter", { min: 0, max: 1, low: 0.25, high: 0.5, optimum: 1, value: node.confidence,
         "aria-label": `confidence ${node.confidence.toFixed(2)}` })),
-      html("td", {}, node.heading_rad === null ? "–" : side(node.heading_rad))));
+      html("td", {}, node.status === "no_baseline" ? "here" : node.heading_rad === null ? "–" : side(node.heading_rad))));
     const head = ["place", "agree", "trust", "direction"].map((text) => html("th", { scope: "col" }, text));
     $("goal-answer").replaceChildren(
       html("p", { class: `verdict ${answer.verdict}` }, WORDS[answer.verdict]),

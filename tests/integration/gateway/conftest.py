@@ -83,7 +83,7 @@ def http(gateway: str) -> Iterator[httpx.Client]:
 
 def serve_gateway(endpoint: str, **changes: object) -> Iterator[str]:
     """Run the real service loop on a thread."""
-    port, stop = free_port(), threading.Event()
+    port, stop = int(str(changes.pop("port", 0))) or free_port(), threading.Event()
     settings = GatewaySettings(endpoint=endpoint, port=port, **changes)  # type: ignore[arg-type]
 
     def serve() -> None:

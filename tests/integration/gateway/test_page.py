@@ -12,6 +12,7 @@ from shared.bus import Bus, wait_until
 from shared.messages.missions import Event, MissionStatus
 from shared.messages.sensors import Frame
 from shared.topics import EVENT, FRAME, STATUS
+from tests.integration.gateway.conftest import free_port, serve_gateway
 from tests.integration.gateway.standins import Planner
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
@@ -66,7 +67,9 @@ def test_an_uploaded_picture_is_localised_and_driven_to(page: "sync_api.Page", p
     page.wait_for_selector("#goal-answer .verdict.found", timeout=WAIT_MS)
     assert "71 of 150" in page.inner_text("#goal-answer")
     page.click("#go")
-    assert wait_until(lambda: any(w.goal is not None and w.action == "goto" for w in planner.asked[-1:]), 10.0)
+    assert wait_until(
+        lambda: any(w.goal is not None and w.action == "goto" for w in planner.asked[-1:]), 10.0
+    )
     page.wait_for_selector("#state.running", timeout=WAIT_MS)
     page.click("#cancel")
     page.wait_for_selector("#state.cancelled", timeout=WAIT_MS)
@@ -131,6 +134,24 @@ def test_a_place_shows_its_connections_and_takes_the_robot_there(
     assert "suspended" in page.inner_text("#node")
     page.click("#go-there")
     assert wait_until(lambda: any(wish.goal_node == 2 for wish in planner.asked[-1:]), 10.0)
+
+
+def test_a_lost_gateway_is_said_and_found_again(browser: "sync_api.Browser", endpoint: str) -> None:
+    port = free_port()
+    running = serve_gateway(endpoint, port=port)
+    page = browser.new_page()
+    page.goto(next(running))
+    page.wait_for_selector("#connection.up", timeout=WAIT_MS)
+    assert page.is_hidden("#notice")
+    assert next(running, None) is None  # stops the gateway
+    page.wait_for_selector("#notice:not([hidden])", timeout=WAIT_MS)
+    assert "lost" in page.inner_text("#notice")
+    again = serve_gateway(endpoint, port=port)
+    next(again)
+    page.wait_for_selector("#connection.up", timeout=WAIT_MS)
+    page.wait_for_selector("#notice", state="hidden", timeout=WAIT_MS)
+    page.close()
+    assert next(again, None) is None
 
 
 def test_positions_follow_the_headings(page: "sync_api.Page") -> None:
