@@ -17,7 +17,7 @@ SHARE_M = 0.09  # vertices this near with the same normal share one computation
 SAMPLES = 2
 HEMISPHERE = 12
 REACH_M = 0.6
-SKIP_M = 0.1  # a surface does not shade itself
+SKIP_M = 0.07  # a surface does not shade itself
 CLEAR_SHARE = 0.004
 GAMMA = 1 / 2.2
 

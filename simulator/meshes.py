@@ -9,8 +9,10 @@ from simulator.parts import Part, rotation_of
 
 FloatArray = npt.NDArray[np.float32]
 IntArray = npt.NDArray[np.uint32]
-GRAIN_M = 0.28  # longest edge: light is stored at the vertices
-SIDES = 18
+GRAIN_M = 0.36  # longest edge of large faces: light is stored at the vertices
+GROUND_GRAIN_M = 0.2  # floors and rugs carry the shadows of everything that stands on them
+THIN_GRAIN_M = 0.9  # the same on narrow faces, along which light hardly changes
+SIDES = 16
 
 
 @dataclass(frozen=True)
@@ -78,8 +80,10 @@ def _grid(rows: int, columns: int) -> IntArray:
     return np.concatenate([np.stack([a, b, c], -1).reshape(-1, 3), np.stack([a, c, d], -1).reshape(-1, 3)])
 
 
-def _steps(length: float) -> int:
-    return max(2, int(np.ceil(length / GRAIN_M)) + 1)
+def _steps(length: float, across: float = 1.0, ground: bool = False) -> int:
+    """Vertices along an edge of a face that is `across` wide."""
+    grain = GROUND_GRAIN_M if ground else GRAIN_M if across > 0.15 else THIN_GRAIN_M
+    return max(2, int(np.ceil(length / grain)) + 1)
 
 
 def _stretch(part: Part, u: FloatArray, v: FloatArray) -> FloatArray:
@@ -106,7 +110,9 @@ def _box(part: Part) -> Mesh:
             normal[axis] = sign
             lift = np.eye(3, dtype=np.float32)[up]
             side = np.cross(lift, normal).astype(np.float32)
-            n_u, n_v = _steps(2 * half[right]), _steps(2 * half[up])
+            ground = axis == 2 and part.centre_m[2] + half[2] < 0.02
+            n_u = _steps(2 * half[right], 2 * half[up], ground)
+            n_v = _steps(2 * half[up], 2 * half[right], ground)
             s, t = np.meshgrid(
                 np.linspace(-1, 1, n_u, dtype=np.float32), np.linspace(1, -1, n_v, dtype=np.float32)
             )
@@ -130,9 +136,9 @@ def _box(part: Part) -> Mesh:
 
 def _cylinder(part: Part) -> Mesh:
     rx, ry, half = part.size_m[0] / 2, part.size_m[1] / 2, part.size_m[2] / 2
-    sides = SIDES if rx > 0.06 else 10
+    sides = SIDES if rx > 0.06 else 8
     angles = np.linspace(0, 2 * np.pi, sides + 1, dtype=np.float32)
-    levels = np.linspace(-1, 1, _steps(2 * half), dtype=np.float32)
+    levels = np.linspace(-1, 1, _steps(2 * half, 2 * rx), dtype=np.float32)
     scale = 1 + (part.taper - 1) * (levels + 1) / 2
     unit = np.stack([np.cos(angles) * rx, np.sin(angles) * ry], axis=-1)
     ring = unit[None] * scale[:, None, None]
@@ -176,12 +182,13 @@ def _cylinder(part: Part) -> Mesh:
 
 
 def _ellipsoid(part: Part) -> Mesh:
-    return _superellipsoid(part, 1.0, 8, 13)
+    return _superellipsoid(part, 1.0, 6, 10)
 
 
 def _cushion(part: Part) -> Mesh:
     """Box with round edges: a superellipsoid of low exponent."""
-    return _superellipsoid(part, 0.32, 11, 21)
+    rows, columns = (9, 17) if max(part.size_m) > 0.5 else (8, 13)
+    return _superellipsoid(part, 0.32, rows, columns)
 
 
 def _superellipsoid(part: Part, exponent: float, rows: int, columns: int) -> Mesh:
@@ -226,7 +233,7 @@ def _superellipsoid(part: Part, exponent: float, rows: int, columns: int) -> Mes
 def _drape(part: Part) -> Mesh:
     """Hanging cloth: waves along y, in front and behind; seen from both sides."""
     depth, width, height = part.size_m
-    n_y, n_z = max(9, int(width / 0.022)), _steps(height)
+    n_y, n_z = max(9, int(width / 0.032)), _steps(height)
     s, t = np.meshgrid(np.linspace(-0.5, 0.5, n_y), np.linspace(0.5, -0.5, n_z))
     waves = max(2.0, width / 0.09)
     phase = 2 * np.pi * waves * s + 1.2 * np.sin(3 * t)
@@ -244,7 +251,7 @@ def _drape(part: Part) -> Mesh:
 def _leaf(part: Part) -> Mesh:
     """Pointed leaf along x, drooping towards its tip; seen from both sides."""
     long, wide, droop = part.size_m
-    s, t = np.meshgrid(np.linspace(-1, 1, 3), np.linspace(0, 1, 6))
+    s, t = np.meshgrid(np.linspace(-1, 1, 3), np.linspace(0, 1, 4))
     half = wide / 2 * np.sin(np.pi * np.clip(t * 0.92 + 0.05, 0, 1)) ** 0.8
     points = (
         np.stack([(t - 0.5) * long, s * half, -droop * (t - 0.3) ** 2 + 0.12 * wide * np.abs(s)], axis=-1)
@@ -252,7 +259,7 @@ def _leaf(part: Part) -> Mesh:
         .astype(np.float32)
     )
     uv = _stretch(part, ((s + 1) / 2).ravel().astype(np.float32), t.ravel().astype(np.float32))
-    front = Mesh(points, np.tile(np.array([0, 0, 1], np.float32), (len(points), 1)), uv, _grid(6, 3))
+    front = Mesh(points, np.tile(np.array([0, 0, 1], np.float32), (len(points), 1)), uv, _grid(4, 3))
     front = Mesh(front.vertices, front.normals, front.uvs, front.triangles[:, ::-1])
     return joined([front, _backside(front)])
 

@@ -5,7 +5,8 @@ import time
 import cv2
 import numpy as np
 
-from shared.messages import Frame, Pose, Ranges, Truth
+from shared.messages import Frame, Ranges, Truth
+from shared.messages.simulation import Pose
 from simulator.service_settings import SimulatorSettings
 from simulator.simulation import Image, Simulation
 

@@ -14,7 +14,7 @@ def tv_bench(
     colour: Rgb = (206, 178, 138),
 ) -> Piece:
     """Low board, back at x = 0: drawers on both sides, an open middle with players and books."""
-    wood = Material("wood", colour, int(rng.integers(1000)))
+    wood = Material("wood", colour, int(rng.integers(3)))
     dark = Material("lacquer", (44, 44, 48), 7)
     half, third = width_m / 2, width_m / 6
     parts = [

@@ -16,7 +16,7 @@ def bookshelf(
     colour: Rgb = (140, 98, 62),
 ) -> Piece:
     """Open shelves with the back at x = 0 (against a wall), front along +x."""
-    wood = Material("wood", colour, int(rng.integers(1000)))
+    wood = Material("wood", colour, int(rng.integers(3)))
     half, t = width_m / 2, 0.025
     parts: list[Part] = [box((0.0, 0.012), (-half, half), (0.0, height_m), wood)]
     bay = (width_m - t) / bays

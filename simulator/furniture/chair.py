@@ -7,8 +7,8 @@ from simulator.parts import Material, Part, Piece, Rgb, box
 
 def chair(rng: np.random.Generator, colour: Rgb = (150, 106, 66), cushion: Rgb = (182, 84, 62)) -> Piece:
     """Chair facing +x; 0.42 m wide, 0.44 m deep."""
-    wood = Material("wood", colour, int(rng.integers(1000)))
-    cloth = Material("fabric", cushion, int(rng.integers(1000)))
+    wood = Material("wood", colour, int(rng.integers(3)))
+    cloth = Material("fabric", cushion, int(rng.integers(3)))
     parts = [box((-0.2, 0.22), (-0.21, 0.21), (0.42, 0.45), wood)]
     parts.append(Part("cushion", (0.02, 0.0, 0.47), (0.38, 0.38, 0.05), cloth, solid=False, tile_m=0.4))
     for y in (-0.19, 0.19):

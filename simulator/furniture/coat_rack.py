@@ -11,7 +11,7 @@ def coat_rack(
     rng: np.random.Generator, width_m: float = 1.0, coats: int = 4, colour: Rgb = (124, 88, 56)
 ) -> Piece:
     """Board with hooks on a wall at x = 0; the item's height is that of the board."""
-    wood = Material("wood", colour, int(rng.integers(1000)))
+    wood = Material("wood", colour, int(rng.integers(3)))
     half = width_m / 2
     parts = [
         box((0.0, 0.025), (-half, half), (-0.06, 0.06), wood),
@@ -21,7 +21,7 @@ def coat_rack(
     for k in range(coats):
         y = -half + (k + 0.5) * width_m / coats
         parts.append(box((0.02, 0.08), (y - 0.01, y + 0.01), (-0.02, 0.0), steel, solid=False))
-        cloth = Material("fabric", COATS[int(rng.integers(len(COATS)))], int(rng.integers(1000)))
+        cloth = Material("fabric", COATS[int(rng.integers(len(COATS)))], int(rng.integers(3)))
         long = float(rng.uniform(0.55, 0.75))
         parts.append(
             Part(

@@ -14,7 +14,7 @@ def coffee_table(
     colour: Rgb = (120, 84, 54),
 ) -> Piece:
     """Low table, long side along y, with a shelf near the floor."""
-    wood = Material("wood", colour, int(rng.integers(1000)))
+    wood = Material("wood", colour, int(rng.integers(3)))
     hw, hl = width_m / 2, length_m / 2
     parts = [
         box((-hw, hw), (-hl, hl), (height_m - 0.04, height_m), wood, tile_m=0.8),
@@ -34,7 +34,7 @@ def coffee_table(
     parts.extend(book_pile(rng, (0.0, 0.15, 0.125), 5))
     tray = Material("lacquer", (62, 70, 74), 4)
     parts.append(box((-0.15, 0.15), (0.08, 0.42), (height_m, height_m + 0.02), tray, solid=False))
-    cup = Material("ceramic", (222, 208, 186), int(rng.integers(1000)))
+    cup = Material("ceramic", (222, 208, 186), int(rng.integers(3)))
     parts.extend(
         post(x, y, (height_m + 0.02, height_m + 0.11), 0.038, cup, solid=False, tile_m=0.2)
         for x, y in ((-0.06, 0.2), (0.06, 0.31))

@@ -14,7 +14,7 @@ def console_table(
     colour: Rgb = (108, 74, 48),
 ) -> Piece:
     """Table with one drawer, a lower shelf and things on both; back at x = 0."""
-    wood = Material("wood", colour, int(rng.integers(1000)))
+    wood = Material("wood", colour, int(rng.integers(3)))
     half = width_m / 2
     parts = [
         box((0.0, depth_m), (-half, half), (height_m - 0.03, height_m), wood, tile_m=0.7),
@@ -33,7 +33,7 @@ def console_table(
         for x in (0.01, depth_m - 0.045)
         for y in (-half + 0.01, half - 0.045)
     )
-    basket = Material("wicker", (170, 134, 88), int(rng.integers(1000)))
+    basket = Material("wicker", (170, 134, 88), int(rng.integers(3)))
     parts.append(
         box((0.04, depth_m - 0.04), (-half + 0.1, -0.05), (0.185, 0.42), basket, solid=False, tile_m=0.3)
     )

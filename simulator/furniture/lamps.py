@@ -40,7 +40,7 @@ def floor_lamp(rng: np.random.Generator, height_m: float = 1.6, strength: float 
 
 def table_lamp(rng: np.random.Generator, strength: float = 0.35, colour: Rgb = (88, 112, 120)) -> Piece:
     """Small lamp; stands at the item's height."""
-    foot = Material("ceramic", colour, int(rng.integers(1000)))
+    foot = Material("ceramic", colour, int(rng.integers(3)))
     shade = Material("glow", (255, 230, 190), 2, glow=0.95)
     parts = (
         post(0.0, 0.0, (0.0, 0.22), 0.07, foot, solid=False, taper=0.4, tile_m=0.3),

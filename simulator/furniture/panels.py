@@ -46,8 +46,8 @@ def fuse_box(rng: np.random.Generator, width_m: float = 0.36, height_m: float = 
 def mirror(
     rng: np.random.Generator, width_m: float = 0.5, height_m: float = 1.1, frame: Rgb = (176, 142, 84)
 ) -> Piece:
-    """Mirror seen as a dim, cloudy pane: reflections are not rendered."""
-    pane, edge = Material("screen", (176, 186, 190), int(rng.integers(100))), Material("metal", frame, 5)
+    """Mirror with a painted reflection."""
+    pane, edge = Material("mirror", (200, 208, 202), int(rng.integers(100))), Material("metal", frame, 5)
     half, tall = width_m / 2, height_m / 2
     return Piece((
         box((0.0, 0.02), (-half, half), (-tall, tall), edge, solid=False),

@@ -14,7 +14,7 @@ def plant(
     leaves: int = 34,
 ) -> Piece:
     """Plant in a pot; leaves spread wider than the pot only above the robot."""
-    clay = Material("ceramic", pot, int(rng.integers(1000)))
+    clay = Material("ceramic", pot, int(rng.integers(3)))
     stem = Material("wood", (96, 78, 52), 2)
     parts: list[Part] = [
         post(0.0, 0.0, (0.0, 0.32), pot_radius_m, clay, taper=1.15, tile_m=0.4),
@@ -25,7 +25,7 @@ def plant(
         reach = float(rng.uniform(0.22, 0.4)) * (0.55 if z < 0.8 else 1.0)
         yaw, lift = float(rng.uniform(0, 2 * np.pi)), float(rng.uniform(-0.9, 0.1))
         tone: Rgb = tuple(int(c * rng.uniform(0.85, 1.15)) for c in leaf)  # type: ignore[assignment]
-        green = Material("leaf", tuple(c // 16 * 16 for c in tone), 0)  # type: ignore[arg-type]
+        green = Material("leaf", tuple(c // 32 * 32 for c in tone), 0)  # type: ignore[arg-type]
         centre = (
             reach / 2 * np.cos(yaw) * np.cos(lift),
             reach / 2 * np.sin(yaw) * np.cos(lift),

@@ -15,7 +15,7 @@ def sofa(
     seats: int = 3,
 ) -> Piece:
     """Sofa; origin in the middle of its footprint, seat facing +x."""
-    cloth = Material("fabric", colour, int(rng.integers(1000)))
+    cloth = Material("fabric", colour, int(rng.integers(3)))
     arm = 0.2
     half = depth_m / 2
     parts = _carcass(cloth, width_m, depth_m, arm)
@@ -25,7 +25,7 @@ def sofa(
         parts.append(Part("cushion", (0.08, y, 0.39), (depth_m - 0.22, step - 0.01, 0.17), cloth, tile_m=0.7))
         parts.append(Part("cushion", (-half + 0.27, y, 0.62), (0.2, step - 0.02, 0.42), cloth, tile_m=0.7))
     for y in (-width_m / 2 + arm + 0.22, width_m / 2 - arm - 0.22, 0.12):
-        ink = Material("pattern_cloth", _accent(rng), int(rng.integers(1000)))
+        ink = Material("pattern_cloth", _accent(rng), int(rng.integers(3)))
         lean = float(rng.uniform(-0.3, 0.3))
         parts.append(
             Part(
@@ -45,13 +45,13 @@ def armchair(
     rng: np.random.Generator, width_m: float = 0.8, depth_m: float = 0.8, colour: Rgb = (150, 96, 60)
 ) -> Piece:
     """Leather armchair, facing +x."""
-    hide = Material("leather", colour, int(rng.integers(1000)))
+    hide = Material("leather", colour, int(rng.integers(3)))
     parts = _carcass(hide, width_m, depth_m, 0.15)
     parts.append(Part("cushion", (0.06, 0.0, 0.4), (depth_m - 0.2, width_m - 0.31, 0.17), hide, tile_m=0.6))
     parts.append(
         Part("cushion", (-depth_m / 2 + 0.22, 0.0, 0.68), (0.18, width_m - 0.26, 0.56), hide, tile_m=0.6)
     )
-    ink = Material("pattern_cloth", _accent(rng), int(rng.integers(1000)))
+    ink = Material("pattern_cloth", _accent(rng), int(rng.integers(3)))
     parts.append(
         Part(
             "cushion",
@@ -70,7 +70,7 @@ def pouf(
     rng: np.random.Generator, radius_m: float = 0.25, height_m: float = 0.4, colour: Rgb = (190, 160, 110)
 ) -> Piece:
     """Round upholstered stool."""
-    cloth = Material("pattern_cloth", colour, int(rng.integers(1000)))
+    cloth = Material("pattern_cloth", colour, int(rng.integers(3)))
     rim = Part(
         "cushion", (0.0, 0.0, height_m - 0.03), (1.7 * radius_m, 1.7 * radius_m, 0.06), cloth, solid=False
     )

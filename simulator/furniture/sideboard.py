@@ -15,14 +15,14 @@ def sideboard(
     doors: int = 3,
 ) -> Piece:
     """Cabinet on legs with its back at x = 0."""
-    wood = Material("wood", colour, int(rng.integers(1000)))
+    wood = Material("wood", colour, int(rng.integers(3)))
     brass = Material("metal", (190, 160, 96), 2)
     half = width_m / 2
     parts = [box((0.0, depth_m - 0.02), (-half, half), (0.12, height_m), wood, tile_m=0.8)]
     step = width_m / doors
     for k in range(doors):
         y = (-half + k * step + 0.006, -half + (k + 1) * step - 0.006)
-        face = Material("wood", colour, int(rng.integers(1000)))
+        face = Material("wood", colour, int(rng.integers(3)))
         rows = (
             ((0.14, 0.34), (0.35, 0.55), (0.56, height_m - 0.03))
             if k == doors // 2

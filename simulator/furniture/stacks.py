@@ -67,7 +67,7 @@ def book_row(
 
 def ornament(rng: np.random.Generator, at: Vec3) -> list[Part]:
     """A vase, a box, a bowl or a small framed photograph."""
-    seed = int(rng.integers(1000))
+    seed = int(rng.integers(3))
     colour: Rgb = ((196, 120, 86), (70, 104, 142), (222, 214, 196), (110, 130, 104))[int(rng.integers(4))]
     kind = int(rng.integers(4))
     x, y, z = at

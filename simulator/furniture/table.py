@@ -13,7 +13,7 @@ def dining_table(
     colour: Rgb = (168, 122, 78),
 ) -> Piece:
     """Table with its long side along y."""
-    oak = Material("wood", colour, int(rng.integers(1000)))
+    oak = Material("wood", colour, int(rng.integers(3)))
     hw, hl = width_m / 2, length_m / 2
     top = height_m
     parts = [box((-hw, hw), (-hl, hl), (top - 0.035, top), oak, tile_m=0.9)]
@@ -23,12 +23,12 @@ def dining_table(
         for sx in (-1, 1)
         for sy in (-1, 1)
     )
-    runner = Material("pattern_cloth", (224, 214, 196), int(rng.integers(1000)))
+    runner = Material("pattern_cloth", (224, 214, 196), int(rng.integers(3)))
     parts.append(
         box((-0.2, 0.2), (-hl + 0.12, hl - 0.12), (top, top + 0.004), runner, solid=False, tile_m=0.5)
     )
-    china = Material("ceramic", (228, 226, 220), int(rng.integers(1000)))
-    blue = Material("ceramic", (70, 104, 142), int(rng.integers(1000)))
+    china = Material("ceramic", (228, 226, 220), int(rng.integers(3)))
+    blue = Material("ceramic", (70, 104, 142), int(rng.integers(3)))
     for sx in (-1, 1):
         for y in (-0.45, 0.45):
             parts.append(post(sx * (hw - 0.2), y, (top, top + 0.015), 0.13, china, solid=False, tile_m=0.2))
@@ -56,7 +56,7 @@ def dining_table(
 
 
 def _bouquet(rng: np.random.Generator, x: float, y: float, z: float) -> list[Part]:
-    vase = Material("ceramic", (196, 120, 86), int(rng.integers(1000)))
+    vase = Material("ceramic", (196, 120, 86), int(rng.integers(3)))
     parts = [post(x, y, (z, z + 0.2), 0.05, vase, solid=False, taper=0.7, tile_m=0.3)]
     for _ in range(16):
         dx, dy, dz = rng.normal(0, 0.055, 3)

@@ -15,7 +15,7 @@ KINDS: dict[str, Callable[[np.random.Generator, Rgb], Image]] = {
         materials.lacquer, materials.ceramic, materials.leaf, materials.wicker, materials.glow,
         pictures.landscape, pictures.abstract, pictures.still_life, pictures.street, pictures.poster,
         rugs.persian, rugs.kilim, rugs.modern,
-        objects.books, objects.door, objects.radiator, objects.screen, objects.clock, objects.panel, objects.view,
+        objects.books, objects.door, objects.radiator, objects.screen, objects.clock, objects.panel, objects.mirror, objects.view,
     )
 }  # fmt: skip
 

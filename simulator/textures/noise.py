@@ -1,5 +1,7 @@
 """Periodic noise and small drawing aids that the texture kinds share. Pure numpy and OpenCV."""
 
+import functools
+
 import cv2
 import numpy as np
 import numpy.typing as npt
@@ -24,14 +26,19 @@ def spectral_noise(
     Returns:
         (height, width) array that tiles without a seam.
     """
-    white = rng.standard_normal((height, width)).astype(np.float32)
+    white = rng.standard_normal((height, width), np.float32)
+    field = np.fft.irfft2(np.fft.rfft2(white) * _filter(height, width, exponent, stretch), s=(height, width))
+    return np.asarray(field / max(float(field.std()), 1e-9), np.float32)
+
+
+@functools.cache
+def _filter(height: int, width: int, exponent: float, stretch: float) -> FloatArray:
+    """1 / f^exponent over the half plane of a real transform, 0 at f = 0; the powers cost more than the transform."""
     fy = np.fft.fftfreq(height)[:, None] * height
     fx = np.fft.rfftfreq(width)[None, :] * width * stretch
     radius = np.sqrt(fx * fx + fy * fy)
-    radius[0, 0] = 1.0
-    field = np.fft.irfft2(np.fft.rfft2(white) / radius**exponent, s=(height, width))
-    field -= field.mean()
-    return (field / max(float(field.std()), 1e-9)).astype(np.float32)
+    radius[0, 0] = np.inf
+    return (radius**-exponent).astype(np.float32)
 
 
 def flat(height: int, width: int, colour: Rgb) -> FloatArray:

@@ -177,3 +177,18 @@ def view(rng: np.random.Generator, colour: Rgb) -> Image:
             cv2.LINE_AA,
         )
     return finish(modulate(image, spectral_noise(rng, height, width, 0.6), 0.03))
+
+
+def mirror(rng: np.random.Generator, colour: Rgb) -> Image:
+    """Mirror glass showing a still corridor: reflections are painted, not rendered."""
+    height, width = 512, 256
+    rows = np.linspace(0, 1, height, dtype=np.float32)[:, None, None]
+    image = np.broadcast_to(np.array(colour, np.float32) * (1.06 - 0.2 * rows), (height, width, 3)).copy()
+    cv2.rectangle(image, (0, 0), (width, 60), (236.0, 234.0, 228.0), -1)
+    cv2.rectangle(image, (0, 420), (width, height), (176.0, 160.0, 138.0), -1)
+    cv2.rectangle(image, (30, 130), (120, 440), (222.0, 216.0, 204.0), -1)
+    cv2.rectangle(image, (30, 130), (120, 440), (150.0, 144.0, 134.0), 3)
+    picture = cv2.resize(np.ascontiguousarray(rng.integers(40, 220, (5, 6, 3)).astype(np.float32)), (80, 64))
+    image[190:254, 150:230] = picture
+    cv2.rectangle(image, (146, 186), (233, 257), (60.0, 46.0, 36.0), 4)
+    return finish(modulate(smooth(image, 2.0), spectral_noise(rng, height, width, 2.0), 0.03))

@@ -18,8 +18,12 @@ def room_data() -> dict[str, Any]:
         "format": "topnav-world/1",
         "name": "plain",
         "start": {"x_m": 2.0, "y_m": 2.0},
-        "rooms": [{"name": "room", "x_m": [0, 6], "y_m": [0, 4], "floor": PAINT, "walls": PAINT, "ceiling": PAINT}],
-        "furniture": [{"kind": "dining_table", "at_m": [5.0, 3.0], "options": {"length_m": 1.0, "width_m": 1.0}}],
+        "rooms": [
+            {"name": "room", "x_m": [0, 6], "y_m": [0, 4], "floor": PAINT, "walls": PAINT, "ceiling": PAINT}
+        ],
+        "furniture": [
+            {"kind": "dining_table", "at_m": [5.0, 3.0], "options": {"length_m": 1.0, "width_m": 1.0}}
+        ],
     }
 
 

@@ -21,7 +21,15 @@ def apartment():
 
 @pytest.mark.parametrize(
     ("point", "free"),
-    [((1.0, 1.0), True), ((0.2, 2.0), False), ((0.35, 2.0), True), ((5.0, 3.0), False), ((4.3, 3.0), False), ((4.2, 3.0), True), ((-3.0, 2.0), False)],
+    [
+        ((1.0, 1.0), True),
+        ((0.2, 2.0), False),
+        ((0.35, 2.0), True),
+        ((5.0, 3.0), False),
+        ((4.3, 3.0), False),
+        ((4.2, 3.0), True),
+        ((-3.0, 2.0), False),
+    ],
 )
 def test_robot_fits_only_a_radius_away_from_everything(plain, point, free):
     assert plain.is_free(point) == free

@@ -40,7 +40,9 @@ def test_turning_left_moves_the_wall_to_the_sensors_on_the_right():
     assert distances[0] == EXACT.max_m
 
 
-@pytest.mark.parametrize(("low", "high", "seen"), [(0.42, 0.46, True), (0.85, 2.0, False), (0.72, 0.75, True)])
+@pytest.mark.parametrize(
+    ("low", "high", "seen"), [(0.42, 0.46, True), (0.85, 2.0, False), (0.72, 0.75, True)]
+)
 def test_everything_the_robot_could_hit_is_seen_and_nothing_above_it(low, high, seen):
     shelf = box((1.0, 1.5), (-0.5, 0.5), (low, high), STUFF)
     assert (read((shelf,))[0] < EXACT.max_m) == seen
@@ -59,5 +61,7 @@ def test_round_pot_is_seen_at_its_rim():
 
 def test_noise_depends_on_the_generator_only():
     noisy = RangeSettings(noise_m=0.05)
-    np.testing.assert_array_equal(read((WALL,), settings=noisy, seed=1), read((WALL,), settings=noisy, seed=1))
+    np.testing.assert_array_equal(
+        read((WALL,), settings=noisy, seed=1), read((WALL,), settings=noisy, seed=1)
+    )
     assert read((WALL,), settings=noisy, seed=1)[0] != read((WALL,), settings=noisy, seed=2)[0]

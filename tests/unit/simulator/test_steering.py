@@ -13,7 +13,15 @@ REST = LegTarget(0.0, 0.0)
 
 @pytest.mark.parametrize(
     ("heading_deg", "now_deg", "angle_deg", "sign"),
-    [(60, 0, 60, 1), (-30, 0, -30, 1), (180, 0, 0, -1), (-120, 0, 60, -1), (120, 80, -60, -1), (95, 0, -85, -1), (95, 60, 95, 1)],
+    [
+        (60, 0, 60, 1),
+        (-30, 0, -30, 1),
+        (180, 0, 0, -1),
+        (-120, 0, 60, -1),
+        (120, 80, -60, -1),
+        (95, 0, -85, -1),
+        (95, 60, 95, 1),
+    ],
 )
 def test_nearest_reachable_servo_angle_is_chosen(heading_deg, now_deg, angle_deg, sign):
     angle, direction = choose_angle(math.radians(heading_deg), math.radians(now_deg), ROBOT.steer_limit_rad)

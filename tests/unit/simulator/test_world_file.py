@@ -32,13 +32,21 @@ def edit(data, path, value):
     ("path", "value", "message"),
     [
         (("rooms", 0, "x_m"), [6, 0], r"rooms\.0\.x_m.*low < high"),
-        (("rooms", 0, "walls", "texture"), "velvet", r"rooms\.0\.walls\.texture.*unknown texture kind 'velvet'"),
+        (
+            ("rooms", 0, "walls", "texture"),
+            "velvet",
+            r"rooms\.0\.walls\.texture.*unknown texture kind 'velvet'",
+        ),
         (("rooms", 0, "floor", "colour"), [1, 2, 300], r"rooms\.0\.floor\.colour\.2"),
         (("rooms",), [], r"rooms.*at least 1"),
         (("furniture", 0, "kind"), "throne", r"unknown furniture kind 'throne'; choose from armchair"),
         (("furniture", 0, "options"), {"wheels": 4}, r"dining_table has no option wheels; it has length_m"),
         (("furniture", 0, "options"), {"length_m": "long"}, r"dining_table options: length_m"),
-        (("start",), {"x_m": 40, "y_m": 1}, r"start \(40.0, 1.0\) must lie inside one of the rooms \['room'\]"),
+        (
+            ("start",),
+            {"x_m": 40, "y_m": 1},
+            r"start \(40.0, 1.0\) must lie inside one of the rooms \['room'\]",
+        ),
         (("format",), "topnav-world/9", r"format.*topnav-world/1"),
         (("name",), None, r"name: Field required"),
         (("wall_height_m",), float("nan"), r"wall_height_m"),

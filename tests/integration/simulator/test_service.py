@@ -1,0 +1,133 @@
+"""The simulator process over a real bus: lockstep, repetition, requests, real time."""
+
+import os
+import subprocess
+import sys
+import time
+
+import pytest
+
+from shared.bus import Bus, open_bus, wait_until
+from shared.messages import Command, SimulationRequest
+from shared.messages.simulation import Pose
+from shared.queries import RefusedError
+from shared.topics import COMMAND, FRAME, RANGES, SIMULATION, TRUTH
+
+pytestmark = pytest.mark.render
+START_S = 90.0
+
+
+class Peer:
+    """The other side: keeps the newest frame, ranges and truth."""
+
+    def __init__(self, bus: Bus) -> None:
+        self.bus = bus
+        self._in = [bus.subscribe(topic, robot="r1") for topic in (FRAME, RANGES, TRUTH)]
+        self._commands = bus.publisher(COMMAND, robot="r1")
+        self.frame = self.ranges = self.truth = None
+        self.frames = 0
+
+    def poll(self):
+        for name, inbox in zip(("frame", "ranges", "truth"), self._in, strict=True):
+            for message in inbox.take_all():
+                setattr(self, name, message)
+                self.frames += name == "frame"
+
+    def wait_for(self, condition, timeout_s=20.0):
+        def check():
+            self.poll()
+            return condition()
+
+        assert wait_until(check, timeout_s)
+
+    def complete(self, seq):
+        """Everything of frame `seq` (or later) is here."""
+        return all(m is not None and m.seq >= seq for m in (self.frame, self.ranges, self.truth))
+
+    def command(self, seq, steer_rad=0.0, wheel_speed_radps=4.0, ttl_ms=500):
+        self._commands.put(
+            Command(
+                seq=seq, robot="r1", steer_rad=steer_rad, wheel_speed_radps=wheel_speed_radps, ttl_ms=ttl_ms
+            )
+        )
+
+    def ask(self, **request):
+        return self.bus.ask(SIMULATION, SimulationRequest(**request), timeout_s=20.0, robot="r1")
+
+
+@pytest.fixture
+def start(router_endpoint, room_file):
+    """Start a simulator process; returns the peer once it answers."""
+    processes = []
+    buses = []
+
+    def launch(lockstep):
+        environment = {
+            **os.environ, "TOPNAV_ENDPOINT": router_endpoint, "SIMULATOR_WORLD": room_file, "SIMULATOR_WIDTH_PX": "256",
+            "SIMULATOR_LOCKSTEP": str(lockstep).lower(), "SIMULATOR_REPEAT_S": "0.3",
+        }  # fmt: skip
+        manager = open_bus(router_endpoint)
+        peer = Peer(manager.__enter__())
+        buses.append(manager)
+        processes.append(subprocess.Popen([sys.executable, "-m", "simulator"], env=environment))
+        peer.wait_for(lambda: peer.frame is not None, START_S)
+        return peer
+
+    yield launch
+    for manager in buses:
+        manager.__exit__(None, None, None)
+    for process in processes:
+        process.terminate()
+        assert process.wait(timeout=20) == 0
+
+
+def test_lockstep_advances_one_period_per_command_and_waits_without_one(start):
+    peer = start(lockstep=True)
+    peer.wait_for(lambda: peer.complete(0))
+    assert peer.frame.lockstep
+    first, seen = peer.frame, peer.frames
+    peer.wait_for(lambda: peer.frames >= seen + 2)  # repeated: same frame, same bytes
+    assert (peer.frame.seq, peer.frame.stamp_ns, peer.frame.data) == (first.seq, first.stamp_ns, first.data)
+    assert peer.truth.sim_time_s == 0.0
+
+    x_m = peer.truth.pose.x_m
+    for seq in range(4):
+        peer.command(seq)
+        peer.wait_for(lambda: peer.complete(seq + 1))  # noqa: B023
+    assert peer.frame.seq == peer.ranges.seq == peer.truth.seq == 4
+    assert peer.truth.sim_time_s == pytest.approx(1.2)
+    assert 0.2 < peer.truth.pose.x_m - x_m < 0.4
+
+    peer.command(2)  # an answer to an old frame moves nothing
+    seen = peer.frames
+    peer.wait_for(lambda: peer.frames >= seen + 2)
+    assert peer.truth.seq == 4
+
+
+def test_requests_place_robots_return_pictures_and_keep_counting(start):
+    peer = start(lockstep=True)
+    peer.wait_for(lambda: peer.complete(0))
+    reply = peer.ask(action="place_hider", pose=Pose(x_m=1.0, y_m=1.0, yaw_rad=0.5))
+    assert (reply.frame.width_px, reply.frame.height_px) == (256, 128)
+    assert reply.truth.hider.x_m == 1.0
+    reply = peer.ask(action="reset", seed=4, pose=Pose(x_m=3.0, y_m=2.0, yaw_rad=1.0))
+    assert reply.truth.pose.x_m == pytest.approx(3.0)
+    assert reply.truth.collisions == 0
+    peer.wait_for(lambda: peer.complete(2))
+    assert peer.truth.pose.yaw_rad == pytest.approx(1.0, abs=1e-3)
+    assert peer.ask(action="look").frame is not None
+    with pytest.raises(RefusedError, match=r"must lie inside a room of small"):
+        peer.ask(action="place_robot", pose=Pose(x_m=9.0, y_m=2.0, yaw_rad=0.0))
+    with pytest.raises(RefusedError, match="needs a pose"):
+        peer.ask(action="place_hider")
+
+
+def test_real_time_runs_by_itself_and_stops_when_commands_end(start):
+    peer = start(lockstep=False)
+    assert not peer.frame.lockstep
+    peer.wait_for(lambda: peer.truth is not None and peer.frame.seq > 3)
+    peer.command(0, steer_rad=1.0, wheel_speed_radps=5.0, ttl_ms=300)
+    peer.wait_for(lambda: peer.truth.speed_mps > 0.1)
+    moving_s = time.monotonic()
+    peer.wait_for(lambda: peer.truth.speed_mps < 0.01)
+    assert time.monotonic() - moving_s < 3.0
