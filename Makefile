@@ -18,7 +18,9 @@ setup: $(STAMP)
 
 $(STAMP): $(INPUTS)
 	@bash deploy/setup/venv.sh "$(PYTHON)" "$(VENV)"
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt ./deploy/packaging/opencv-shim --editable '.[dev]'
+	@# --no-compile: a run imports a small part of torch, scipy and sympy; compiling all of it doubles the time.
+	$(BIN)/python -m pip install --quiet --no-compile --constraint constraints.txt \
+		./deploy/packaging/opencv-shim --editable '.[dev]'
 	$(BIN)/python -m pip check
 	@touch $@
 

@@ -1,4 +1,4 @@
-"""The services of docker-compose.yml under the launcher, without the simulator: they start, and survive kill -9."""
+"""The processes of docker-compose.yml under the launcher, without the simulator: they survive kill -9."""
 
 import time
 
