@@ -21,10 +21,18 @@ def most_similar(results: Sequence[NodeMatch]) -> list[NodeMatch]:
     return sorted(results, key=lambda match: (-match.inliers, -match.raw_matches, match.node_id))
 
 
+def is_settled(best: Sequence[NodeMatch], best_k: int, raw_matches: int) -> bool:
+    """Whether a candidate with this many raw matches can no longer enter the best_k.
+
+    Inliers are raw matches, so candidates tried in falling order of raw matches need not all be verified.
+    """
+    ranked = most_similar(best)
+    return len(ranked) >= best_k and (best_k == 0 or ranked[best_k - 1].inliers >= raw_matches)
+
+
 def answer(
-    results: Mapping[int, NodeMatch], node_ids: Sequence[int], shortlisted: Sequence[int], best_k: int
+    results: Mapping[int, NodeMatch], asked: Sequence[int], best: Sequence[NodeMatch], best_k: int
 ) -> tuple[NodeMatch, ...]:
-    """The nodes asked for, every target (negative id) and the best_k of the shortlist, most similar first."""
-    best = most_similar([results[node_id] for node_id in shortlisted])[:best_k]
-    wanted = {*node_ids, *(match.node_id for match in best), *(n for n in results if n < 0)}
+    """What was asked for by id and the best_k of those verified for that, most similar first."""
+    wanted = {*asked, *(match.node_id for match in most_similar(best)[:best_k])}
     return tuple(most_similar([results[node_id] for node_id in wanted]))

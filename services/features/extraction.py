@@ -13,7 +13,7 @@ from services.features.interfaces import (
     View,
 )
 from services.features.pipelines import Profile
-from services.features.selection import spread
+from services.features.selection import strongest
 
 
 def extract(
@@ -39,7 +39,7 @@ def extract(
     found = [extractor.detect(view.gray) for view in views]
     max_lat_rad = float(np.deg2rad(90.0 - profile.crop_deg))
     view_index, own_index, lonlat, scores = _merge(views, found, max_lat_rad)
-    chosen = spread(lonlat, scores, profile.keypoints, profile.cells, max_lat_rad)
+    chosen = strongest(lonlat, scores, profile.keypoints)
     parts = []
     for number, (view, detections) in enumerate(zip(views, found, strict=True)):
         of_view = chosen[view_index[chosen] == number]

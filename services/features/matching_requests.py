@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from services.features.comparison import answer, shortlist
+from services.features.comparison import answer, is_settled, shortlist
 from services.features.interfaces import FeatureSet, IndexArray
 from services.features.map_cache import Place
 from services.features.pipeline import Pipeline
@@ -53,20 +53,28 @@ def pair(pipeline: Pipeline, request: MatchRequest, current: Features, places: M
 
 
 def verify_paired(pipeline: Pipeline, request: MatchRequest, paired: Paired) -> tuple[NodeMatch, ...]:
-    """Verify the nodes asked for, the targets and the shortlist; most similar first."""
-    wanted = {*request.node_ids, *paired.shortlisted, *(n for n in paired.candidates if n < 0)}
-    results = {
-        node_id: verify(
-            paired.query,
-            paired.candidates[node_id],
-            paired.pairs[node_id],
-            paired.seq,
-            pipeline.verification,
-            request.with_matches,
-        )
-        for node_id in sorted(wanted)
-    }
-    return answer(results, request.node_ids, paired.shortlisted, request.best_k)
+    """Verify the nodes asked for, the targets and as much of the shortlist as matters; most similar first."""
+    asked = sorted({*request.node_ids, *(n for n in paired.candidates if n < 0)})
+    results = {node_id: _verify_one(pipeline, request, paired, node_id) for node_id in asked}
+    best: list[NodeMatch] = []
+    for node_id in paired.shortlisted:
+        if is_settled(best, request.best_k, len(paired.pairs[node_id])):
+            break
+        if node_id not in results:
+            results[node_id] = _verify_one(pipeline, request, paired, node_id)
+        best.append(results[node_id])
+    return answer(results, asked, best, request.best_k)
+
+
+def _verify_one(pipeline: Pipeline, request: MatchRequest, paired: Paired, node_id: int) -> NodeMatch:
+    return verify(
+        paired.query,
+        paired.candidates[node_id],
+        paired.pairs[node_id],
+        paired.seq,
+        pipeline.verification,
+        request.with_matches,
+    )
 
 
 def _require_pipeline(what: str, features: Features, pipeline: Pipeline) -> None:

@@ -15,7 +15,6 @@ class Profile:
         ratio: largest distance of the best candidate relative to the second best.
         crop_deg: angle cut away above and below (THESIS row 4), degrees.
         resize: rows and columns the whole picture is resized to (THESIS row 2); None = as it comes.
-        cells: columns and rows of the grid over which keypoints are spread; (1, 1) = the strongest only.
         upright: describe keypoints without turning them; the robot's camera always stands upright.
         verification_deg: largest angle off the epipolar plane of a verified match, degrees.
     """
@@ -27,7 +26,6 @@ class Profile:
     ratio: float = 0.85
     crop_deg: float = 25.0
     resize: tuple[int, int] | None = (400, 800)
-    cells: tuple[int, int] = (16, 4)
     upright: bool = True
     verification_deg: float = 0.7
 
@@ -42,9 +40,9 @@ PROFILES: dict[str, Profile] = {
     "thesis": Profile("sift", keypoints=150),
     "orb": Profile("orb"),
     "beblid": Profile("beblid"),
-    "sift_tangent": Profile("sift", representation="tangent"),
-    "orb_tangent": Profile("orb", representation="tangent"),
-    "beblid_tangent": Profile("beblid", representation="tangent"),
+    "sift_tangent": Profile("sift", representation="tangent", resize=None),
+    "orb_tangent": Profile("orb", representation="tangent", resize=None),
+    "beblid_tangent": Profile("beblid", representation="tangent", resize=None),
     "sift_planar": Profile("sift", representation="planar"),
 }
 

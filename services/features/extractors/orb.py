@@ -10,7 +10,7 @@ from services.features.interfaces import Detections, Distance, Image, IndexArray
 from services.features.pipelines import Profile
 
 CANDIDATES = 8
-"""Corners looked for per keypoint kept, so that spreading them has a choice."""
+"""Corners looked for per keypoint kept, so that no level of the pyramid runs into its quota."""
 
 FAST_THRESHOLD = 5
 """Grey levels; OpenCV's 20 leaves plain walls empty."""

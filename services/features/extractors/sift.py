@@ -5,6 +5,7 @@ a unit vector whose Euclidean distance is the Hellinger distance of d. Bytes hol
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -31,8 +32,14 @@ class Sift:
         self._upright = profile.upright
 
     def detect(self, gray: Image) -> Detections:
-        """Find extrema of the difference of Gaussians."""
-        return detections_from_keypoints(one_per_place(self._sift.detect(gray, None)))
+        """Find extrema of the difference of Gaussians.
+
+        The score is contrast times the root of the size: large blobs are found again from further away
+        (measured at 1 to 1.5 m: 48 verified matches instead of 36 by contrast alone).
+        """
+        found = detections_from_keypoints(one_per_place(self._sift.detect(gray, None)))
+        sizes = np.array([keypoint.size for keypoint in found.handle], dtype=np.float32)
+        return replace(found, scores=found.scores * np.sqrt(sizes))
 
     def describe(
         self, gray: Image, detections: Detections, chosen: IndexArray

@@ -1,0 +1,70 @@
+"""New, again or stale: retransmission, restart of the camera, late frames."""
+
+import numpy as np
+import pytest
+
+from services.features.frame_cache import FrameCache, FrameKey
+from shared.messages.features import Features
+from shared.messages.sensors import Frame
+
+
+def features(seq: int) -> Features:
+    return Features(
+        seq=seq,
+        pipeline="sift",
+        lonlat_rad=np.zeros((0, 2), np.float32),
+        scores=np.zeros(0, np.float32),
+        descriptors=np.zeros((0, 128), np.uint8),
+    )
+
+
+@pytest.fixture
+def cache() -> FrameCache:
+    kept = FrameCache(capacity=3)
+    for seq in range(5, 10):
+        kept.put(FrameKey(seq, 100 * seq, 0), features(seq))
+    return kept
+
+
+def test_only_the_newest_are_kept(cache):
+    assert [seq for seq in range(12) if cache.get(seq) is not None] == [7, 8, 9]
+    assert cache.span() == "7 to 9"
+
+
+@pytest.mark.parametrize("lockstep", [True, False])
+def test_the_same_picture_is_sent_again_without_work(cache, lockstep):
+    key = FrameKey(9, 900, 0)
+    assert cache.judge(key, lockstep) == "again"
+    assert cache.same(key).seq == 9
+
+
+@pytest.mark.parametrize(
+    ("key", "lockstep", "verdict"),
+    [
+        pytest.param(FrameKey(10, 1000, 0), False, "new", id="next frame"),
+        pytest.param(FrameKey(6, 600, 0), False, "stale", id="late frame"),
+        pytest.param(FrameKey(9, 900, 1), False, "stale", id="other picture of the same number and time"),
+        pytest.param(FrameKey(0, 950, 0), False, "new", id="restarted camera, clock moved on"),
+        pytest.param(FrameKey(0, 0, 0), True, "new", id="restarted camera in lockstep, clock back at zero"),
+        pytest.param(FrameKey(9, 900, 1), True, "new", id="reset simulator, other picture"),
+    ],
+)
+def test_judgement(cache, key, lockstep, verdict):
+    assert cache.judge(key, lockstep) == verdict
+
+
+def test_numbers_of_before_a_restart_are_forgotten(cache):
+    cache.put(FrameKey(0, 950, 0), features(0))
+    assert cache.get(9) is None
+    assert cache.get(0) is not None
+
+
+def test_an_empty_cache_takes_anything():
+    assert FrameCache(1).judge(FrameKey(0, 0, 0), lockstep=False) == "new"
+    assert FrameCache(1).span() == "none"
+
+
+def test_the_key_tells_pictures_apart_by_content():
+    fields = {"robot": "r1", "encoding": "bgr8", "width_px": 2, "height_px": 1}
+    one, other = Frame(data=b"abcdef", **fields), Frame(data=b"abcdeg", **fields)
+    assert FrameKey.of(one) != FrameKey.of(other)

@@ -1,0 +1,49 @@
+"""Names are checked at start, choices are listed, and settings load no image library."""
+
+import subprocess
+import sys
+
+import pytest
+
+from services.features.pipelines import PROFILES, find_profile
+from services.features.registry import PLUGINS, create
+from services.features.settings import FeaturesSettings
+
+
+def test_the_default_pipeline_exists():
+    assert find_profile(FeaturesSettings().pipeline).keypoints >= 150
+    assert find_profile("thesis").keypoints == 150
+
+
+def test_an_unknown_pipeline_lists_the_choices(monkeypatch):
+    monkeypatch.setenv("FEATURES_PIPELINE", "surf")
+    with pytest.raises(ValueError, match=r"'beblid'.*'sift'.*'surf'"):
+        FeaturesSettings.from_environment()
+
+
+def test_an_unknown_plugin_lists_the_choices():
+    with pytest.raises(ValueError, match=r"extractor must be one of \['beblid', 'orb', 'sift'\], got 'surf'"):
+        create("extractor", "surf")
+
+
+@pytest.mark.parametrize("name", sorted(PROFILES))
+def test_every_profile_names_plugins_that_exist(name):
+    profile = PROFILES[name]
+    assert profile.extractor in PLUGINS["extractor"]
+    assert profile.representation in PLUGINS["representation"]
+    assert profile.matcher in PLUGINS["matcher"]
+
+
+def test_a_plugin_file_has_the_name_of_its_plugin():
+    for choices in PLUGINS.values():
+        for name, path in choices.items():
+            assert path.split(":")[0].rsplit(".", 1)[1] == name
+
+
+@pytest.mark.parametrize(
+    ("module", "absent"),
+    [("services.features.settings", ("torch", "cv2")), ("services.features.service", ("torch", "kornia"))],
+)
+def test_what_an_import_does_not_load(module, absent):
+    code = f"import sys, {module}; sys.exit(any(name in sys.modules for name in {absent!r}))"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -1,0 +1,60 @@
+"""Verified matches tell the direction of another place, the same every time."""
+
+import numpy as np
+import pytest
+
+from services.features.extraction import extract
+from services.features.map_cache import Place
+from services.features.matching_requests import RequestError, pair, verify_paired
+from services.features.pipeline import Pipeline
+from services.features.pipelines import PROFILES
+from shared.messages.features import Features
+from shared.messages.matching import MatchRequest
+
+STEP_M = (0.5, 0.2)
+YAW_RAD = 0.7
+
+
+@pytest.fixture(scope="module", params=["sift", "orb", "beblid"])
+def pipeline(request) -> Pipeline:
+    return Pipeline(PROFILES[request.param])
+
+
+def features(pipeline: Pipeline, picture: np.ndarray) -> Features:
+    words = extract(picture, pipeline.extractor, pipeline.representation, pipeline.profile)
+    return Features(
+        seq=3,
+        pipeline=pipeline.identity,
+        lonlat_rad=words.lonlat_rad,
+        scores=words.scores,
+        descriptors=words.descriptors,
+    )
+
+
+def test_heading_and_yaw_of_another_place(room, pipeline):
+    here = features(pipeline, room(0.0, 0.0, 0.0, 400))
+    there = Place.of(features(pipeline, room(*STEP_M, YAW_RAD, 400)))
+    request = MatchRequest(map="flat", node_ids=(8,))
+    answers = [
+        verify_paired(pipeline, request, pair(pipeline, request, here, {8: there}))[0] for _ in range(2)
+    ]
+    found = answers[0]
+    assert found.status == "ok"
+    assert found.inliers > 0.8 * found.raw_matches > 60
+    assert found.heading_rad == pytest.approx(np.arctan2(STEP_M[1], STEP_M[0]), abs=np.deg2rad(2.0))
+    assert found.yaw_rad == pytest.approx(YAW_RAD, abs=np.deg2rad(0.5))
+    assert found.matches_rad.shape == (found.raw_matches, 4)
+    assert found.model_dump() == answers[1].model_dump()
+
+
+def test_a_node_of_another_pipeline_is_refused_naming_both(pipeline, room):
+    here = features(pipeline, room(0.0, 0.0, 0.0, 400))
+    other = Place("superpoint-tangent-150", Place.of(here).features)
+    with pytest.raises(RequestError, match=f"node 8 .*'superpoint-tangent-150'.*{pipeline.identity!r}"):
+        pair(pipeline, MatchRequest(map="flat", best_k=1), here, {8: other})
+
+
+def test_an_empty_map_has_no_results(pipeline, room):
+    here = features(pipeline, room(0.0, 0.0, 0.0, 400))
+    request = MatchRequest(map="flat", best_k=5)
+    assert verify_paired(pipeline, request, pair(pipeline, request, here, {})) == ()
