@@ -54,8 +54,7 @@ class Experimenter:
             raise RequestError(f"{request.action} needs a pose (x_m, y_m, yaw_rad), got none")
         pose = (request.pose.x_m, request.pose.y_m, request.pose.yaw_rad)
         world = self._simulation.world
-        rects = [(r.x_m, r.y_m) for r in (*world.rooms, *world.openings)]
-        if not any(x[0] < pose[0] < x[1] and y[0] < pose[1] < y[1] for x, y in rects):
+        if not world.holds(pose[0], pose[1]):
             raise RequestError(
                 f"{request.action}: ({pose[0]}, {pose[1]}) must lie inside a room of {world.name}"
             )

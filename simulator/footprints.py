@@ -1,4 +1,4 @@
-"""Floor outlines of solid parts, and distances to them. Pure; the distance sensors and the free-space grid are built on it."""
+"""Floor outlines of solid parts, and distances to them. Pure; distance sensors and free space build on it."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Footprints:
-    """Outlines of solids: n rectangles (centre, half size, yaw) and m discs (centre, radius). Metres, radians."""
+    """Outlines of solids: n rectangles (centre, half size, yaw) and m discs (centre, radius); m, rad."""
 
     centres_m: FloatArray
     halves_m: FloatArray

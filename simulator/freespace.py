@@ -1,8 +1,9 @@
-"""Free floor of a world: where a robot fits, shortest ways, lines of sight, random poses. Pure; for evaluation and tests."""
+"""Free floor of a world: where a robot fits, shortest ways, lines of sight, random poses. Pure."""
 
 import heapq
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -62,7 +63,7 @@ class FreeSpace:
         )
 
     def random_pose(self, rng: np.random.Generator, margin_m: float = 0.0) -> tuple[float, float, float]:
-        """A pose (x, y, yaw) drawn evenly from the free floor, `margin_m` further from obstacles than the robot needs."""
+        """A pose drawn evenly from the free floor, `margin_m` further from obstacles than needed."""
         wide = self.free & (self.clearance_m >= self.robot_radius_m + margin_m)
         rows, columns = np.nonzero(wide)
         if not len(rows):
@@ -72,9 +73,9 @@ class FreeSpace:
         return x, y, float(rng.uniform(-math.pi, math.pi))
 
     def shortest_path(self, start: Point, goal: Point) -> list[Point]:
-        """Shortest collision-free way on the grid, straightened where the straight line is free; empty if there is none.
+        """Shortest collision-free way on the grid, straightened where that is free; empty if there is none.
 
-        A point off the free floor (a robot that stands a cell too near a wall) starts from the nearest free cell.
+        A point off the free floor (a robot a cell too near a wall) starts from the nearest free cell.
         """
         came = self._search(self._nearest(start), self._nearest(goal))
         if not came:
@@ -85,7 +86,7 @@ class FreeSpace:
     def shortest_path_m(self, start: Point, goal: Point) -> float:
         """Length of `shortest_path`, infinite if there is none."""
         path = self.shortest_path(start, goal)
-        return sum(math.dist(a, b) for a, b in zip(path[:-1], path[1:], strict=True)) if path else math.inf
+        return sum(math.dist(a, b) for a, b in pairwise(path)) if path else math.inf
 
     def line_of_sight(self, a: Point, b: Point, height_m: float = 0.8) -> bool:
         """Whether no wall and no solid furniture stands between two points at a height."""
@@ -153,9 +154,9 @@ class FreeSpace:
 
 
 def free_space(world: WorldFile, robot_radius_m: float = 0.26, resolution_m: float = 0.05) -> FreeSpace:
-    """Grid of the floor where a disc of the robot's radius fits and that is connected to the world's start."""
+    """Grid of the floor where a disc of the robot's radius fits, connected to the world's start."""
     parts, _ = expand(world)
-    rects = [(r.x_m, r.y_m) for r in (*world.rooms, *world.openings)]
+    rects = world.rectangles()
     x0, y0 = min(r[0][0] for r in rects), min(r[1][0] for r in rects)
     x1, y1 = max(r[0][1] for r in rects), max(r[1][1] for r in rects)
     xs = np.arange(x0, x1 + resolution_m / 2, resolution_m)
@@ -166,9 +167,9 @@ def free_space(world: WorldFile, robot_radius_m: float = 0.26, resolution_m: flo
         inside |= (
             (grid[:, 0] >= rx[0]) & (grid[:, 0] <= rx[1]) & (grid[:, 1] >= ry[0]) & (grid[:, 1] <= ry[1])
         )
-    clearance = np.zeros(len(grid))
-    clearance[inside] = clearance_m(grid[inside], footprints(parts, *BODY_BAND_M))
-    clearance = clearance.reshape(len(ys), len(xs))
+    distances = np.zeros(len(grid))
+    distances[inside] = clearance_m(grid[inside], footprints(parts, *BODY_BAND_M))
+    clearance = distances.reshape(len(ys), len(xs))
     whole = FreeSpace(
         clearance >= robot_radius_m, clearance, (float(x0), float(y0)), resolution_m, robot_radius_m, parts
     )
@@ -198,7 +199,7 @@ def _flood(free: npt.NDArray[np.bool_], start: tuple[int, int]) -> npt.NDArray[n
 
 
 def _blocked(parts: tuple[Part, ...], a: tuple[float, float, float], b: tuple[float, float, float]) -> bool:
-    """Whether the segment a-b meets a solid part; ornaments, leaves, cloth and pictures hide too little to count."""
+    """Whether the segment a-b meets a solid part; ornaments, leaves and cloth hide too little to count."""
     start, delta = np.array(a), np.array(b) - np.array(a)
     for part in parts:
         if not part.solid:

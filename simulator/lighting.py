@@ -1,8 +1,8 @@
-"""Static light, computed once per vertex: direct light with soft shadows, ambient light with occlusion. Pure numpy.
+"""Static light, computed once per vertex: direct with soft shadows, ambient with occlusion. Pure numpy.
 
 The lamps never move, so the renderer only multiplies the texture by this (see shaders/baked): frames cost a
-fraction of what lights and shadow maps cost, and look the same from everywhere. Shadows come from rays marched
-through a grid of filled cells, whose cost does not grow with the number of things in a room.
+fraction of what lights and shadow maps cost, and look the same from everywhere. Shadows come from rays
+marched through a grid of filled cells, whose cost does not grow with the number of things in a room.
 """
 
 import numpy as np
@@ -28,7 +28,7 @@ def bake(
 ) -> FloatArray:  # fmt: skip
     """Light at each vertex as a factor for gamma-encoded texture values.
 
-    Direct light of an area light, sampled at SAMPLES points: power * max(cos_surface, 0) * cos_light / (0.35 + d^2).
+    Direct light, at SAMPLES points of each lamp: power * max(cos_surface, 0) * cos_light / (0.35 + d^2).
     Ambient light is lost by up to `occlusion` where short rays over the hemisphere hit something.
 
     Args:
@@ -93,7 +93,7 @@ def _openness(start: FloatArray, normals: FloatArray, grid: "_FilledGrid") -> Fl
     origin = start + 0.02 * normals
     for a, b, c in local:
         free += ~grid.hit(origin, origin + (a * tangent + b * bitangent + c * normals) * np.float32(REACH_M))
-    return free / HEMISPHERE
+    return np.asarray(free / HEMISPHERE, np.float32)
 
 
 class _FilledGrid:
@@ -119,7 +119,7 @@ class _FilledGrid:
         self._filled[i, j, k] = True
 
     def hit(self, start: FloatArray, end: FloatArray) -> npt.NDArray[np.bool_]:
-        """Whether each segment from start (n, 3) to end meets a filled cell, but for SKIP_M at its beginning; (n,) bool."""
+        """Whether each segment from start (n, 3) to end meets a filled cell beyond its first SKIP_M; (n,)."""
         delta = end - start
         length = np.linalg.norm(delta, axis=1)
         order = np.argsort(length)

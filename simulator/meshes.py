@@ -1,6 +1,7 @@
 """Parts -> triangles: vertices, outward normals and texture coordinates. Pure numpy."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -8,6 +9,7 @@ import numpy.typing as npt
 from simulator.parts import Part, rotation_of
 
 FloatArray = npt.NDArray[np.float32]
+AnyFloat = npt.NDArray[np.floating[Any]]
 IntArray = npt.NDArray[np.uint32]
 GRAIN_M = 0.36  # longest edge of large faces: light is stored at the vertices
 GROUND_GRAIN_M = 0.2  # floors and rugs carry the shadows of everything that stands on them
@@ -17,7 +19,7 @@ SIDES = 16
 
 @dataclass(frozen=True)
 class Mesh:
-    """Triangles with per-vertex data: (n, 3) vertices in metres, (n, 3) unit normals, (n, 2) uv, (m, 3) indices."""
+    """Triangles: (n, 3) vertices in metres, (n, 3) unit normals, (n, 2) uv, (m, 3) indices."""
 
     vertices: FloatArray
     normals: FloatArray
@@ -40,7 +42,7 @@ def facing_any(mesh: Mesh, eyes: FloatArray) -> Mesh:
     """The triangles whose front is turned towards at least one of (k, 3) eye positions.
 
     With the corners of all rooms at camera height as eyes this drops, exactly, what no camera there can see:
-    undersides below the camera, tops above it, backs against walls. Half of all triangles, and half the frame time.
+    undersides below the camera, tops above it, backs against walls.
     """
     corner = mesh.vertices[mesh.triangles[:, 0]]
     normal = np.cross(
@@ -86,7 +88,7 @@ def _steps(length: float, across: float = 1.0, ground: bool = False) -> int:
     return max(2, int(np.ceil(length / grain)) + 1)
 
 
-def _stretch(part: Part, u: FloatArray, v: FloatArray) -> FloatArray:
+def _stretch(part: Part, u: AnyFloat, v: AnyFloat) -> FloatArray:
     """Coordinates 0..1 -> the part's window of the texture; v counts from the top."""
     u0, v0, u1, v1 = part.uv
     return np.stack([u0 + (u1 - u0) * u, v0 + (v1 - v0) * v], axis=-1).astype(np.float32)
@@ -123,7 +125,9 @@ def _box(part: Part) -> Mesh:
             else:
                 world = points + np.array(part.centre_m, np.float32) if max(part.size_m) > 2.4 else points
                 shift = np.zeros(2, np.float32) if max(part.size_m) > 2.4 else _offset(part)
-                uv = np.stack([world @ side, -(world @ lift)], axis=-1) / np.float32(part.tile_m) + shift
+                uv = np.asarray(
+                    np.stack([world @ side, -(world @ lift)], axis=-1) / part.tile_m + shift, np.float32
+                )
                 if 2 * half[right] < 2 * half[up] and max(part.size_m) <= 2.4:
                     uv = uv[:, ::-1]  # grain runs along the longer side
             faces.append(
@@ -192,7 +196,7 @@ def _cushion(part: Part) -> Mesh:
 
 
 def _superellipsoid(part: Part, exponent: float, rows: int, columns: int) -> Mesh:
-    """x = sgn(cos) |cos|^e ... (Barr 1981), with samples gathered where the surface bends."""
+    """Barr 1981: x = sgn(cos) |cos|^e and so on; samples gather where the surface bends."""
     half = np.array(part.size_m, np.float32) / 2
     lat = np.linspace(-np.pi / 2, np.pi / 2, rows)[:, None] * np.ones((1, columns))
     lon = np.linspace(-np.pi, np.pi, columns)[None, :] * np.ones((rows, 1))
@@ -226,7 +230,7 @@ def _superellipsoid(part: Part, exponent: float, rows: int, columns: int) -> Mes
         uv = _stretch(part, points[:, a] / part.size_m[a] + 0.5, 0.5 - points[:, b] / part.size_m[b])
     else:
         around = points[:, [a, b]] + 0.6 * points[:, [thin]] * np.array([0.5, 1.0], np.float32)
-        uv = around / np.float32(part.tile_m) + _offset(part)
+        uv = np.asarray(around / part.tile_m + _offset(part), np.float32)
     return Mesh(points, normals.astype(np.float32), uv.astype(np.float32), _grid(rows, columns))
 
 

@@ -1,8 +1,9 @@
 """Six cube faces -> one equirectangular picture, with one precomputed table. Pure numpy and OpenCV.
 
-Axes: x forward, y left, z up. Column c of a W-wide picture looks at longitude pi - 2 pi (c + 0.5) / W: the centre
-ahead, column 0 and the seam backwards, left of the centre to the left. Row r looks at latitude pi / 2 - pi (r + 0.5) / H.
-Faces are seen a little wider than 90 degrees, so that every sample interpolates within one face and no border shows.
+Axes: x forward, y left, z up. Column c of a W-wide picture looks at longitude pi - 2 pi (c + 0.5) / W: the
+centre ahead, column 0 and the seam backwards, left of the centre to the left. Row r looks at latitude
+pi / 2 - pi (r + 0.5) / H. Faces are seen a little wider than 90 degrees, so that every sample interpolates
+within one face and no border shows.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""Parts: the simple solids that everything in a world is made of. Pure data; rendering, physics, sensors and free space all read it."""
+"""Parts: the simple solids of which worlds are made. Pure; rendering, physics and sensors read them."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
@@ -14,7 +14,7 @@ Shape = Literal["box", "cylinder", "ellipsoid", "cushion", "drape", "leaf"]
 
 @dataclass(frozen=True)
 class Material:
-    """Look of a surface: a texture kind (see textures.catalogue), its colour and seed; `glow` surfaces are lit by themselves."""
+    """Look of a surface: texture kind (see textures.catalogue), colour, seed; above 0, `glow` shines."""
 
     kind: str
     colour: Rgb = (200, 200, 200)

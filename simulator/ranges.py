@@ -1,4 +1,4 @@
-"""Twelve sonar-like distance sensors. Pure: a fan of rays against the outlines of everything the robot could hit."""
+"""Twelve sonar-like distance sensors. Pure: fans of rays against the outlines of all the robot could hit."""
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +11,7 @@ FloatArray = npt.NDArray[np.float64]
 
 def sensor_angles_rad(settings: RangeSettings) -> FloatArray:
     """Axes of the sensors in the robot frame, counter-clockwise from straight ahead; (count,) radians."""
-    return np.arange(settings.count) * (2.0 * np.pi / settings.count)
+    return np.arange(settings.count, dtype=np.float64) * (2.0 * np.pi / settings.count)
 
 
 def measure(

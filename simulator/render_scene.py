@@ -1,4 +1,4 @@
-"""What the camera sees: the world's parts as a few large meshes in SAPIEN, and six cameras that make a panorama."""
+"""What the camera sees: the world as a few large meshes in SAPIEN, and six cameras that make a panorama."""
 
 import math
 import os
@@ -155,5 +155,4 @@ def _by_material(parts: tuple[Part, ...]) -> dict[Material, Mesh]:
 
 def _eyes(world: WorldFile, height_m: float) -> npt.NDArray[np.float32]:
     """Corners of all rooms and openings at camera height, (k, 3): the camera is always between them."""
-    rects = [(r.x_m, r.y_m) for r in (*world.rooms, *world.openings)]
-    return np.array([(x, y, height_m) for rx, ry in rects for x in rx for y in ry], np.float32)
+    return np.array([(x, y, height_m) for rx, ry in world.rectangles() for x in rx for y in ry], np.float32)

@@ -1,4 +1,4 @@
-"""The robot in PhysX: a chassis on four legs, each with a steer and a drive servo, eight joints in one articulation."""
+"""The robot in PhysX: a chassis on four legs with a steer and a drive servo each, eight joints in all."""
 
 import math
 
@@ -60,7 +60,7 @@ class Robot:
             self._drive[k].set_drive_velocity_target(target.wheel_radps)
 
     def _next_angle(self, leg: int, measured_rad: float, dt_s: float) -> float:
-        """Angle servo: the target turns with the wanted speed, so a stopped wheel holds its angle and does not creep."""
+        """Angle servo: the target turns with the wanted speed, so a stopped wheel does not creep."""
         wanted = self._angles[leg] + self._targets[leg].wheel_radps * dt_s
         return max(measured_rad - WHEEL_LAG_RAD, min(measured_rad + WHEEL_LAG_RAD, wanted))
 

@@ -1,7 +1,7 @@
 """How the robot looks. The same parts, tinted, make the second robot (the hider). Pure.
 
-Nothing stands above the camera, and nothing but the disc under it is seen below latitude -65 degrees: a part of
-radius r may reach up to camera height - r tan(65 deg).
+Nothing stands above the camera, and the body stays below latitude -65 degrees of its own picture: a part
+of radius r reaches up to camera height - r tan(65 deg) at most.
 """
 
 from dataclasses import replace

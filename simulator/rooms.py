@@ -59,17 +59,12 @@ def _side(world: WorldFile, room: Room, side: int, height: float) -> list[Part]:
     outer = line + outward * world.wall_thickness_m
     material, tile = _material(room.walls), room.walls.tile_m
     cuts: list[tuple[Span, float]] = []
-    for other in (*world.openings, *(r for r in world.rooms if r is not room)):
+    neighbours: list[Room | Opening] = [*world.openings, *(r for r in world.rooms if r is not room)]
+    for other in neighbours:
         rect: Rect = (other.x_m, other.y_m)
-        if min(abs(edge - line) for edge in rect[normal_axis]) < CONTACT_M and _overlap(
-            rect[1 - normal_axis], along
-        ):
-            cuts.append(
-                (
-                    rect[1 - normal_axis],
-                    other.height_m if isinstance(other, Opening) and other.height_m else height,
-                )
-            )
+        touches = min(abs(edge - line) for edge in rect[normal_axis]) < CONTACT_M
+        if touches and _overlap(rect[1 - normal_axis], along):
+            cuts.append((rect[1 - normal_axis], other.height_m if isinstance(other, Opening) else height))
     parts: list[Part] = []
     for span in _remaining(
         along, [c for c, _ in cuts], _reach(world, normal_axis, (line + outer) / 2, along)
@@ -102,17 +97,15 @@ def _overlap(a: Span, b: Span) -> bool:
 
 
 def _reach(world: WorldFile, axis: int, across: float, along: Span) -> Span:
-    """Ends of a wall: it goes on round the corner by its thickness unless that would stand inside another room."""
+    """Ends of a wall: it goes on round the corner by its thickness unless it would enter a room."""
     t = world.wall_thickness_m
 
     def free(at: float) -> bool:
         x, y = (across, at) if axis == 0 else (at, across)
-        rects = [(r.x_m, r.y_m) for r in (*world.rooms, *world.openings)]
-        return not any(rx[0] < x < rx[1] and ry[0] < y < ry[1] for rx, ry in rects)
+        return not world.holds(x, y)
 
-    return along[0] - (t if free(along[0] - t / 2) else 0.0), along[1] + (
-        t if free(along[1] + t / 2) else 0.0
-    )
+    low = along[0] - (t if free(along[0] - t / 2) else 0.0)
+    return low, along[1] + (t if free(along[1] + t / 2) else 0.0)
 
 
 def _remaining(along: Span, cuts: list[Span], reach: Span) -> list[Span]:

@@ -1,4 +1,4 @@
-"""Settings of the simulated robot, its sensors and the physics. The bus loop's settings are in service_settings.py."""
+"""Settings of the simulated robot, its sensors and the physics. The bus loop has service_settings.py."""
 
 from typing import Self
 

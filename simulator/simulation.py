@@ -32,7 +32,7 @@ class Truth:
 
 
 class Simulation:
-    """One world with one robot, and perhaps a hider. Same seed, poses and commands give bit-identical results."""
+    """One world, one robot, perhaps a hider. Same seed, poses and commands give bit-identical results."""
 
     def __init__(self, world: WorldFile, settings: SimulationSettings | None = None, seed: int = 0) -> None:
         """Build the world; the robot stands at the world's start."""
@@ -45,7 +45,7 @@ class Simulation:
         self.reset(seed)
 
     def reset(self, seed: int, pose: Pose2 | None = None) -> None:
-        """Start anew: time 0, no collisions, robot at rest at `pose` (default: the world's start). The hider stays."""
+        """Start anew: time 0, no collisions, robot at rest at `pose` (else the start). The hider stays."""
         start = self.world.start
         self._seed = seed
         self._readings = 0
@@ -64,7 +64,7 @@ class Simulation:
         self._hider = None
 
     def command(self, steer_rad: float, wheel_speed_radps: float, ttl_s: float = math.inf) -> None:
-        """Roll towards a heading (robot frame) at a wheel speed, until `ttl_s` of simulated time has passed."""
+        """Roll towards a heading (robot frame) at a wheel speed for up to `ttl_s` of simulated time."""
         if not (math.isfinite(steer_rad) and math.isfinite(wheel_speed_radps)) or ttl_s < 0:
             raise ValueError(
                 f"command must be finite with ttl_s >= 0, got {steer_rad}, {wheel_speed_radps}, {ttl_s}"

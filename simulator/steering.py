@@ -1,8 +1,8 @@
 """Low-level control of one leg, as its servo controllers would do it. Pure.
 
-A steer servo turns at a limited rate within +-limit. A wheel can run either way, so a heading is reached by the nearer
-of two servo angles, half a turn apart. The wheel runs only as far as it already points the right way: speed times the
-cosine of the steering error, nothing beyond a right angle, so that it rolls rather than scrubs.
+A steer servo turns at a limited rate within +-limit. A wheel can run either way, so a heading is reached by
+the nearer of two servo angles, half a turn apart. Wheel speed is scaled by the cosine of the steering error
+and zero while that is large, so that wheels roll rather than scrub.
 """
 
 import math
@@ -25,7 +25,7 @@ def wrap_rad(angle: float) -> float:
 
 
 def choose_angle(heading_rad: float, steer_rad: float, limit_rad: float) -> tuple[float, float]:
-    """Servo angle for a heading, and the wheel's direction (+1 or -1): the reachable one nearest to where the servo is."""
+    """Servo angle for a heading and the wheel's direction (+1, -1): the reachable one nearest by."""
     options = [
         (wrap_rad(heading_rad) + turn, sign)
         for turn, sign in (

@@ -53,29 +53,32 @@ class Surface(_Model):
     tile_m: PositiveFloat = 4.0
 
 
-class Room(_Model):
-    """An axis-parallel rectangle of floor with walls round it. Rooms that touch are open towards each other along the contact."""
+class Rectangle(_Model):
+    """An axis-parallel piece of floor."""
 
-    name: str
     x_m: Interval
     y_m: Interval
+
+
+class Room(Rectangle):
+    """A rectangle of floor with walls round it. Rooms that touch are open towards each other."""
+
+    name: str
     floor: Surface
     walls: Surface
     ceiling: Surface
     height_m: PositiveFloat | None = None
 
 
-class Opening(_Model):
+class Opening(Rectangle):
     """A passage through the walls between two rooms: the rectangle of floor inside the wall."""
 
-    x_m: Interval
-    y_m: Interval
     height_m: PositiveFloat = 2.1
     floor: Surface
 
 
 class Item(_Model):
-    """A piece of furniture: kind, position, heading of its front, height above the floor, seed, and options of that kind."""
+    """A piece of furniture: kind, position, heading of its front, height, seed, and options of that kind."""
 
     kind: str
     at_m: tuple[float, float]
@@ -122,10 +125,19 @@ class WorldFile(_Model):
     furniture: tuple[Item, ...] = ()
     start: Start
 
+    def rectangles(self) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+        """All floor: the x and y intervals of rooms and openings."""
+        floors: list[Rectangle] = [*self.rooms, *self.openings]
+        return [(floor.x_m, floor.y_m) for floor in floors]
+
+    def holds(self, x_m: float, y_m: float) -> bool:
+        """Whether a point lies inside a room or opening."""
+        return any(x[0] < x_m < x[1] and y[0] < y_m < y[1] for x, y in self.rectangles())
+
     @model_validator(mode="after")
     def _start_inside(self) -> Self:
         s = self.start
-        if not any(r.x_m[0] < s.x_m < r.x_m[1] and r.y_m[0] < s.y_m < r.y_m[1] for r in self.rooms):
+        if not self.holds(s.x_m, s.y_m):
             raise ValueError(
                 f"start ({s.x_m}, {s.y_m}) must lie inside one of the rooms {[r.name for r in self.rooms]}"
             )

@@ -1,1 +1,1 @@
-"""Furniture: one kind a file, each a function from options and a seed to a Piece in its own frame (front along +x)."""
+"""Furniture: one kind a file, a function from options and a seed to a Piece whose front looks along +x."""

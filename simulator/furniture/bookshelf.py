@@ -31,11 +31,11 @@ def bookshelf(
     parts.append(box((0.02, depth_m - 0.02), (-half, half), (0.0, 0.06), wood))
     for row in range(shelves):
         for k in range(bays):
-            y = (-half + k * bay + t + 0.01, -half + (k + 1) * bay - 0.01)
-            z = (0.06 + row * step + t, 0.06 + (row + 1) * step - 0.02)
-            split = y[1]
+            side = (-half + k * bay + t + 0.01, -half + (k + 1) * bay - 0.01)
+            level = (0.06 + row * step + t, 0.06 + (row + 1) * step - 0.02)
+            until = side[1]
             if rng.random() < 0.4:
-                split = y[0] + float(rng.uniform(0.5, 0.7)) * (y[1] - y[0])
-                parts.extend(ornament(rng, (depth_m - 0.12, (split + y[1]) / 2 + 0.03, z[0])))
-            parts.extend(book_row(rng, depth_m - 0.02, (y[0], split), z))
+                until = side[0] + float(rng.uniform(0.5, 0.7)) * (side[1] - side[0])
+                parts.extend(ornament(rng, (depth_m - 0.12, (until + side[1]) / 2 + 0.03, level[0])))
+            parts.extend(book_row(rng, depth_m - 0.02, (side[0], until), level))
     return Piece(tuple(parts))

@@ -9,9 +9,28 @@ import numpy as np
 from pydantic import ConfigDict, ValidationError, validate_call
 
 from simulator.furniture import (
-    basket, bench, bookshelf, chair, clock, coat_rack, coffee_table, console, curtained_window, door, lamps, paintings,
-    panels, plant, radiator, rug, seating, shoe_cabinet, sideboard, table, television,
-)  # fmt: skip
+    basket,
+    bench,
+    bookshelf,
+    chair,
+    clock,
+    coat_rack,
+    coffee_table,
+    console,
+    curtained_window,
+    door,
+    lamps,
+    paintings,
+    panels,
+    plant,
+    radiator,
+    rug,
+    seating,
+    shoe_cabinet,
+    sideboard,
+    table,
+    television,
+)
 from simulator.parts import Piece
 
 
@@ -45,10 +64,33 @@ class Kind:
 FURNITURE: dict[str, Kind] = {
     function.__name__: Kind(function.__name__, function)
     for function in (
-        seating.sofa, seating.armchair, seating.pouf, table.dining_table, chair.chair, coffee_table.coffee_table,
-        bookshelf.bookshelf, bench.tv_bench, television.television, sideboard.sideboard, console.console_table,
-        rug.rug, paintings.picture, lamps.ceiling_light, lamps.floor_lamp, lamps.table_lamp, curtained_window.window, door.door, plant.plant,
-        radiator.radiator, coat_rack.coat_rack, shoe_cabinet.shoe_cabinet, panels.thermostat, panels.switch,
-        panels.fuse_box, panels.mirror, clock.clock, basket.basket,
+        seating.sofa,
+        seating.armchair,
+        seating.pouf,
+        table.dining_table,
+        chair.chair,
+        coffee_table.coffee_table,
+        bookshelf.bookshelf,
+        bench.tv_bench,
+        television.television,
+        sideboard.sideboard,
+        console.console_table,
+        rug.rug,
+        paintings.picture,
+        lamps.ceiling_light,
+        lamps.floor_lamp,
+        lamps.table_lamp,
+        curtained_window.window,
+        door.door,
+        plant.plant,
+        radiator.radiator,
+        coat_rack.coat_rack,
+        shoe_cabinet.shoe_cabinet,
+        panels.thermostat,
+        panels.switch,
+        panels.fuse_box,
+        panels.mirror,
+        clock.clock,
+        basket.basket,
     )
-}  # fmt: skip
+}

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from simulator.parts import Material, Part, Piece, Rgb, box, post
 from simulator.furniture.stacks import book_pile
+from simulator.parts import Material, Part, Piece, Rgb, box, post
 
 
 def coffee_table(

@@ -8,11 +8,15 @@ from simulator.parts import Material, Piece, Rgb, box
 
 
 def picture(
-    rng: np.random.Generator, width_m: float = 0.7, height_m: float = 0.55,
+    rng: np.random.Generator,
+    width_m: float = 0.7,
+    height_m: float = 0.55,
     style: Literal["landscape", "abstract", "still_life", "street", "poster"] = "landscape",
-    frame: Rgb = (60, 44, 34), mount_m: float = 0.04, variant: int = 0,
-) -> Piece:  # fmt: skip
-    """Framed picture facing +x, its centre at the item's height; `variant` picks another picture of the style."""
+    frame: Rgb = (60, 44, 34),
+    mount_m: float = 0.04,
+    variant: int = 0,
+) -> Piece:
+    """Framed picture facing +x, its centre at the item's height; `variant` picks a picture of the style."""
     wood = Material("wood", frame, 4)
     card = Material("lacquer", (238, 234, 224), 3)
     canvas = Material(style, (200, 180, 150), variant if variant else int(rng.integers(100_000)))

@@ -26,21 +26,44 @@ def switch(rng: np.random.Generator) -> Piece:
     """Light switch."""
     del rng
     white = Material("lacquer", (240, 240, 236), 6)
-    return Piece((
-        box((0.0, 0.008), (-0.045, 0.045), (-0.045, 0.045), white, solid=False),
-        box((0.008, 0.014), (-0.028, 0.028), (-0.03, 0.03), Material("lacquer", (216, 216, 210), 7), solid=False),
-    ))  # fmt: skip
+    return Piece(
+        (
+            box((0.0, 0.008), (-0.045, 0.045), (-0.045, 0.045), white, solid=False),
+            box(
+                (0.008, 0.014),
+                (-0.028, 0.028),
+                (-0.03, 0.03),
+                Material("lacquer", (216, 216, 210), 7),
+                solid=False,
+            ),
+        )
+    )
 
 
 def fuse_box(rng: np.random.Generator, width_m: float = 0.36, height_m: float = 0.5) -> Piece:
     """Metal cabinet flush with the wall, with a label."""
     steel = Material("lacquer", (204, 206, 204), int(rng.integers(100)))
     half, tall = width_m / 2, height_m / 2
-    return Piece((
-        box((0.0, 0.03), (-half, half), (-tall, tall), steel, solid=False, tile_m=0.5),
-        box((0.03, 0.032), (-half + 0.03, half - 0.1), (tall - 0.16, tall - 0.05), Material("poster", (0, 0, 0), 7), solid=False, tile_m=None),
-        box((0.03, 0.045), (half - 0.06, half - 0.04), (-0.05, 0.05), Material("metal", (90, 90, 94), 1), solid=False),
-    ))  # fmt: skip
+    return Piece(
+        (
+            box((0.0, 0.03), (-half, half), (-tall, tall), steel, solid=False, tile_m=0.5),
+            box(
+                (0.03, 0.032),
+                (-half + 0.03, half - 0.1),
+                (tall - 0.16, tall - 0.05),
+                Material("poster", (0, 0, 0), 7),
+                solid=False,
+                tile_m=None,
+            ),
+            box(
+                (0.03, 0.045),
+                (half - 0.06, half - 0.04),
+                (-0.05, 0.05),
+                Material("metal", (90, 90, 94), 1),
+                solid=False,
+            ),
+        )
+    )
 
 
 def mirror(
@@ -49,7 +72,16 @@ def mirror(
     """Mirror with a painted reflection."""
     pane, edge = Material("mirror", (200, 208, 202), int(rng.integers(100))), Material("metal", frame, 5)
     half, tall = width_m / 2, height_m / 2
-    return Piece((
-        box((0.0, 0.02), (-half, half), (-tall, tall), edge, solid=False),
-        box((0.02, 0.022), (-half + 0.03, half - 0.03), (-tall + 0.03, tall - 0.03), pane, solid=False, tile_m=None),
-    ))  # fmt: skip
+    return Piece(
+        (
+            box((0.0, 0.02), (-half, half), (-tall, tall), edge, solid=False),
+            box(
+                (0.02, 0.022),
+                (-half + 0.03, half - 0.03),
+                (-tall + 0.03, tall - 0.03),
+                pane,
+                solid=False,
+                tile_m=None,
+            ),
+        )
+    )

@@ -27,16 +27,9 @@ def rug(
         casts_shadow=False,
     )
     fringe = Material("fabric", (222, 210, 184), 2)
+    end = length_m / 2
     ends = tuple(
-        box(
-            (-width_m / 2, width_m / 2),
-            tuple(sorted((s * length_m / 2, s * (length_m / 2 + 0.05)))),
-            (0.0, 0.005),
-            fringe,
-            solid=False,
-            tile_m=0.2,
-            casts_shadow=False,
-        )  # type: ignore[arg-type]
-        for s in (-1, 1)
+        box((-width_m / 2, width_m / 2), y, (0.0, 0.005), fringe, solid=False, tile_m=0.2, casts_shadow=False)
+        for y in ((-end - 0.05, -end), (end, end + 0.05))
     )
     return Piece((body, *ends))

@@ -1,5 +1,7 @@
 """Shallow shoe cabinet with flaps and things on top."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from simulator.furniture.stacks import framed, ornament
@@ -27,7 +29,7 @@ def shoe_cabinet(
     )
     parts.append(box((0.02, depth_m - 0.04), (-half + 0.02, half - 0.02), (0.0, 0.05), paint))
     rows = np.linspace(0.06, height_m - 0.03, 4)
-    for low, high in zip(rows[:-1], rows[1:], strict=True):
+    for low, high in pairwise(rows):
         for y in ((-half, -0.004), (0.004, half)):
             parts.append(
                 box(

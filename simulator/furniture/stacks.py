@@ -38,7 +38,7 @@ def book_pile(rng: np.random.Generator, at: Vec3, count: int) -> list[Part]:
 def book_row(
     rng: np.random.Generator, front_x: float, y: tuple[float, float], z: tuple[float, float]
 ) -> list[Part]:
-    """Books standing side by side between two y, spines towards +x at about `front_x`, no higher than z[1]."""
+    """Books standing side by side between two y, spines at about `front_x`, no higher than z[1]."""
     spines = Material("books", (0, 0, 0), int(rng.integers(6)))
     parts, at = [], y[0]
     while at < y[1] - 0.05:

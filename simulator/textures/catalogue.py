@@ -10,14 +10,38 @@ from simulator.textures.noise import Image, Rgb
 KINDS: dict[str, Callable[[np.random.Generator, Rgb], Image]] = {
     function.__name__: function
     for function in (
-        surfaces.plaster, surfaces.ceiling, surfaces.boards, surfaces.tiles,
-        materials.wood, materials.fabric, materials.leather, materials.pattern_cloth, materials.metal,
-        materials.lacquer, materials.ceramic, materials.leaf, materials.wicker, materials.glow,
-        pictures.landscape, pictures.abstract, pictures.still_life, pictures.street, pictures.poster,
-        rugs.persian, rugs.kilim, rugs.modern,
-        objects.books, objects.door, objects.radiator, objects.screen, objects.clock, objects.panel, objects.mirror, objects.view,
+        surfaces.plaster,
+        surfaces.ceiling,
+        surfaces.boards,
+        surfaces.tiles,
+        materials.wood,
+        materials.fabric,
+        materials.leather,
+        materials.pattern_cloth,
+        materials.metal,
+        materials.lacquer,
+        materials.ceramic,
+        materials.leaf,
+        materials.wicker,
+        materials.glow,
+        pictures.landscape,
+        pictures.abstract,
+        pictures.still_life,
+        pictures.street,
+        pictures.poster,
+        rugs.persian,
+        rugs.kilim,
+        rugs.modern,
+        objects.books,
+        objects.door,
+        objects.radiator,
+        objects.screen,
+        objects.clock,
+        objects.panel,
+        objects.mirror,
+        objects.view,
     )
-}  # fmt: skip
+}
 
 
 def draw(kind: str, colour: Rgb, seed: int) -> Image:

@@ -33,12 +33,12 @@ def spectral_noise(
 
 @functools.cache
 def _filter(height: int, width: int, exponent: float, stretch: float) -> FloatArray:
-    """1 / f^exponent over the half plane of a real transform, 0 at f = 0; the powers cost more than the transform."""
+    """1 / f^exponent over the half plane of a real transform, 0 at f = 0; cached, as the powers cost most."""
     fy = np.fft.fftfreq(height)[:, None] * height
     fx = np.fft.rfftfreq(width)[None, :] * width * stretch
     radius = np.sqrt(fx * fx + fy * fy)
     radius[0, 0] = np.inf
-    return (radius**-exponent).astype(np.float32)
+    return np.asarray(radius**-exponent, np.float32)
 
 
 def flat(height: int, width: int, colour: Rgb) -> FloatArray:
@@ -83,7 +83,7 @@ def smooth(image: FloatArray, sigma_px: float) -> FloatArray:
 def write(
     image: FloatArray, text: str, at: tuple[int, int], scale: float, ink: tuple[float, ...], thick: int
 ) -> None:
-    """Draw text in place; `at` is the left end of the base line. OpenCV 5 draws text on bytes only, so a mask is blended."""
+    """Draw text in place from the left end of its base line; by a mask, as OpenCV 5 writes on bytes only."""
     mask = np.zeros(image.shape[:2], np.uint8)
     cv2.putText(mask, text, at, cv2.FONT_HERSHEY_SIMPLEX, scale, 255, thick, cv2.LINE_AA)
     weight = mask[..., None].astype(np.float32) / 255.0

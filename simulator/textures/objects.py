@@ -21,6 +21,7 @@ SPINES = 32  # spines side by side in one `books` picture
 
 def books(rng: np.random.Generator, colour: Rgb) -> Image:
     """A strip of SPINES book spines of equal width, each with bands, title and author."""
+    del colour
     height, width = 320, 56
     strip = np.empty((height, width * SPINES, 3), np.float32)
     covers = (
@@ -60,7 +61,7 @@ def books(rng: np.random.Generator, colour: Rgb) -> Image:
 
 
 def door(rng: np.random.Generator, colour: Rgb) -> Image:
-    """Panelled door leaf; panels are shaded as if lit from above. The same for every seed: doors are identical."""
+    """Door leaf with panels shaded as if lit from above. The same for every seed: doors are identical."""
     del rng
     height, width = 1024, 448
     rng = np.random.default_rng(77)
@@ -79,8 +80,8 @@ def door(rng: np.random.Generator, colour: Rgb) -> Image:
 
 def radiator(rng: np.random.Generator, colour: Rgb) -> Image:
     """Panel radiator: vertical flutes."""
-    flutes = 0.12 * np.sin(np.linspace(0, 2 * np.pi * 22, 512, dtype=np.float32))
-    image = flat(256, 512, colour) * (1.0 + flutes[None, :, None])
+    flutes = np.sin(np.linspace(0, 2 * np.pi * 22, 512, dtype=np.float32))
+    image = modulate(flat(256, 512, colour), np.broadcast_to(flutes, (256, 512)), 0.12)
     image[:12] *= 0.8
     image[-12:] *= 0.75
     return finish(modulate(image, spectral_noise(rng, 256, 512, 1.6), 0.02))
@@ -169,10 +170,10 @@ def view(rng: np.random.Generator, colour: Rgb) -> Image:
                     )
             x += wide + int(rng.integers(0, 50))
     for _ in range(420):
-        x, y = float(rng.uniform(0, width)), height - abs(float(rng.normal(0, 62)))
+        at = (float(rng.uniform(0, width)), height - abs(float(rng.normal(0, 62))))
         cv2.fillPoly(
             image,
-            [blob(rng, (x, y), float(rng.uniform(8, 26)))],
+            [blob(rng, at, float(rng.uniform(8, 26)))],
             tuple(map(float, vary(rng, (82, 108, 60), 0.5))),
             cv2.LINE_AA,
         )

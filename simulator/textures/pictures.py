@@ -109,7 +109,7 @@ def still_life(rng: np.random.Generator, colour: Rgb) -> Image:
             cv2.LINE_AA,
         )
     for _ in range(24):
-        x, y = float(rng.uniform(50, WIDTH - 50)), float(table + rng.uniform(-10, 70))
+        x, y = int(rng.uniform(50, WIDTH - 50)), int(table + rng.uniform(-10, 70))
         radius = int(rng.integers(14, 36))
         fruit = vary(
             rng, ((200, 70, 40), (224, 170, 50), (126, 150, 60), (110, 40, 70))[int(rng.integers(4))], 0.2
@@ -136,6 +136,7 @@ def still_life(rng: np.random.Generator, colour: Rgb) -> Image:
 
 def street(rng: np.random.Generator, colour: Rgb) -> Image:
     """Photograph of a row of house fronts with windows and awnings."""
+    del colour
     image = flat(HEIGHT, WIDTH, vary(rng, (176, 196, 214), 0.1))
     x = -20
     while x < WIDTH:
@@ -163,6 +164,7 @@ def street(rng: np.random.Generator, colour: Rgb) -> Image:
 
 def poster(rng: np.random.Generator, colour: Rgb) -> Image:
     """Printed poster: headline, lines of text, one motif."""
+    del colour
     palette = PALETTES[int(rng.integers(len(PALETTES)))]
     image = flat(HEIGHT, WIDTH, (240, 234, 220))
     image[40:300, 40 : WIDTH - 40] = np.array(palette[int(rng.integers(len(palette)))], np.float32)

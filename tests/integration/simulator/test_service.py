@@ -63,9 +63,13 @@ def start(router_endpoint, room_file):
 
     def launch(lockstep):
         environment = {
-            **os.environ, "TOPNAV_ENDPOINT": router_endpoint, "SIMULATOR_WORLD": room_file, "SIMULATOR_WIDTH_PX": "256",
-            "SIMULATOR_LOCKSTEP": str(lockstep).lower(), "SIMULATOR_REPEAT_S": "0.3",
-        }  # fmt: skip
+            **os.environ,
+            "TOPNAV_ENDPOINT": router_endpoint,
+            "SIMULATOR_WORLD": room_file,
+            "SIMULATOR_WIDTH_PX": "256",
+            "SIMULATOR_LOCKSTEP": str(lockstep).lower(),
+            "SIMULATOR_REPEAT_S": "0.3",
+        }
         manager = open_bus(router_endpoint)
         peer = Peer(manager.__enter__())
         buses.append(manager)

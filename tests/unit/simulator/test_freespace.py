@@ -1,6 +1,7 @@
 """Free floor: what fits where, shortest ways, lines of sight, random poses."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -43,7 +44,7 @@ def test_way_round_the_table_is_longer_than_the_line_and_stays_free(plain):
     start, goal = (5.6, 2.0), (3.8, 3.7)
     path = plain.shortest_path(start, goal)
     assert plain.shortest_path_m(start, goal) > math.dist(start, goal)
-    for a, b in zip(path[:-1], path[1:], strict=True):
+    for a, b in pairwise(path):
         for t in np.linspace(0.0, 1.0, 20):
             cell = plain.cell((a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])))
             assert plain.clearance_m[cell] >= plain.robot_radius_m - plain.resolution_m

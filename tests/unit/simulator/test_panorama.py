@@ -11,7 +11,7 @@ WIDTH, FACE = 512, 168
 
 
 def paint_faces(colour_of):
-    """Faces of a world in which colour depends on direction only; colour_of maps (n, 3) unit vectors to (n, 3) 0..255."""
+    """Faces of a world whose colour depends on direction only: (n, 3) unit vectors to (n, 3), 0 to 255."""
     focal = FACE / 2 / math.tan(face_fov_rad(FACE) / 2)
     offsets = FACE / 2 - (np.arange(FACE) + 0.5)
     left, up = np.meshgrid(offsets / focal, offsets / focal)
@@ -32,7 +32,7 @@ def paint_faces(colour_of):
 )
 def test_direction_between_known_pixels(row, column, direction):
     rays = directions(WIDTH)
-    r, c = (int(math.floor(row)), int(math.floor(column)))
+    r, c = math.floor(row), math.floor(column)
     near = rays[max(r, 0) : r + 2, c : c + 2].reshape(-1, 3).mean(axis=0)
     np.testing.assert_allclose(near / np.linalg.norm(near), direction, atol=0.01)
 

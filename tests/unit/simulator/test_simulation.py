@@ -1,4 +1,4 @@
-"""The robot in physics: where it goes, when it stops, what it bumps into, and that it always does so again."""
+"""The robot in physics: where it goes, when it stops, what it bumps into, and that it does so again."""
 
 import math
 
