@@ -95,11 +95,12 @@ def _explore(console: Console, stack: Stack, scene: Scene, data_dir: Path) -> Ex
 
 def _seek(console: Console, stack: Stack, scene: Scene, explored: Exploration) -> Round:
     game = Game(stack, scene.space, MAP, np.random.default_rng(scene.seed))
-    start, hider, way_m, picture = game.hide()
+    start, hider = game.choose()
+    picture = game.hide(hider)
     moved = game.hand.moves
     with mission_progress(console, "seeking") as watch:
         run = game.client.follow(_upload(stack, png_bytes(picture)), watch)
-    found = game.finish(start, hider, way_m, picture, run, game.hand.moves - moved)
+    found = game.finish(start, hider, picture, run, game.hand.moves - moved)
     draw_round(scene.folder, scene.world, found, explored.truth.poses, explored.graph.edges, game.hand)
     return found
 

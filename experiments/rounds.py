@@ -80,8 +80,8 @@ class Round:
         }
 
 
-def hiding_place(space: FreeSpace, seeker: Pose, rng: np.random.Generator) -> tuple[Pose, float]:
-    """A random free pose at least MIN_APART_M of way from the seeker, and the length of that way.
+def hiding_place(space: FreeSpace, seeker: Pose, rng: np.random.Generator) -> Pose:
+    """A random free pose at least MIN_APART_M of way from the seeker.
 
     Raises:
         ValueError: the free floor is too small for that.
@@ -90,7 +90,7 @@ def hiding_place(space: FreeSpace, seeker: Pose, rng: np.random.Generator) -> tu
         x_m, y_m, yaw_rad = space.random_pose(rng, MARGIN_M)
         way_m = space.shortest_path_m((seeker.x_m, seeker.y_m), (x_m, y_m))
         if MIN_APART_M <= way_m < math.inf:
-            return Pose(x_m=x_m, y_m=y_m, yaw_rad=yaw_rad), way_m
+            return Pose(x_m=x_m, y_m=y_m, yaw_rad=yaw_rad)
     raise ValueError(f"no free place at least {MIN_APART_M} m away from the seeker in {MAX_DRAWS} draws")
 
 
@@ -102,35 +102,41 @@ class Game:
         self.client, self.hand = MissionClient(stack.bus, stack.robot), Hand(stack.bus, stack.robot)
 
     def begin(self, seed: int) -> Truth:
-        """Put the seeker at the world's start, once, and wait until it sees something."""
+        """Put the seeker at the world's start and wait until it sees something; returns the state there."""
         truth = self.hand.reset(seed)
         self.client.wait_for_frame(truth.stamp_ns)
         return truth
 
-    def hide(self) -> tuple[Pose, Pose, float, Frame]:
-        """Hide the other robot: seeker's pose, hider's pose, shortest way, the hider's picture."""
+    def choose(self) -> tuple[Pose, Pose]:
+        """Where the seeker stands, and a random place to hide."""
         start = self.hand.settled_truth().pose
-        hider, way_m = hiding_place(self._space, start, self._rng)
+        return start, hiding_place(self._space, start, self._rng)
+
+    def hide(self, hider: Pose) -> Frame:
+        """Hide the other robot; returns its picture once the seeker may see it."""
         picture = self.hand.place_hider(hider)
-        self.client.wait_for_frame(picture.stamp_ns)  # from now on the hider may be seen
-        return start, hider, way_m, picture
+        self.client.wait_for_frame(picture.stamp_ns)
+        return picture
 
     def play(self, seed: int, max_steps: int, watch: Watch | None = None) -> Round:
-        """Hide, extract the picture's features, seek."""
-        start, hider, way_m, picture = self.hide()
+        """One round with a random place to hide."""
+        return self.seek(*self.choose(), seed, max_steps, watch)
+
+    def seek(self, start: Pose, hider: Pose, seed: int, max_steps: int, watch: Watch | None = None) -> Round:
+        """Hide, extract the picture's features, go there."""
+        picture = self.hide(hider)
         goal = self._stack.bus.ask(EXTRACT, ExtractRequest(frame=picture), EXTRACT_TIMEOUT_S)
         moved = self.hand.moves
         request = MissionRequest(action="goto", map=self._map, goal=goal, seed=seed, max_steps=max_steps)
         run = self.client.run(request, watch)
-        return self.finish(start, hider, way_m, picture, run, self.hand.moves - moved)
+        return self.finish(start, hider, picture, run, self.hand.moves - moved)
 
-    def finish(
-        self, start: Pose, hider: Pose, way_m: float, goal: Frame, run: MissionRun, hand_moves: int
-    ) -> Round:
+    def finish(self, start: Pose, hider: Pose, goal: Frame, run: MissionRun, hand_moves: int) -> Round:
         """Read where the seeker stands now."""
         final = self.hand.settled_truth(run.last_seq).pose
         self.client.collect()
-        return Round(start, hider, final, goal, run, way_m, hand_moves)
+        shortest_m = self._space.shortest_path_m((start.x_m, start.y_m), (hider.x_m, hider.y_m))
+        return Round(start, hider, final, goal, run, shortest_m, hand_moves)
 
 
 def _plain(pose: Pose) -> dict[str, float]:

@@ -1,0 +1,40 @@
+"""One stack in lockstep, with a small map explored in it, for all end-to-end tests of a session."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from experiments.exploration import Exploration, explore
+from experiments.rounds import Game
+from experiments.stack import Stack, StackChoice, open_stack
+from simulator.freespace import FreeSpace, free_space
+from simulator.world_file import load_world
+
+WORLD = "apartment"
+MAP = "small"
+STEPS = 60
+
+
+@dataclass(frozen=True)
+class Explored:
+    """A running stack and what was explored in it."""
+
+    stack: Stack
+    space: FreeSpace
+    result: Exploration
+    game: Game
+    data_dir: Path
+
+
+@pytest.fixture(scope="session")
+def explored(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Explored]:
+    """A part of the apartment, explored in a limited number of steps."""
+    data_dir = tmp_path_factory.mktemp("stack")
+    space = free_space(load_world(WORLD))
+    with open_stack(StackChoice(data_dir, WORLD, seed=1, lockstep=True)) as stack:
+        result = explore(stack, WORLD, MAP, seed=1, max_steps=STEPS)
+        game = Game(stack, space, MAP, np.random.default_rng(1))
+        yield Explored(stack, space, result, game, data_dir)
