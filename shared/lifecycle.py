@@ -2,6 +2,7 @@
 
 import json
 import logging
+import queue
 import signal
 import sys
 import threading
@@ -44,10 +45,22 @@ def configure_logging(service: str, level: str) -> None:
 
 
 def stop_on_signals() -> threading.Event:
-    """An event that SIGINT and SIGTERM set."""
+    """An event that SIGINT and SIGTERM set.
+
+    A handler runs in the middle of whatever the main thread does, and that may be `stop.wait`, which holds
+    the event's lock for a moment: setting the event right there would wait for that lock for ever. So the
+    handler only puts into a SimpleQueue, which may be interrupted anywhere, and a thread sets the event.
+    """
     stop = threading.Event()
+    asked: queue.SimpleQueue[int] = queue.SimpleQueue()
+
+    def forward() -> None:
+        asked.get()
+        stop.set()
+
+    threading.Thread(target=forward, name="signals", daemon=True).start()
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
+        signal.signal(number, lambda received, _frame: asked.put(received))
     return stop
 
 

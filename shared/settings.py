@@ -3,6 +3,7 @@
 import os
 from typing import Any, Self
 
+from pydantic import BaseModel
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 NESTED = "__"
@@ -34,8 +35,8 @@ class ServiceSettings(BaseSettings):
         known = set(cls.model_fields)
         for variable in os.environ:
             if prefix and variable.startswith(prefix):
-                field = variable[len(prefix) :].lower().split(NESTED)[0]
-                if field not in known:
+                path = variable[len(prefix) :].lower().split(NESTED)
+                if not _leads_somewhere(cls, path):
                     raise ValueError(f"{variable}: no such setting; {prefix}* may be one of {sorted(known)}")
         shared: dict[str, Any] = {
             field: os.environ[f"TOPNAV_{field.upper()}"]
@@ -43,3 +44,14 @@ class ServiceSettings(BaseSettings):
             if f"TOPNAV_{field.upper()}" in os.environ and f"{prefix}{field.upper()}" not in os.environ
         }
         return cls(**shared)
+
+
+def _leads_somewhere(model: type[BaseModel], path: list[str]) -> bool:
+    """Whether `path` names a setting, through the fields of nested models where there are any."""
+    field = model.model_fields.get(path[0])
+    if field is None:
+        return False
+    inner = field.annotation
+    if len(path) == 1 or not (isinstance(inner, type) and issubclass(inner, BaseModel)):
+        return True
+    return _leads_somewhere(inner, path[1:])

@@ -1,0 +1,68 @@
+"""Inboxes: newest only or a queue, malformed payloads counted, warnings at a limited rate."""
+
+import logging
+import threading
+
+import pytest
+
+from shared.inbox import Counters, Inbox
+from shared.messages import Command
+from shared.wire import encode
+
+
+def inbox(capacity: int, counters: Counters | None = None) -> Inbox[Command]:
+    return Inbox(Command, 10_000, capacity, threading.Event(), counters or Counters())
+
+
+def push(box: Inbox[Command], *numbers: int) -> None:
+    for number in numbers:
+        box.push(encode(Command(robot="r1", seq=number)))
+
+
+def test_an_inbox_of_one_keeps_the_newest():
+    box = inbox(1)
+    push(box, 1, 2, 3)
+    assert [message.seq for message in box.take_all()] == [3]
+    assert box.take() is None
+
+
+def test_a_queue_keeps_the_order_and_counts_what_it_loses():
+    counters = Counters()
+    box = inbox(3, counters)
+    push(box, 1, 2, 3, 4, 5)
+    assert [message.seq for message in box.take_all()] == [3, 4, 5]
+    assert counters.snapshot() == {"overflow": 2}
+
+
+def test_losing_old_frames_on_purpose_is_no_overflow():
+    counters = Counters()
+    push(inbox(1, counters), 1, 2, 3)
+    assert counters.snapshot() == {}
+
+
+def test_malformed_payloads_are_counted_and_skipped():
+    counters = Counters()
+    box = inbox(8, counters)
+    for junk in (b"", b"\xc1", b"\x91" * 5_000, encode(Command(robot="r1"))[:-1], bytes(10_001)):
+        box.push(junk)
+    push(box, 7)
+    assert [message.seq for message in box.take_all()] == [7]
+    assert counters.snapshot() == {"malformed": 5}
+
+
+def test_waiting_gives_the_message_or_none():
+    box = inbox(1)
+    assert box.wait(0.0) is None
+    threading.Timer(0.05, push, (box, 4)).start()
+    message = box.wait(10.0)
+    assert message is not None
+    assert message.seq == 4
+
+
+def test_a_flood_of_junk_is_logged_once_a_second(caplog: pytest.LogCaptureFixture):
+    counters = Counters()
+    with caplog.at_level(logging.WARNING):
+        for _ in range(1_000):
+            counters.count("malformed", "junk")
+    assert counters.snapshot() == {"malformed": 1_000}
+    assert len(caplog.records) <= 2

@@ -1,0 +1,91 @@
+"""Life of a service: JSON logs, signals as an event, and a bus that closes whatever the loop does."""
+
+import json
+import logging
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from shared.lifecycle import JsonFormatter, stop_on_signals
+
+SERVICE = """
+import sys
+from shared.lifecycle import run_service
+from shared.settings import ServiceSettings
+from shared.topics import COMMAND
+
+def loop(bus, stop):
+    bus.subscribe(COMMAND, robot="*")
+    bus.watch_alive(lambda *_: None)
+    bus.announce("drive")
+    print("ready", flush=True)
+    if "fail" in sys.argv:
+        raise RuntimeError("broken")
+    stop.wait(60)
+
+run_service("drive", ServiceSettings.from_environment(), loop)
+"""
+
+
+def start(repository: Path, endpoint: str, *arguments: str) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-c", SERVICE, *arguments],
+        cwd=repository,
+        env=os.environ | {"TOPNAV_ENDPOINT": endpoint},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def test_a_log_record_is_one_line_of_json():
+    record = logging.LogRecord("drive", logging.WARNING, "x.py", 1, "two\nlines %d", (5,), None)
+    line = JsonFormatter("drive").format(record)
+    assert "\n" not in line
+    entry = json.loads(line)
+    assert (entry["level"], entry["service"], entry["text"]) == ("WARNING", "drive", "two\nlines 5")
+    assert entry["time"].endswith("Z")
+
+
+def test_errors_are_logged_with_their_traceback():
+    try:
+        raise ValueError("broken")
+    except ValueError:
+        record = logging.LogRecord("drive", logging.ERROR, "x.py", 1, "failed", (), sys.exc_info())
+    assert "ValueError: broken" in json.loads(JsonFormatter("drive").format(record))["error"]
+
+
+def test_a_signal_sets_the_event_even_in_the_middle_of_waiting_for_it():
+    before = signal.getsignal(signal.SIGTERM), signal.getsignal(signal.SIGINT)
+    try:
+        stop = stop_on_signals()
+        with stop._cond:  # as it is for a moment inside stop.wait
+            os.kill(os.getpid(), signal.SIGTERM)
+        assert stop.wait(5.0)
+    finally:
+        signal.signal(signal.SIGTERM, before[0])
+        signal.signal(signal.SIGINT, before[1])
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_service_with_callbacks_stops_cleanly_on_a_signal(
+    repository: Path, router_endpoint: str, number: signal.Signals
+):
+    with start(repository, router_endpoint) as child:
+        assert child.stdout is not None
+        assert child.stdout.readline() == "ready\n"
+        child.send_signal(number)
+        _, errors = child.communicate(timeout=20)
+    assert child.returncode == 0
+    assert [json.loads(line)["text"] for line in errors.splitlines()][-1] == "stopped"
+
+
+def test_a_loop_that_fails_ends_the_process_instead_of_hanging_it(repository: Path, router_endpoint: str):
+    with start(repository, router_endpoint, "fail") as child:
+        _, errors = child.communicate(timeout=20)
+    assert child.returncode == 1
+    assert "RuntimeError: broken" in errors
