@@ -70,7 +70,7 @@ def run_service(
     """Run `loop(bus, stop)` with logging, signals and a bus that closes; it announces itself when ready."""
     configure_logging(service, settings.log_level)
     stop = stop_on_signals()
-    with open_bus(settings.endpoint) as bus:
+    with open_bus(settings.endpoint, settings.listen) as bus:
         log.info("started, endpoint %s", settings.endpoint)
         loop(bus, stop)
     log.info("stopped")

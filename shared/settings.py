@@ -14,6 +14,7 @@ class ServiceSettings(BaseSettings):
 
     Attributes:
         endpoint: Zenoh router to reach, from TOPNAV_ENDPOINT.
+        listen: where other peers reach this process, from TOPNAV_LISTEN.
         robot: whose service this is, from TOPNAV_ROBOT.
         log_level: DEBUG, INFO, WARNING or ERROR, from TOPNAV_LOG_LEVEL.
     """
@@ -21,6 +22,7 @@ class ServiceSettings(BaseSettings):
     model_config = SettingsConfigDict(frozen=True, extra="forbid", env_nested_delimiter=NESTED)
 
     endpoint: str = "tcp/127.0.0.1:7447"
+    listen: str = "tcp/127.0.0.1:0"
     robot: str = "r1"
     log_level: str = "INFO"
 
