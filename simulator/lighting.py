@@ -16,9 +16,9 @@ OCCLUDER_M = 0.05  # thinner and smaller things cast no shadow
 SHARE_M = 0.09  # vertices this near with the same normal share one computation
 SAMPLES = 2
 HEMISPHERE = 12
-REACH_M = 0.6
+REACH_M = 0.9
 SKIP_M = 0.07  # a surface does not shade itself
-CLEAR_SHARE = 0.004
+CLEAR_SHARE = 0.006
 GAMMA = 1 / 2.2
 
 

@@ -25,10 +25,10 @@ class CameraSettings(_Frozen):
     near_m: PositiveFloat = 0.015
     far_m: PositiveFloat = 60.0
     face_scale: float = Field(
-        default=0.32,
+        default=0.28,
         ge=0.2,
         le=1.0,
-        description="side of a cube face over picture width; 1 / pi keeps the resolution at face centres",
+        description="side of a cube face over picture width; 1 / pi keeps all resolution",
     )
 
     @model_validator(mode="after")

@@ -108,8 +108,8 @@ class Start(_Model):
 class Lighting(_Model):
     """Even light that reaches everything, and how much of it corners lose (0 to 1)."""
 
-    ambient: tuple[float, float, float] = (0.34, 0.33, 0.32)
-    occlusion: float = Field(default=0.75, ge=0.0, le=1.0)
+    ambient: tuple[float, float, float] = (0.24, 0.235, 0.23)
+    occlusion: float = Field(default=0.9, ge=0.0, le=1.0)
 
 
 class WorldFile(_Model):

@@ -13,7 +13,7 @@ def _power(strength: float) -> tuple[float, float, float]:
     return r, g, b
 
 
-def ceiling_light(rng: np.random.Generator, radius_m: float = 0.22, strength: float = 2.6) -> Piece:
+def ceiling_light(rng: np.random.Generator, radius_m: float = 0.22, strength: float = 3.6) -> Piece:
     """Flat round ceiling light; the item's height is that of the ceiling."""
     del rng
     shade = Material("glow", SHADE, 1, glow=1.0)
