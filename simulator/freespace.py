@@ -1,6 +1,5 @@
 """Free floor of a world: where a robot fits, shortest ways, lines of sight, random poses. Pure."""
 
-import heapq
 import math
 from dataclasses import dataclass
 from itertools import pairwise
@@ -9,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simulator.footprints import clearance_m, footprints
+from simulator.grid_search import shortest_cells
 from simulator.parts import Part, rotation_of
 from simulator.scene_parts import expand
 from simulator.world_file import WorldFile
@@ -16,7 +16,6 @@ from simulator.world_file import WorldFile
 FloatArray = npt.NDArray[np.float64]
 Point = tuple[float, float]
 BODY_BAND_M = (0.02, 0.79)
-STEPS = tuple((dy, dx) for dy in range(-2, 3) for dx in range(-2, 3) if math.gcd(dy, dx) == 1)
 
 
 @dataclass(frozen=True)
@@ -77,7 +76,7 @@ class FreeSpace:
 
         A point off the free floor (a robot a cell too near a wall) starts from the nearest free cell.
         """
-        came = self._search(self._nearest(start), self._nearest(goal))
+        came = shortest_cells(self.free, self._nearest(start), self._nearest(goal))
         if not came:
             return []
         cells = [self.point(cell) for cell in came]
@@ -99,41 +98,6 @@ class FreeSpace:
         row, column = self.cell(point)
         k = int(np.argmin((rows - row) ** 2 + (columns - column) ** 2))
         return int(rows[k]), int(columns[k])
-
-    def _search(self, start: tuple[int, int], goal: tuple[int, int]) -> list[tuple[int, int]]:
-        """A* over 16 directions; knight moves need both cells they pass between."""
-        queue: list[tuple[float, tuple[int, int]]] = [(0.0, start)]
-        cost, parent = {start: 0.0}, {start: start}
-        closed: set[tuple[int, int]] = set()
-        while queue:
-            _, cell = heapq.heappop(queue)
-            if cell == goal:
-                path = [cell]
-                while path[-1] != start:
-                    path.append(parent[path[-1]])
-                return path[::-1]
-            if cell in closed:
-                continue
-            closed.add(cell)
-            for dy, dx in STEPS:
-                nxt = (cell[0] + dy, cell[1] + dx)
-                if not self._passable(cell, dy, dx):
-                    continue
-                through = cost[cell] + math.hypot(dy, dx)
-                if through < cost.get(nxt, math.inf):
-                    cost[nxt], parent[nxt] = through, cell
-                    heapq.heappush(queue, (through + math.dist(nxt, goal), nxt))
-        return []
-
-    def _passable(self, cell: tuple[int, int], dy: int, dx: int) -> bool:
-        for k in (1, 2) if max(abs(dy), abs(dx)) == 2 else (2,):
-            row = cell[0] + (dy * k) / 2
-            column = cell[1] + (dx * k) / 2
-            for r in {math.floor(row), math.ceil(row)}:
-                for c in {math.floor(column), math.ceil(column)}:
-                    if not (0 <= r < self.free.shape[0] and 0 <= c < self.free.shape[1] and self.free[r, c]):
-                        return False
-        return True
 
     def _straightened(self, path: list[Point]) -> list[Point]:
         kept, k = [path[0]], 0

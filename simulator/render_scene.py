@@ -11,7 +11,8 @@ import sapien
 from sapien import render
 
 from simulator.lighting import bake
-from simulator.meshes import Mesh, facing_any, joined, mesh_of
+from simulator.mesh_shapes import mesh_of
+from simulator.meshes import Mesh, facing_any, joined
 from simulator.panorama import BORDER_PX, CubeToEquirect, Image, face_fov_rad, face_rotations
 from simulator.parts import Material, Part
 from simulator.scene_parts import expand
