@@ -20,6 +20,7 @@ from shared.messages import (
     MissionRequest,
     Ranges,
 )
+from shared.messages.maps import DeleteNode
 from shared.queries import RefusedError
 from shared.topics import MAP, MATCH, MISSION
 from shared.wire import encode
@@ -44,6 +45,8 @@ def altered(message, **changes):
 
 HEADING = Heading(robot="r1")
 RANGES = Ranges(robot="r1", angles_rad=(0.0,) * 12, distances_m=(1.0,) * 12, max_range_m=4.0)
+
+STALE = MapRequest(action="transact", base_revision=10_000, operations=(DeleteNode(node_id=0),))
 
 STREAMS = [
     pytest.param("frame", encode(frame())[:40], "features", "not msgpack", id="truncated frame"),
@@ -83,7 +86,7 @@ QUESTIONS = [
     ),
     pytest.param(
         MAP,
-        MapRequest(action="transact", base_revision=10_000),
+        STALE,
         "revision",
         id="transaction on a wrong revision",
     ),
@@ -130,7 +133,7 @@ def test_a_question_that_cannot_be_answered_is_refused_with_the_reason(explored,
         explored.stack.bus.ask(query, request_, 20.0, **names)
 
 
-def test_a_question_that_is_not_msgpack_is_refused(explored, session):
+def test_a_question_that_is_not_msgpack_is_refused(session):
     for key in ("topnav/r1/mission", "topnav/r1/match", "topnav/maps/small/graph", "topnav/r1/simulation"):
         (answer,) = session.get(key, payload=b"\xc1\xc1", timeout=20.0)
         assert b"malformed" in answer.err.payload.to_bytes(), key
