@@ -153,7 +153,7 @@ class Bus:
 
 @contextmanager
 def open_bus(endpoint: str, listen: str = "tcp/127.0.0.1:0") -> Iterator[Bus]:
-    """Open a peer session to the router at `endpoint`, reachable at `listen`, and close it whatever happens."""
+    """Open a peer session to the router, reachable at `listen`, and close it whatever happens."""
     bus = Bus(zenoh.open(peer_config(endpoint, listen)))
     try:
         yield bus

@@ -7,7 +7,7 @@ from shared.messages.maps import MapDelta, MapReply, MapRequest, MissionRecord, 
 from shared.messages.matching import MatchReply, MatchRequest
 from shared.messages.missions import Event, MissionRequest, MissionStatus
 from shared.messages.sensors import Frame, Ranges
-from shared.messages.simulation import Pose, SimulationReply, SimulationRequest, Truth
+from shared.messages.simulation import SimulationReply, SimulationRequest, Truth
 
 ALL: tuple[type[Message], ...] = (
     Frame,

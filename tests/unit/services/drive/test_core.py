@@ -1,0 +1,44 @@
+"""Drive core: hold stops, obstacles come first, the answer carries the question's frame."""
+
+import math
+
+import numpy as np
+
+from services.drive.core import DriveLimits, compute_command
+from services.drive.passing import Passing
+from shared.messages import Heading, Ranges
+
+ANGLES = tuple(i * math.tau / 12 for i in range(12))
+
+
+def ranges(ahead_m=4.0):
+    return Ranges(robot="r1", angles_rad=ANGLES, distances_m=(ahead_m, *[4.0] * 11), max_range_m=4.0)
+
+
+def command(heading, ranges, limits=None):
+    limits = limits or DriveLimits()
+    return compute_command(heading, ranges, Passing(), np.random.default_rng(0), limits)[0]
+
+
+def test_hold_gives_still_wheels():
+    answer = command(Heading(robot="r1", seq=7, action="hold", heading_rad=1.0), ranges())
+    assert answer.wheel_speed_radps == 0.0
+    assert answer.seq == 7
+
+
+def test_free_way_follows_the_heading_at_full_speed():
+    answer = command(Heading(robot="r1", seq=9, epoch=3, heading_rad=1.0), ranges())
+    assert (answer.seq, answer.epoch, answer.steer_rad, answer.wheel_speed_radps) == (9, 3, 1.0, 5.0)
+    assert not answer.avoiding
+
+
+def test_obstacle_ahead_changes_the_heading_and_slows():
+    answer = command(Heading(robot="r1", heading_rad=0.0), ranges(ahead_m=0.45))
+    assert answer.avoiding
+    assert abs(answer.steer_rad) > math.radians(20.0)
+
+
+def test_momentary_rule_depends_only_on_its_inputs():
+    limits = DriveLimits(avoidance="momentary")
+    heading = Heading(robot="r1", heading_rad=0.2)
+    assert command(heading, ranges(0.4), limits) == command(heading, ranges(0.4), limits)

@@ -1,0 +1,85 @@
+"""Passing obstacles: free ways are taken, borders are followed on one side, dead ends are left."""
+
+import math
+
+import numpy as np
+import pytest
+
+from services.drive.passing import Passing, PassingLimits, steer_past
+from shared.geometry.clearance import Obstacles
+
+LIMITS = PassingLimits()
+
+
+def wall(x_m, y_from_m, y_to_m):
+    ys = np.arange(y_from_m, y_to_m, 0.05)
+    return np.stack([np.full(len(ys), x_m), ys], axis=-1)
+
+
+def drive(walls, start, goal, steps):
+    """Follow the true bearing to the goal past points; the path driven."""
+    points = np.concatenate(walls)
+    position, memory, path = np.array(start, float), Passing(), [tuple(start)]
+    for _ in range(steps):
+        to_goal = np.array(goal) - position
+        if np.hypot(*to_goal) < 0.15:
+            break
+        near = points - position
+        seen = Obstacles(near[np.hypot(near[:, 0], near[:, 1]) < 4.0])
+        steering, memory = steer_past(math.atan2(to_goal[1], to_goal[0]), seen, memory, 1.0, LIMITS)
+        if not steering.blocked:
+            position = position + 0.1 * np.array(
+                [math.cos(steering.heading_rad), math.sin(steering.heading_rad)]
+            )
+        assert np.hypot(*(points - position).T).min() > 0.2, "touched the wall"
+        path.append(tuple(position))
+    return path
+
+
+def test_nothing_in_the_way_keeps_the_wished_heading():
+    steering, _ = steer_past(0.7, Obstacles(np.zeros((0, 2))), Passing(), 1.0, LIMITS)
+    assert steering.heading_rad == 0.7
+    assert not steering.avoiding
+
+
+def test_a_wall_ahead_is_passed_and_the_goal_reached():
+    path = drive([wall(1.0, -0.6, 0.9)], start=(0.0, 0.0), goal=(2.5, 0.0), steps=120)
+    assert math.dist(path[-1], (2.5, 0.0)) < 0.15
+    assert min(y for _, y in path) < -0.7, "the nearer end is on the right"
+
+
+def test_a_dead_end_is_left_without_help():
+    pocket = [wall(1.0, -0.8, 0.8), wall(0.0, 0.8, 0.81)]
+    sides = np.arange(0.2, 1.0, 0.05)
+    pocket += [np.stack([sides, np.full(len(sides), y)], axis=-1) for y in (-0.8, 0.8)]
+    path = drive(pocket, start=(0.4, 0.0), goal=(2.5, 0.2), steps=600)
+    assert math.dist(path[-1], (2.5, 0.2)) < 0.15
+
+
+def test_the_side_is_kept_while_the_border_lasts():
+    memory = Passing()
+    sides = set()
+    for y in np.arange(0.0, 0.5, 0.05):
+        seen = Obstacles(wall(0.6, -1.2 - y, 1.0 - y))
+        _, memory = steer_past(0.0, seen, memory, 1.0, LIMITS)
+        sides.add(memory.side)
+    assert sides == {1}
+
+
+def test_a_side_that_does_not_lead_past_is_given_up_for_the_other():
+    seen = Obstacles(wall(0.6, -50.0, 50.0))
+    memory, changes = Passing(), []
+    for step in range(60):
+        before = memory.side
+        _, memory = steer_past(0.0, seen, memory, 1.0, LIMITS)
+        if before and memory.side != before:
+            changes.append(step)
+    assert len(changes) == 2
+    assert changes[1] - changes[0] == pytest.approx(2 * changes[0], abs=3), "patience doubles"
+
+
+def test_enclosed_robot_stands_still():
+    around = np.arange(-math.pi, math.pi, 0.05)
+    ring = Obstacles(0.32 * np.stack([np.cos(around), np.sin(around)], axis=-1))
+    steering, _ = steer_past(0.0, ring, Passing(), 1.0, LIMITS)
+    assert steering.blocked
