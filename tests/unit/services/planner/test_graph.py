@@ -1,0 +1,63 @@
+"""Graph of places: cheapest paths against brute force, headings from both ends, suspended edges."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from services.planner.graph import MapGraph, edge_between, fewest_nodes, least_disparity
+from shared.messages.maps import DeleteNode, Edge, Node, PutEdge
+
+
+def graph(edges, count=8):
+    made = [Edge(a=min(p), b=max(p), disparity_rad=0.1, clear=True) for p in edges]
+    return MapGraph([Node(node_id=n) for n in range(count)], made)
+
+
+def brute_force(edges, source, target, count):
+    for length in range(1, count + 1):
+        for middle in itertools.permutations([n for n in range(count) if n not in (source, target)], length - 1):
+            walk = (source, *middle, target)
+            if all(frozenset(step) in edges for step in itertools.pairwise(walk)):
+                return length + 1
+    return 0
+
+
+def test_fewest_nodes_equals_brute_force_on_random_graphs():
+    rng = np.random.default_rng(1)
+    for _ in range(20):
+        pairs = {frozenset(map(int, rng.choice(6, 2, replace=False))) for _ in range(8)}
+        path = graph([tuple(p) for p in pairs], 6).path(0, {5: 0.0}, fewest_nodes)
+        assert len(path) == brute_force(pairs, 0, 5, 6)
+
+
+def test_unseen_ground_is_avoided_when_there_is_another_way():
+    nodes = [Node(node_id=n) for n in range(3)]
+    direct = Edge(a=0, b=2, disparity_rad=0.1)
+    around = [Edge(a=0, b=1, disparity_rad=0.1, clear=True), Edge(a=1, b=2, disparity_rad=0.1, traversals=1)]
+    assert MapGraph(nodes, [direct, *around]).path(0, {2: 0.0}, least_disparity) == [0, 1, 2]
+    assert MapGraph(nodes, [direct, *around]).path(0, {2: 0.0}, fewest_nodes) == [0, 2]
+
+
+def test_suspended_edge_is_no_way():
+    suspended = Edge(a=0, b=1, suspended=True)
+    places = MapGraph([Node(node_id=0), Node(node_id=1)], [suspended])
+    assert places.path(0, {1: 0.0}, fewest_nodes) == []
+    assert places.components() == 2
+
+
+def test_deleting_a_node_takes_its_edges():
+    places = graph([(0, 1), (1, 2), (2, 3)])
+    places.apply([DeleteNode(node_id=1)])
+    assert set(places.edges) == {(2, 3)}
+
+
+@pytest.mark.parametrize(("first", "second"), [(0, 1), (1, 0)])
+def test_headings_of_an_edge_agree_from_both_ends(first, second):
+    """Robot at the origin looking along x, the other 1 m to its left and turned by 90 degrees to the left."""
+    fields = edge_between(first, second, math.pi / 2, math.pi / 2)
+    places = MapGraph([Node(node_id=0), Node(node_id=1)])
+    places.apply([PutEdge(edge=Edge.model_validate(fields))])
+    assert places.heading(first, second) == pytest.approx(math.pi / 2)
+    assert abs(math.remainder(places.heading(second, first) - math.pi, math.tau)) < 1e-9
