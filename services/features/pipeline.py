@@ -20,6 +20,7 @@ class Pipeline:
         self.representation = create_representation(profile)
         self.matcher = create_matcher(profile, self.extractor.distance)
         self.verification = two_view_settings(profile.verification_deg)
+        self._enough_px = profile.resize[1] if profile.resize is not None else None
         self._thumbnail = (thumbnail_width_px, thumbnail_quality)
 
     def features_of(self, frame: Frame) -> Features:
@@ -28,7 +29,7 @@ class Pipeline:
         Raises:
             BadPictureError: the frame holds no usable picture.
         """
-        picture = decode_picture(frame)
+        picture = decode_picture(frame, self._enough_px)
         words = extract(picture, self.extractor, self.representation, self.profile)
         return Features(
             seq=frame.seq,

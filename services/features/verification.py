@@ -55,8 +55,12 @@ def verify(
 
 
 def two_view_settings(verification_deg: float) -> TwoViewSettings:
-    """Defaults of the estimation with the pipeline's own threshold, degrees."""
-    return TwoViewSettings(threshold_rad=float(np.deg2rad(verification_deg)))
+    """Defaults of the estimation with the pipeline's own threshold, degrees.
+
+    Without the essential-matrix fallback: on a flat floor it added 0.2 % inliers and cost two thirds more time,
+    most of it on places that are wrong.
+    """
+    return TwoViewSettings(threshold_rad=float(np.deg2rad(verification_deg)), fallback=False)
 
 
 def feature_set(features: Features) -> FeatureSet:

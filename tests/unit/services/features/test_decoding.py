@@ -36,8 +36,10 @@ def test_bgr8_comes_back_as_sent():
     np.testing.assert_array_equal(picture.ravel(), pixels)
 
 
-def test_jpeg_is_decoded():
-    assert decode_picture(frame(jpeg(64, 32))).shape == (32, 64, 3)
+@pytest.mark.parametrize(("enough_px", "width"), [(None, 66), (40, 66), (33, 33), (16, 17), (1, 9)])
+def test_jpeg_is_decoded_no_larger_than_needed(enough_px, width):
+    picture = decode_picture(frame(jpeg(66, 33), 66, 33), enough_px)
+    assert picture.shape[1] == width
 
 
 @pytest.mark.parametrize(
