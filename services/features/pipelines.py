@@ -35,12 +35,13 @@ class Profile:
         return f"{self.extractor}-{self.representation}-{self.keypoints}"
 
 
-# Verified matches (median of 14 pairs, apartment) by distance, and the fewest of any pair beyond 2.5 m:
-#   keypoints   0.2-0.5  0.5-1  1-1.5  1.5-2  2-2.5  2.5-3.5 m   fewest
-#   150              68     40     18     24     14     16          3
-#   300             132     84     48     42     26     23          8
-#   500             204    130     67     60     38     35         12
-# 500 cost half as much again per frame; 300 is the least that left no pair below 3 m without a direction.
+# Verified matches (medians of 14 pairs of apartment frames each), by distance of the two frames in metres:
+#   keypoints   0.2-0.5  0.5-1  1-1.5  1.5-2  2-2.5  2.5-3.5   pairs with a direction
+#   sift 150         76     54     26     26     18       14      95 %
+#   sift 300        132     84     48     42     26       23     100 %
+#   sift 500        209    131     72     60     38       36     100 %
+#   orb 300         116     60     21     27     16       10      88 %
+# 300 is the default: 500 tell no more directions and take a fifth longer to extract, twice as long to match.
 PROFILES: dict[str, Profile] = {
     "sift": Profile("sift"),
     "sift_dense": Profile("sift", keypoints=500),
