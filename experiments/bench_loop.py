@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from experiments import options
 from experiments.bench_listener import Listener
@@ -17,7 +16,7 @@ from experiments.failure import ExperimentError, one_line_errors
 from experiments.output import rounded, write_json
 from experiments.progress import mission_progress
 from experiments.stack import StackChoice, open_stack
-from experiments.tables import row_table
+from experiments.tables import print_rows, wide_console
 
 MAP = "bench"
 
@@ -35,7 +34,7 @@ def main(
         with (
             open_stack(choice) as stack,
             Listener(stack.endpoint, stack.robot) as listener,
-            mission_progress(Console(stderr=True), "timing") as watch,
+            mission_progress(wide_console(stderr=True), "timing") as watch,
         ):
             result = explore(stack, world, MAP, seed, steps, watch=watch)
     if result.run.status.step < min(20, steps):
@@ -49,7 +48,7 @@ def main(
         counts = {stage: len(d) for stage, d in durations.items()}
         figures = {"steps_per_s": rate, "stages": stages, "machine": machine(), "samples": counts}
         write_json(json_file, {**figures, "steps": result.run.status.step, "nodes": result.run.status.nodes})
-    Console().print(row_table(f"{rate} steps/s", [{"stage": name, **row} for name, row in stages.items()]))
+    print_rows(f"{rate} steps/s", [{"stage": name, **row} for name, row in stages.items()])
 
 
 def machine() -> dict[str, object]:

@@ -25,7 +25,7 @@ from experiments.plots.plans import draw_map
 from experiments.progress import mission_progress
 from experiments.rounds import Game, Round
 from experiments.stack import Stack, StackChoice, open_stack
-from experiments.tables import row_table
+from experiments.tables import print_rows, wide_console
 from experiments.truth_file import save_truth, truth_path
 from services.launcher.stack_settings import HOST, Ports
 from shared.messages import MissionStatus
@@ -62,7 +62,7 @@ def main(
     ] = False,
 ) -> None:
     """Explore the apartment, then find a hidden robot from its picture; ends with the report's path."""
-    console = Console()
+    console = wide_console()
     file = load_world(world)
     scene = Scene(file, free_space(file), seed, new_run_folder(runs))
     choice = StackChoice(scene.folder / "data", world, seed, lockstep=True, ports=_usual_ports())
@@ -71,7 +71,7 @@ def main(
         console.print(f"all up; watch the robot on {stack.gateway_url}", highlight=False)
         explored = _explore(console, stack, scene, choice.data_dir)
         found = _seek(console, stack, scene, explored)
-        report = _report(console, scene, explored, found)
+        report = _report(scene, explored, found)
         if keep:
             _wait(console, f"everything stays up on {stack.gateway_url}; stop it with Ctrl+C")
     console.print(f"report: {report}", highlight=False, soft_wrap=True)
@@ -119,13 +119,13 @@ def _upload(stack: Stack, png: bytes) -> MissionStatus:
     return MissionStatus.model_validate(answer.json())
 
 
-def _report(console: Console, scene: Scene, explored: Exploration, found: Round) -> Path:
+def _report(scene: Scene, explored: Exploration, found: Round) -> Path:
     mapping = figures(explored, scene.space, MAP, scene.seed)
     metrics = {"explore": mapping, "goto": found.figures()}
     write_json(scene.folder / "metrics.json", metrics)
     goto = found.figures()
-    console.print(row_table("the map", [{name: mapping[name] for name in MAP_SHOWN}]))
-    console.print(row_table("finding the hidden robot", [{name: goto[name] for name in GOTO_SHOWN}]))
+    print_rows("the map", [{name: mapping[name] for name in MAP_SHOWN}])
+    print_rows("finding the hidden robot", [{name: goto[name] for name in GOTO_SHOWN}])
     return write_report(scene.folder, mapping, goto)
 
 

@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from experiments import options
 from experiments.exploration import explore, figures
@@ -14,7 +13,7 @@ from experiments.output import write_json
 from experiments.plots.plans import draw_map
 from experiments.progress import mission_progress
 from experiments.stack import Stack, StackChoice, open_stack
-from experiments.tables import figure_table
+from experiments.tables import print_figures, wide_console
 from experiments.truth_file import MapTruth, load_truth, save_truth, truth_path
 from simulator.freespace import free_space
 from simulator.world_file import load_world
@@ -39,13 +38,12 @@ def main(
     endpoint: options.Endpoint = None,
 ) -> None:
     """Explore a world and build a map of pictures."""
-    console = Console(stderr=True)
     space = free_space(load_world(world))
     choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
     path = truth_path(data_dir, map_name)
     with one_line_errors(), open_stack(choice) as stack:
         before = _prepare(stack, map_name, path, go_on=continue_, fresh=fresh)
-        with mission_progress(console, f"exploring {world}") as watch:
+        with mission_progress(wide_console(stderr=True), f"exploring {world}") as watch:
             result = explore(stack, world, map_name, seed, max_steps, before, watch)
     save_truth(path, map_name, result.truth)
     report = figures(result, space, map_name, seed)
@@ -53,7 +51,7 @@ def main(
         write_json(json_file, report)
     if drawing is not None:
         draw_map(drawing, load_world(world), result.truth.poses, result.graph.edges)
-    Console().print(figure_table(f"map {map_name}", report))
+    print_figures(f"map {map_name}", report)
     if not result.run.succeeded:
         raise ExperimentError(f"exploration ended as {result.run.status.state}: {result.run.status.reason}")
 

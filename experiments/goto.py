@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from experiments import options
 from experiments.failure import ExperimentError, one_line_errors
@@ -14,7 +13,7 @@ from experiments.output import rounded, write_json
 from experiments.plots.pictures import frame_from_file
 from experiments.progress import mission_progress
 from experiments.stack import StackChoice, open_stack
-from experiments.tables import figure_table
+from experiments.tables import print_figures, wide_console
 from experiments.trail import driven_m
 from shared.messages import ExtractRequest, MissionRequest
 from shared.topics import EXTRACT
@@ -46,7 +45,7 @@ def main(
         frame = frame_from_file(image, stack.robot)
         goal = stack.bus.ask(EXTRACT, ExtractRequest(frame=frame), EXTRACT_TIMEOUT_S)
         request = MissionRequest(action="goto", map=map_name, goal=goal, seed=seed, max_steps=max_steps)
-        with mission_progress(Console(stderr=True), f"going to {image.name}") as watch:
+        with mission_progress(wide_console(stderr=True), f"going to {image.name}") as watch:
             run = client.run(request, watch)
     report = {
         "map": map_name,
@@ -61,7 +60,7 @@ def main(
     }
     if json_file is not None:
         write_json(json_file, report)
-    Console().print(figure_table(f"goto {image.name}", report))
+    print_figures(f"goto {image.name}", report)
     if not run.succeeded:
         raise ExperimentError(
             f"did not arrive, {run.status.failure or run.status.state}: {run.status.reason}"

@@ -1,11 +1,12 @@
 """`topnav hide-and-seek`: the thesis's evaluation, rounds of finding a hidden robot from its picture."""
 
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 import typer
-from rich.console import Console
 
 from experiments import options
 from experiments.drawings import draw_round
@@ -14,15 +15,24 @@ from experiments.map_client import require_map
 from experiments.output import new_run_folder, rounded, write_json
 from experiments.progress import mission_progress
 from experiments.rounds import Game, Round
-from experiments.stack import StackChoice, open_stack
-from experiments.tables import row_table
-from experiments.truth_file import load_truth, truth_path
+from experiments.stack import Stack, StackChoice, open_stack
+from experiments.tables import print_rows, wide_console
+from experiments.truth_file import MapTruth, load_truth, truth_path
 from simulator.freespace import free_space
-from simulator.world_file import load_world
+from simulator.world_file import WorldFile, load_world
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
 SHOWN = ("success", "final_distance_m", "spl", "steps", "collisions", "shortest_m", "driven_m", "reason")
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Where the rounds take place; `truth` is for the drawings only."""
+
+    world: WorldFile
+    map_name: str
+    truth: MapTruth | None
 
 
 @app.command()
@@ -44,32 +54,38 @@ def main(
     endpoint: options.Endpoint = None,
 ) -> None:
     """Find robots that hide at random places, one after the other, from the pictures they send."""
-    console = Console(stderr=True)
-    space = free_space(load_world(world))
     choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
+    scene = Scene(load_world(world), map_name, load_truth(truth_path(data_dir, map_name)))
     folder = (drawings or new_run_folder(options.RUNS_DIR)) if draw else None
-    truth = load_truth(truth_path(data_dir, map_name))
-    poses = truth.poses if truth is not None else {}
     played: list[Round] = []
     with one_line_errors(), open_stack(choice) as stack:
-        graph = require_map(stack, map_name)
-        game = Game(stack, space, map_name, np.random.default_rng(seed))
-        game.begin(seed)
-        for number in range(1, rounds + 1):
-            with mission_progress(console, f"round {number}/{rounds}") as watch:
-                played.append(game.play(seed + number, max_steps, watch))
-            console.print(_line(number, played[-1]), highlight=False)
-            if folder is not None:
-                place = folder / f"round-{number:02d}"
-                draw_round(place, load_world(world), played[-1], poses, graph.edges, game.hand)
+        for one in play_rounds(stack, scene, rounds, seed, max_steps, folder):
+            played.append(one)
             if json_file is not None:
                 write_json(json_file, report(world, profile or "default", seed, played))
-    summary = report(world, profile or "default", seed, played)["summary"]
     rows = [{name: r.figures()[name] for name in SHOWN} for r in played]
-    Console().print(row_table(f"hide and seek in {world}, seed {seed}", rows))
-    Console().print(row_table("summary", [summary]))
+    print_rows(f"hide and seek in {world}, seed {seed}", rows)
+    print_rows("summary", [report(world, profile or "default", seed, played)["summary"]])
     if not any(r.success for r in played):
         raise ExperimentError("no round succeeded")
+
+
+def play_rounds(
+    stack: Stack, scene: Scene, rounds: int, seed: int, max_steps: int, folder: Path | None
+) -> Iterator[Round]:
+    """Play one round after the other; the seeker stays where the last one ended."""
+    console = wide_console(stderr=True)
+    graph = require_map(stack, scene.map_name)
+    game = Game(stack, free_space(scene.world), scene.map_name, np.random.default_rng(seed))
+    game.begin(seed)
+    poses = scene.truth.poses if scene.truth is not None else {}
+    for number in range(1, rounds + 1):
+        with mission_progress(console, f"round {number}/{rounds}") as watch:
+            played = game.play(seed + number, max_steps, watch)
+        console.print(_line(number, played), highlight=False)
+        if folder is not None:
+            draw_round(folder / f"round-{number:02d}", scene.world, played, poses, graph.edges, game.hand)
+        yield played
 
 
 def report(world: str, profile: str, seed: int, played: list[Round]) -> dict[str, Any]:

@@ -5,7 +5,6 @@ from typing import Annotated
 
 import numpy as np
 import typer
-from rich.console import Console
 from rich.progress import track
 
 from experiments import options
@@ -14,7 +13,7 @@ from experiments.studies.pair_features import cache_folder, features_of_pairs
 from experiments.studies.pair_headings import PairResult, judge_pair
 from experiments.studies.pair_tables import distance_table, method_table, status_counts
 from experiments.studies.pairs import draw_pairs
-from experiments.tables import row_table
+from experiments.tables import print_rows, wide_console
 from services.features.pipeline import Pipeline
 from services.features.pipelines import find_profile
 from simulator.freespace import free_space
@@ -50,12 +49,9 @@ def main(
             "two_view_status": status_counts(results),
         }
         write_json(json_file, report)
-    console = Console()
     for title, table in (("verified matches", verified), ("raw matches", raw)):
-        console.print(
-            row_table(f"heading error, {title}", [{"method": n, **row} for n, row in table.items()])
-        )
-    console.print(row_table("by distance, epipolar", by_distance))
+        print_rows(f"heading error, {title}", [{"method": name, **row} for name, row in table.items()])
+    print_rows("by distance, epipolar", by_distance)
 
 
 def measure(world_name: str, count: int, seed: int, pipeline_name: str, data_dir: Path) -> list[PairResult]:
@@ -64,7 +60,7 @@ def measure(world_name: str, count: int, seed: int, pipeline_name: str, data_dir
     pipeline = Pipeline(find_profile(pipeline_name))
     pairs = draw_pairs(free_space(world), count, np.random.default_rng(seed))
     folder = cache_folder(data_dir / "cache", world, pipeline, seed)
-    console = Console(stderr=True)
+    console = wide_console(stderr=True)
     with console.status("") as status:
         done = iter(range(1, count + 1))
         features = features_of_pairs(

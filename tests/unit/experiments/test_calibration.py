@@ -1,0 +1,30 @@
+"""Thresholds proposed from hand-made pairs."""
+
+import math
+
+import pytest
+
+from experiments.calibration import propose
+from experiments.studies.pair_headings import METHODS, PairResult
+
+
+def pair(distance_m, verified, error_deg=0.5):
+    errors = dict.fromkeys(METHODS, math.radians(error_deg))
+    return PairResult(distance_m, 100, verified, "ok", 0.9, 0.1, 0.0, errors, errors)
+
+
+PLACES = [pair(0.4, 120), pair(0.6, 80), pair(0.7, 90), pair(0.8, 100)]
+
+
+def test_the_worst_wrong_bearing_sets_the_floor_and_the_safety_factor_follows():
+    proposal = propose([*PLACES, pair(2.5, 24, error_deg=35.0), pair(2.5, 60, error_deg=19.0)])
+    assert proposal == {"s_via_min": 24, "s_edge_min": 32, "s_node_max": 90, "s_via_max": 120}
+
+
+def test_without_wrong_bearings_a_least_number_of_matches_is_asked_for():
+    assert propose(PLACES)["s_via_min"] == 15
+
+
+def test_too_few_pairs_are_named():
+    with pytest.raises(ValueError, match="measure more pairs"):
+        propose([pair(2.0, 30)])
