@@ -1,7 +1,8 @@
 """From measured pairs to thresholds of similarity. Pure.
 
-The thesis found 80 and 110 of 150 for its own pipeline by trial. Here the same questions are asked of measured
-pairs: below which S can a bearing not be trusted, and how similar are frames as far apart as places should be?
+The thesis found 80 and 110 of 150 for its own pipeline by trial. Here the same questions are asked of
+measured pairs: below which S can a bearing not be trusted, and how similar are frames as far apart as
+places should be?
 """
 
 import math

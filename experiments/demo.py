@@ -4,7 +4,7 @@ import os
 import signal
 import socket
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -28,6 +28,7 @@ from experiments.stack import Stack, StackChoice, open_stack
 from experiments.tables import print_rows, wide_console
 from experiments.truth_file import save_truth, truth_path
 from services.launcher.stack_settings import HOST, Ports
+from shared.bus import open_bus
 from shared.messages import MissionStatus
 from simulator.freespace import FreeSpace, free_space
 from simulator.world_file import WorldFile, load_world
@@ -72,9 +73,9 @@ def main(
         explored = _explore(console, stack, scene, choice.data_dir)
         found = _seek(console, stack, scene, explored)
         report = _report(scene, explored, found)
+        console.print(f"report: {report}", highlight=False, soft_wrap=True)
         if keep:
             _wait(console, f"everything stays up on {stack.gateway_url}; stop it with Ctrl+C")
-    console.print(f"report: {report}", highlight=False, soft_wrap=True)
     if not found.success:
         raise ExperimentError(f"the hidden robot was not found: {found.run.status.reason}")
 
@@ -94,14 +95,15 @@ def _explore(console: Console, stack: Stack, scene: Scene, data_dir: Path) -> Ex
 
 
 def _seek(console: Console, stack: Stack, scene: Scene, explored: Exploration) -> Round:
-    game = Game(stack, scene.space, MAP, np.random.default_rng(scene.seed))
-    start, hider = game.choose()
-    picture = game.hide(hider)
-    moved = game.hand.moves
-    with mission_progress(console, "seeking") as watch:
-        run = game.client.follow(_upload(stack, png_bytes(picture)), watch)
-    found = game.finish(start, hider, picture, run, game.hand.moves - moved)
-    draw_round(scene.folder, scene.world, found, explored.truth.poses, explored.graph.edges, game.hand)
+    with open_bus(stack.endpoint) as bus:
+        game = Game(replace(stack, bus=bus), scene.space, MAP, np.random.default_rng(scene.seed))
+        start, hider = game.choose()
+        picture = game.hide(hider)
+        moved = game.hand.moves
+        with mission_progress(console, "seeking") as watch:
+            run = game.client.follow(_upload(stack, png_bytes(picture)), watch)
+        found = game.finish(start, hider, picture, run, game.hand.moves - moved)
+        draw_round(scene.folder, scene.world, found, explored.truth.poses, explored.graph.edges, game.hand)
     return found
 
 

@@ -14,6 +14,7 @@ from experiments.output import rounded
 from experiments.stack import Stack
 from experiments.trail import collisions, driven_m, manual_moves
 from experiments.truth_file import MapTruth, join_truth
+from shared.bus import open_bus
 from shared.messages import MapReply, MissionRequest
 from shared.messages.simulation import Pose
 from simulator.freespace import FreeSpace
@@ -45,14 +46,15 @@ def explore(
     watch: Watch | None = None,
 ) -> Exploration:
     """Reset the simulator, explore, and join the map's nodes to their true poses."""
-    client, hand = MissionClient(stack.bus, stack.robot), Hand(stack.bus, stack.robot)
-    client.wait_for_frame(hand.reset(seed).stamp_ns)
-    moved = hand.moves
-    request = MissionRequest(action="explore", map=map_name, seed=seed, max_steps=max_steps)
-    run = client.run(request, watch)
-    hand_moves = hand.moves - moved
-    final = hand.settled_truth(run.last_seq).pose
-    client.collect()
+    with open_bus(stack.endpoint) as bus:
+        client, hand = MissionClient(bus, stack.robot), Hand(bus, stack.robot)
+        client.wait_for_frame(hand.reset(seed).stamp_ns)
+        moved = hand.moves
+        request = MissionRequest(action="explore", map=map_name, seed=seed, max_steps=max_steps)
+        run = client.run(request, watch)
+        hand_moves = hand.moves - moved
+        final = hand.settled_truth(run.last_seq).pose
+        client.collect()
     graph = require_map(stack, map_name)
     truth = join_truth(world, graph.nodes, client.trail, before)
     return Exploration(run, graph, truth, final, hand_moves)

@@ -16,16 +16,22 @@ from services.features.pipeline import Pipeline
 from services.features.verification import feature_set
 from shared.messages.sensors import Frame
 from shared.messages.simulation import Pose
-from simulator.settings import SimulationSettings
+from simulator.settings import CameraSettings, SimulationSettings
 from simulator.world_file import WorldFile
 
 FeaturePair = tuple[FeatureSet, FeatureSet]
+WIDTH_PX = 1024
 ARRAYS = ("lonlat_rad", "scores", "descriptors")
+
+
+def camera_settings() -> SimulationSettings:
+    """The camera of the running stack: docker-compose.yml sets the same width."""
+    return SimulationSettings(camera=CameraSettings(width_px=WIDTH_PX))
 
 
 def cache_folder(root: Path, world: WorldFile, pipeline: Pipeline, seed: int) -> Path:
     """Folder of one kind of pairs: another world, camera, pipeline or seed is another folder."""
-    settings = SimulationSettings()
+    settings = camera_settings()
     text = f"{world.model_dump_json()}|{settings.camera.model_dump_json()}|{asdict(pipeline.profile)}|{seed}"
     return root / f"pairs-{world.name}-{pipeline.identity}-{hashlib.sha256(text.encode()).hexdigest()[:12]}"
 
@@ -55,7 +61,7 @@ def _eye(world: WorldFile, pipeline: Pipeline) -> Callable[[Pose], FeatureSet]:
     # SAPIEN is loaded only where a picture is missing.
     from simulator.simulation import Simulation
 
-    simulation = Simulation(world, SimulationSettings())
+    simulation = Simulation(world, camera_settings())
 
     def look(pose: Pose) -> FeatureSet:
         picture = simulation.panorama_at(pose.x_m, pose.y_m, pose.yaw_rad)
