@@ -4,7 +4,7 @@ import os
 import signal
 import socket
 import threading
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -28,7 +28,6 @@ from experiments.stack import Stack, StackChoice, open_stack
 from experiments.tables import print_rows, wide_console
 from experiments.truth_file import save_truth, truth_path
 from services.launcher.stack_settings import HOST, Ports
-from shared.bus import open_bus
 from shared.messages import MissionStatus
 from simulator.freespace import FreeSpace, free_space
 from simulator.world_file import WorldFile, load_world
@@ -95,8 +94,8 @@ def _explore(console: Console, stack: Stack, scene: Scene, data_dir: Path) -> Ex
 
 
 def _seek(console: Console, stack: Stack, scene: Scene, explored: Exploration) -> Round:
-    with open_bus(stack.endpoint) as bus:
-        game = Game(replace(stack, bus=bus), scene.space, MAP, np.random.default_rng(scene.seed))
+    with stack.session() as own:
+        game = Game(own, scene.space, MAP, np.random.default_rng(scene.seed))
         start, hider = game.choose()
         picture = game.hide(hider)
         moved = game.hand.moves

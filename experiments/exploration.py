@@ -14,7 +14,6 @@ from experiments.output import rounded
 from experiments.stack import Stack
 from experiments.trail import collisions, driven_m, manual_moves
 from experiments.truth_file import MapTruth, join_truth
-from shared.bus import open_bus
 from shared.messages import MapReply, MissionRequest
 from shared.messages.simulation import Pose
 from simulator.freespace import FreeSpace
@@ -46,8 +45,8 @@ def explore(
     watch: Watch | None = None,
 ) -> Exploration:
     """Reset the simulator, explore, and join the map's nodes to their true poses."""
-    with open_bus(stack.endpoint) as bus:
-        client, hand = MissionClient(bus, stack.robot), Hand(bus, stack.robot)
+    with stack.session() as own:
+        client, hand = MissionClient(own.bus, own.robot), Hand(own.bus, own.robot)
         client.wait_for_frame(hand.reset(seed).stamp_ns)
         moved = hand.moves
         request = MissionRequest(action="explore", map=map_name, seed=seed, max_steps=max_steps)

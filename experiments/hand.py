@@ -8,9 +8,11 @@ from shared.bus import Bus
 from shared.messages import SimulationReply, SimulationRequest, Truth
 from shared.messages.sensors import Frame
 from shared.messages.simulation import Pose
+from shared.queries import AbsentError
 from shared.topics import SIMULATION
 
 TIMEOUT_S = 30.0
+ABSENT_S = 20.0
 STILL_M = 0.001
 STILL_POLLS = 2
 POLL_S = 0.1
@@ -62,7 +64,15 @@ class Hand:
         return last
 
     def _ask(self, request: SimulationRequest) -> SimulationReply:
-        return self._bus.ask(SIMULATION, request, TIMEOUT_S, robot=self._robot)
+        """Ask; a simulator that restarts, or that this session has not met yet, is waited for."""
+        deadline_s = time.monotonic() + ABSENT_S
+        while True:
+            try:
+                return self._bus.ask(SIMULATION, request, TIMEOUT_S, robot=self._robot)
+            except AbsentError:
+                if time.monotonic() > deadline_s:
+                    raise
+            time.sleep(POLL_S)
 
 
 def _picture(reply: SimulationReply, action: str) -> Frame:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from experiments.failure import ExperimentError
@@ -47,6 +47,13 @@ class Stack:
     gateway_url: str | None
     launcher: Launcher | None
     robot: str = ROBOT
+
+    @contextmanager
+    def session(self) -> Iterator["Stack"]:
+        """The same stack over a bus session of its own, which ends with everything it listens to."""
+        with open_bus(self.endpoint) as bus:
+            _require_services(bus, self.endpoint)
+            yield replace(self, bus=bus)
 
 
 @contextmanager
