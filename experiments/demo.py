@@ -36,7 +36,6 @@ app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
 MAP = "demo"
 UPLOAD_TIMEOUT_S = 60.0
-EXPLORE_STEPS = 5000
 SEEK_STEPS = 1500
 MAP_SHOWN = ("nodes", "edges", "coverage", "components", "false_edges", "collisions", "steps", "wall_s")
 GOTO_SHOWN = ("success", "final_distance_m", "spl", "shortest_m", "driven_m", "collisions", "steps", "wall_s")
@@ -56,6 +55,7 @@ class Scene:
 def main(
     world: options.World = "apartment",
     seed: options.Seed = 1,
+    explore_steps: Annotated[int, typer.Option(min=1, help="Go seeking after so many at the latest.")] = 5000,
     runs: Annotated[Path, typer.Option(help="The report goes to a new folder in here.")] = options.RUNS_DIR,
     keep: Annotated[
         bool, typer.Option(envvar="KEEP", help="Leave everything and the web page up until Ctrl+C.")
@@ -69,7 +69,7 @@ def main(
     console.print(f"starting all services, logs in {choice.data_dir / 'launcher' / 'logs'}", highlight=False)
     with one_line_errors(), open_stack(choice) as stack:
         console.print(f"all up; watch the robot on {stack.gateway_url}", highlight=False)
-        explored = _explore(console, stack, scene, choice.data_dir)
+        explored = _explore(console, stack, scene, choice.data_dir, explore_steps)
         found = _seek(console, stack, scene, explored)
         report = _report(scene, explored, found)
         console.print(f"report: {report}", highlight=False, soft_wrap=True)
@@ -79,16 +79,16 @@ def main(
         raise ExperimentError(f"the hidden robot was not found: {found.run.status.reason}")
 
 
-def _explore(console: Console, stack: Stack, scene: Scene, data_dir: Path) -> Exploration:
+def _explore(console: Console, stack: Stack, scene: Scene, data_dir: Path, max_steps: int) -> Exploration:
     with mission_progress(console, "exploring") as watch:
-        explored = explore(stack, scene.world.name, MAP, scene.seed, EXPLORE_STEPS, watch=watch)
+        explored = explore(stack, scene.world.name, MAP, scene.seed, max_steps, watch=watch)
     save_truth(truth_path(data_dir, MAP), MAP, explored.truth)
     draw_map(scene.folder / "map.png", scene.world, explored.truth.poses, explored.graph.edges)
     status = explored.run.status
     console.print(
         f"explored in {status.step} steps: {status.nodes} places, {status.edges} edges", highlight=False
     )
-    if not explored.run.succeeded:
+    if not explored.run.succeeded and status.failure != "timeout":
         raise ExperimentError(f"exploration ended as {status.state}: {status.reason}")
     return explored
 
@@ -102,7 +102,7 @@ def _seek(console: Console, stack: Stack, scene: Scene, explored: Exploration) -
         with mission_progress(console, "seeking") as watch:
             run = game.client.follow(_upload(stack, png_bytes(picture)), watch)
         found = game.finish(start, hider, picture, run, game.hand.moves - moved)
-        draw_round(scene.folder, scene.world, found, explored.truth.poses, explored.graph.edges, game.hand)
+        draw_round(scene.folder, scene.world, found, explored.truth.poses, explored.graph.edges, game)
     return found
 
 

@@ -3,10 +3,9 @@
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from experiments.hand import Hand
 from experiments.plots.pictures import save_picture
 from experiments.plots.plans import Way, draw_way
-from experiments.rounds import Round
+from experiments.rounds import Game, Round
 from shared.messages.maps import Edge
 from shared.messages.simulation import Pose
 from simulator.world_file import WorldFile
@@ -24,11 +23,11 @@ def draw_round(
     played: Round,
     poses: Mapping[int, Pose],
     edges: Iterable[Edge],
-    hand: Hand,
+    game: Game,
 ) -> None:
     """Write path.png, goal.png, seeker_final.png and hider_final.png into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     draw_way(folder / "path.png", world, poses, edges, way_of(played))
     save_picture(folder / "goal.png", played.goal)
-    save_picture(folder / "seeker_final.png", hand.look(played.final))
-    save_picture(folder / "hider_final.png", hand.look(played.hider))
+    save_picture(folder / "seeker_final.png", game.view())
+    save_picture(folder / "hider_final.png", game.hand.look(played.hider))

@@ -84,7 +84,7 @@ def play_rounds(
             played = game.play(seed + number, max_steps, watch)
         console.print(_line(number, played), highlight=False)
         if folder is not None:
-            draw_round(folder / f"round-{number:02d}", scene.world, played, poses, graph.edges, game.hand)
+            draw_round(folder / f"round-{number:02d}", scene.world, played, poses, graph.edges, game)
         yield played
 
 

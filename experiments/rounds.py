@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from experiments.failure import ExperimentError
 from experiments.hand import Hand
 from experiments.measures.spl import spl
 from experiments.mission import MissionClient, MissionRun, Watch
@@ -14,7 +15,7 @@ from experiments.trail import collisions, driven_m, manual_moves
 from shared.messages import ExtractRequest, MissionRequest
 from shared.messages.sensors import Frame
 from shared.messages.simulation import Pose, Truth
-from shared.topics import EXTRACT
+from shared.topics import EXTRACT, FRAME
 from simulator.freespace import FreeSpace
 
 ARRIVED_M = 0.5
@@ -22,6 +23,7 @@ MIN_APART_M = 1.5
 MARGIN_M = 0.05
 MAX_DRAWS = 1000
 EXTRACT_TIMEOUT_S = 30.0
+FRAME_TIMEOUT_S = 10.0
 
 
 @dataclass(frozen=True)
@@ -130,6 +132,14 @@ class Game:
         request = MissionRequest(action="goto", map=self._map, goal=goal, seed=seed, max_steps=max_steps)
         run = self.client.run(request, watch)
         return self.finish(start, hider, picture, run, self.hand.moves - moved)
+
+    def view(self) -> Frame:
+        """What the seeker sees now."""
+        with self._stack.session() as own:
+            frame = own.bus.subscribe(FRAME, robot=own.robot).wait(FRAME_TIMEOUT_S)
+        if frame is None:
+            raise ExperimentError(f"no frame of {self._stack.robot} within {FRAME_TIMEOUT_S:.0f} s")
+        return frame
 
     def finish(self, start: Pose, hider: Pose, goal: Frame, run: MissionRun, hand_moves: int) -> Round:
         """Read where the seeker stands now."""
