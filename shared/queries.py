@@ -2,6 +2,7 @@
 
 import logging
 import threading
+import time
 from collections import deque
 from typing import Generic, TypeVar
 
@@ -17,6 +18,8 @@ R = TypeVar("R", bound=Message)
 log = logging.getLogger(__name__)
 
 MAX_WAITING = 256
+MEETING_S = 1.5
+MEETING_PERIOD_S = 0.1
 
 
 class QueryError(RuntimeError):
@@ -97,18 +100,29 @@ class Requests(Generic[Q, R]):
 def ask(session: zenoh.Session, query: Query[Q, R], key: str, request: Q, timeout_s: float) -> R:
     """Ask and wait for the first answer.
 
+    Two peers that were just started may not have met yet: an absent service is asked again for a while.
+
     Raises:
         AbsentError, TimedOutError, RefusedError: see their docstrings.
         WireError: the answer is not the expected message.
     """
-    for answer in session.get(key, payload=encode(request), timeout=timeout_s):
-        if answer.ok is not None:
-            return decode(query.reply, answer.ok.payload.to_bytes(), query.max_bytes)
-        text = answer.err.payload.to_bytes().decode(errors="replace") if answer.err is not None else ""
-        if text == "Timeout":
-            raise TimedOutError(f"{key}: no answer within {timeout_s} s")
-        raise RefusedError(text)
-    raise AbsentError(f"{key}: nobody answers; is the service up?")
+    payload = encode(request)
+    patient_until_s = time.monotonic() + min(timeout_s, MEETING_S)
+    while True:
+        for answer in session.get(key, payload=payload, timeout=timeout_s):
+            return _read(query, key, answer, timeout_s)
+        if time.monotonic() > patient_until_s:
+            raise AbsentError(f"{key}: nobody answers; is the service up?")
+        time.sleep(MEETING_PERIOD_S)
+
+
+def _read(query: Query[Q, R], key: str, answer: zenoh.Reply, timeout_s: float) -> R:
+    if answer.ok is not None:
+        return decode(query.reply, answer.ok.payload.to_bytes(), query.max_bytes)
+    text = answer.err.payload.to_bytes().decode(errors="replace") if answer.err is not None else ""
+    if text == "Timeout":
+        raise TimedOutError(f"{key}: no answer within {timeout_s} s")
+    raise RefusedError(text)
 
 
 def _variable(template: str, key: str) -> str:

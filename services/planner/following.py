@@ -70,7 +70,7 @@ class PathFollower:
         self._bad = 0
         self._heading_rad, method = found
         if self._no_progress(match):
-            if self._at_end() and self._best_rad < self._profile.near_rad:
+            if self._near_end(match):
                 return "arrived", self._hold(f"as near to {_name(via)} as obstacles allow, S {s_cv}", notes)
             return "stuck", self._hold(f"no progress towards {_name(via)}", notes)
         why = f"to {_name(via)}, S {s_cv}"
@@ -171,8 +171,11 @@ class PathFollower:
             self._best_rad, self._stale = disparity, 0
         else:
             self._stale += 1
-        near_end = self._at_end() and self._best_rad < self._profile.near_rad
-        return self._stale > (NEAREST_STEPS if near_end else STUCK_STEPS)
+        return self._stale > (NEAREST_STEPS if self._near_end(match) else STUCK_STEPS)
+
+    def _near_end(self, match: NodeMatch) -> bool:
+        near = match.disparity_rad is not None and match.disparity_rad < self._profile.near_rad
+        return self._at_end() and near and self._target.arrival_rad > 0.0
 
     def _report(self, via: int, s_cv: int, match: NodeMatch | None) -> None:
         disparity = match.disparity_rad if match is not None else None

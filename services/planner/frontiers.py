@@ -8,8 +8,9 @@ from shared.messages.maps import Node
 
 SECTOR_RAD = math.tau / SECTORS
 EXPLORED_HALF_RAD = math.radians(28.0)
-EXPLORED_DISPARITY_RAD = math.radians(13.0)
-"""An edge to a place farther than this leaves the ground in between unexplored."""
+NEAR_HALF_RAD = math.radians(36.0)
+NEARER = 1.5
+"""A place this much more similar is so near that it covers the directions beside it, too."""
 
 
 def sector_rad(sector: int) -> float:
@@ -17,15 +18,22 @@ def sector_rad(sector: int) -> float:
     return math.remainder(sector * SECTOR_RAD, math.tau)
 
 
-def with_explored(node: Node, graph: MapGraph) -> Node:
-    """The node with the sectors that edges to near places cover marked explored."""
+def with_explored(node: Node, graph: MapGraph, s_explored: int) -> Node:
+    """The node with the sectors explored that edges to near places cover.
+
+    Args:
+        node: the place.
+        graph: the map around it.
+        s_explored: similarity an edge needs; to a less similar place there is unexplored ground in between.
+    """
     explored = list(node.explored)
     for neighbour in graph.neighbours(node.node_id):
         edge, heading = graph.edge(node.node_id, neighbour), graph.heading(node.node_id, neighbour)
-        if edge is None or heading is None or (edge.disparity_rad or math.inf) > EXPLORED_DISPARITY_RAD:
+        if edge is None or heading is None or edge.inliers < s_explored:
             continue
+        half_rad = NEAR_HALF_RAD if edge.inliers > NEARER * s_explored else EXPLORED_HALF_RAD
         for sector in range(SECTORS):
-            if abs(math.remainder(sector_rad(sector) - heading, math.tau)) < EXPLORED_HALF_RAD:
+            if abs(math.remainder(sector_rad(sector) - heading, math.tau)) < half_rad:
                 explored[sector] = True
     return node.model_copy(update={"explored": tuple(explored)})
 

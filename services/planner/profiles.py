@@ -17,6 +17,7 @@ class Profile(BaseModel):
     Attributes:
         similarity: S counts verified matches (inliers) or raw ones (thesis).
         s_edge_min, s_node_max: map thresholds of equations 4.1 and 4.2.
+        s_explored: an edge this similar leaves nothing unexplored in its direction.
         s_via_min, s_via_max: thresholds of equation 4.3; s_final ends a mission by count alone.
         s_slow, s_max: of the velocity law, equation 6.5.
         heading_method: a name of `services.planner.heading`.
@@ -34,6 +35,7 @@ class Profile(BaseModel):
     similarity: Literal["verified", "raw"] = "verified"
     s_edge_min: PositiveInt = 30
     s_node_max: PositiveInt = 90
+    s_explored: PositiveInt = 45
     s_via_min: PositiveInt = 22
     s_via_max: PositiveInt = 100
     s_final: PositiveInt = 1_000_000
@@ -51,9 +53,10 @@ class Profile(BaseModel):
     saturation_steps: PositiveInt = 5
     exploration_noise_rad: float = math.radians(50.0)
     admissible_noise_rad: float = math.radians(90.0)
-    opening_m: PositiveFloat = 0.6
-    blocked_m: PositiveFloat = 0.12
+    opening_m: PositiveFloat = 0.55
+    blocked_m: PositiveFloat = 0.25
     robot_radius_m: PositiveFloat = 0.3
+    robot_slim_m: PositiveFloat = 0.27
     disparity_rad_per_m: PositiveFloat = math.radians(9.0)
 
 
@@ -64,6 +67,7 @@ THESIS = Profile(
     similarity="raw",
     s_edge_min=40,
     s_node_max=90,
+    s_explored=60,
     s_via_min=30,
     s_via_max=85,
     s_final=105,

@@ -12,13 +12,13 @@ from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
 
 SECTOR_RAD = math.tau / SECTORS
-WITHIN_SECTOR_RAD = np.deg2rad([0.0, -12.0, 12.0])
+WITHIN_SECTOR_RAD = np.deg2rad(np.arange(-15.0, 16.0, 5.0))
 
 
 def free_way_m(ranges: Ranges, heading_rad: float, profile: Profile) -> float:
     """How far the robot can go in about a direction: the best heading within a sector."""
     obstacles = Obstacles.from_ranges(ranges.angles_rad, ranges.distances_m, ranges.max_range_m)
-    return float(obstacles.clearance_m(heading_rad + WITHIN_SECTOR_RAD, profile.robot_radius_m).max())
+    return float(obstacles.clearance_m(heading_rad + WITHIN_SECTOR_RAD, profile.robot_slim_m).max())
 
 
 def openings(ranges: Ranges, profile: Profile) -> tuple[bool, ...]:
