@@ -17,6 +17,8 @@ from shared.geometry.clearance import Obstacles
 
 STEP_RAD = math.radians(10.0)
 BACKTRACK_RAD = math.radians(100.0)
+JUMP_RAD = math.radians(60.0)
+"""A wish that changes this much between two steps is another errand."""
 FULL_TURN_RAD = 2.0 * math.pi
 
 
@@ -42,6 +44,7 @@ class Passing:
         side: +1 passes obstacles with turns to the left, -1 to the right, 0 undecided.
         deflection_rad: turning away from the wished heading so far, towards `side`, never negative.
         steps: steps on this border; idle_steps: steps since it was left.
+        wished_rad: the wish of the previous step.
         turns_back: times the side was changed on this border; each doubles the patience.
     """
 
@@ -50,6 +53,17 @@ class Passing:
     steps: int = 0
     idle_steps: int = 0
     turns_back: int = 0
+    wished_rad: float | None = None
+
+    def towards(self, wished_rad: float) -> "Passing":
+        """The memory for a new wish: the border is kept while the wish drifts, forgotten when it jumps."""
+        if self.wished_rad is None:
+            return replace(self, wished_rad=wished_rad)
+        change_rad = _wrap(wished_rad - self.wished_rad)
+        if abs(change_rad) > JUMP_RAD:
+            return Passing(wished_rad=wished_rad)
+        turned_rad = max(0.0, self.deflection_rad - self.side * change_rad) if self.deflection_rad else 0.0
+        return replace(self, deflection_rad=turned_rad, wished_rad=wished_rad)
 
 
 def steer_past(
@@ -64,17 +78,18 @@ def steer_past(
         speed_fraction: the planner's limit; a slow robot near its goal looks less far ahead.
         limits: sizes and patience.
     """
+    memory = memory.towards(wished_rad)
     span_m = limits.lookahead_m - limits.lookahead_min_m
     lookahead_m = limits.lookahead_min_m + span_m * speed_fraction
     radius_m = limits.radius_slow_m + (limits.radius_m - limits.radius_slow_m) * speed_fraction
     if memory.steps > limits.patience_steps * limits.patience_growth**memory.turns_back:
-        memory = Passing(side=-memory.side, turns_back=memory.turns_back + 1)
+        memory = Passing(side=-memory.side, turns_back=memory.turns_back + 1, wished_rad=wished_rad)
     if memory.deflection_rad == 0.0:
         clearance_m = float(obstacles.clearance_m(np.array([wished_rad]), radius_m)[0])
         if clearance_m >= lookahead_m:
             idle = memory.idle_steps + 1
             kept = replace(memory, steps=max(0, memory.steps - 1), idle_steps=idle)
-            kept = kept if idle < limits.memory_steps else Passing()
+            kept = kept if idle < limits.memory_steps else Passing(wished_rad=wished_rad)
             return Steering(wished_rad, False, "free", clearance_m), kept
     side = memory.side or _easier_side(wished_rad, obstacles, lookahead_m, radius_m)
     first_rad = max(0.0, memory.deflection_rad - BACKTRACK_RAD)
