@@ -53,10 +53,12 @@ def drive_and_kill(real_time, service):
 
 
 @pytest.mark.parametrize("service", STOPS_THE_WHEELS)
-def test_the_wheels_stop_the_service_returns_and_the_mission_completes(real_time, service):
+def test_the_wheels_stop_the_service_returns_and_the_mission_completes(real_time, service, record_property):
     played, watch, killed = drive_and_kill(real_time, service)
     still_s = watch.still_after_s(killed["at_s"])
     back_s = watch.back_after_s(service, killed["at_s"])
+    for name, value in (("still_s", still_s), ("back_s", back_s), ("healthy_s", killed["healthy_after_s"])):
+        record_property(name, value)
     assert still_s is not None
     assert min(still_s, back_s or still_s) <= STOP_S + SAMPLE_S, f"still {still_s}, back {back_s}"
     assert killed["healthy_after_s"] <= BACK_S
@@ -64,8 +66,9 @@ def test_the_wheels_stop_the_service_returns_and_the_mission_completes(real_time
 
 
 @pytest.mark.parametrize("service", OTHERS)
-def test_the_service_returns_and_the_mission_completes(real_time, service):
+def test_the_service_returns_and_the_mission_completes(real_time, service, record_property):
     played, _, killed = drive_and_kill(real_time, service)
+    record_property("healthy_s", killed["healthy_after_s"])
     assert killed["healthy_after_s"] <= BACK_S
     assert played.success, played.run.status.reason
     assert played.figures()["collisions"] == 0
