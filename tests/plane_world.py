@@ -1,4 +1,4 @@
-"""A flat stand-in for pictures: the apartment's true floor plan, where similarity and headings follow distance.
+"""A flat stand-in for pictures: the true floor plan, where similarity and headings follow distance.
 
 Missions and the drive core run here thousands of steps a second. The figures of similarity and disparity
 against distance are those measured on rendered frames; headings carry noise and rare outliers.

@@ -62,7 +62,8 @@ class Obstacles:
         lateral_m = np.abs(ahead[:, :1] * self.points_m[:, 1] - ahead[:, 1:] * self.points_m[:, 0])
         touches = (forward_m > 0.0) & (lateral_m < radius_m)
         chord_m = np.sqrt(np.clip(radius_m**2 - lateral_m**2, 0.0, None))
-        return np.where(touches, np.maximum(forward_m - chord_m, 0.0), np.inf).min(axis=1)
+        free_m: FloatArray = np.where(touches, np.maximum(forward_m - chord_m, 0.0), np.inf).min(axis=1)
+        return free_m
 
     def nearest(self) -> tuple[float, float]:
         """Distance (m) and bearing (rad) of the nearest point; infinity and 0 when nothing is seen."""

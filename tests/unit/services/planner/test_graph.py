@@ -17,7 +17,8 @@ def graph(edges, count=8):
 
 def brute_force(edges, source, target, count):
     for length in range(1, count + 1):
-        for middle in itertools.permutations([n for n in range(count) if n not in (source, target)], length - 1):
+        between = [n for n in range(count) if n not in (source, target)]
+        for middle in itertools.permutations(between, length - 1):
             walk = (source, *middle, target)
             if all(frozenset(step) in edges for step in itertools.pairwise(walk)):
                 return length + 1

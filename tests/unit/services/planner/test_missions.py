@@ -1,4 +1,4 @@
-"""Missions on the true floor plan: the map grows until nothing is open, goals are reached, refusals are typed."""
+"""Missions on the true floor plan: maps grow until nothing is open, goals are reached, refusals are typed."""
 
 import math
 
