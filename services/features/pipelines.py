@@ -11,10 +11,10 @@ class Profile:
         extractor: plugin of `extractors`.
         representation: plugin of `representations`.
         matcher: plugin of `matchers`.
-        keypoints: most keypoints kept per frame, which is S_max (THESIS row 11).
+        keypoints: most keypoints kept per frame, which is S_max (thesis: 150).
         ratio: largest distance of the best candidate relative to the second best.
-        crop_deg: angle cut away above and below (THESIS row 4), degrees.
-        resize: rows and columns the whole picture is resized to (THESIS row 2); None = as it comes.
+        crop_deg: angle cut away above and below (thesis, section 6.1.1: 25), degrees.
+        resize: rows and columns the whole picture is resized to (thesis: 400, 800); None = as it comes.
         upright: describe keypoints without turning them; the robot's camera always stands upright.
         verification_deg: largest angle off the epipolar plane of a verified match, degrees.
     """

@@ -1,4 +1,4 @@
-"""Tangent images on a subdivided icosahedron (Eder et al. 2020; THESIS row 6).
+"""Tangent images on a subdivided icosahedron (Eder et al. 2020; thesis 2.2.1.2).
 
 Subdivision s gives 20 * 4^s faces and pictures of 2^(b - s) pixels for base level b: 80 of 256 x 256 for (9,
 1). Two vertices stand at the poles, so no face centre does, and every picture can have north upwards.

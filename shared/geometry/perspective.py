@@ -1,4 +1,4 @@
-"""Perspective (gnomonic) views cut out of the sphere: tangent images, the 90-degree view of THESIS 41.
+"""Perspective (gnomonic) views cut out of the sphere: tangent images, the 90-degree view of thesis 3.1.
 
 The view has its own frame: x into the picture, y left, z up. With f = (W / 2) / tan(fov / 2) pixels,
 pixel (u, v) lies at (1, (W/2 - u) / f, (H/2 - v) / f); u grows to the right, so a view at longitude 0,

@@ -1,4 +1,4 @@
-"""Planar two-view RANSAC: the search for the best (phi, phi') (THESIS 1c; equations in planar_model).
+"""Planar two-view RANSAC: the search for the best (phi, phi') (equations in planar_model).
 
 Draw pairs of matches, solve each, score all lines of travel on all matches at once with the truncated squared
 distance, tell the signs of the best apart by cheirality, and refine the best few together.

@@ -1,4 +1,4 @@
-"""Fixed points seen from a moving upright camera, for synthetic scenes and path tracking (THESIS row 35).
+"""Fixed points seen from a moving upright camera, for synthetic scenes and path tracking (thesis 3.2.2).
 
 No dynamics: the camera steps along its heading by speed times time, and the points are projected anew.
 """

@@ -69,7 +69,7 @@ class EquirectGrid:
 
     @classmethod
     def cropped(cls, width: int, full_height: int, crop_deg: float) -> "EquirectGrid":
-        """Grid with `crop_deg` degrees cut away at the top and again at the bottom (THESIS 6.1.1: 25).
+        """Grid with `crop_deg` degrees cut away at the top and again at the bottom (thesis: 25).
 
         The rows are rounded to whole ones: 142 of 1024, 56 of 400 for 25 degrees.
         """

@@ -1,4 +1,4 @@
-"""BEBLID (Suarez et al. 2020): boosted binary descriptor, 64 bytes (THESIS row 9), on ORB's corners."""
+"""BEBLID (Suarez et al. 2020): boosted binary descriptor, 64 bytes (thesis, appendix A), on ORB's corners."""
 
 from typing import Any
 

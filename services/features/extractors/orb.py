@@ -1,4 +1,4 @@
-"""ORB (Rublee et al. 2011): oriented FAST corners, 256 comparisons as 32 bytes (THESIS row 9)."""
+"""ORB (Rublee et al. 2011): oriented FAST corners, 256 comparisons as 32 bytes (thesis, appendix A)."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Every descriptor with its nearest in the other frame, nothing refused: the baseline of THESIS row 10."""
+"""Every descriptor with its nearest in the other frame, nothing refused: the thesis's baseline."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""The picture as it is, edges and all: what a pipeline for flat pictures would see (THESIS 1b, Q22)."""
+"""The picture as it is, edges and all: what a pipeline for flat pictures would see."""
 
 import numpy as np
 

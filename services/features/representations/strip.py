@@ -12,8 +12,8 @@ def cropped_strip(gray: Image, crop_deg: float, resize: tuple[int, int] | None) 
 
     Args:
         gray: (H, 2H) whole panorama.
-        crop_deg: angle cut away on either side, degrees (THESIS row 4).
-        resize: rows and columns of the whole panorama afterwards (THESIS row 2), None to keep its size.
+        crop_deg: angle cut away on either side, degrees (thesis, section 6.1.1).
+        resize: rows and columns of the whole panorama afterwards (thesis, appendix A), None to keep its size.
 
     Returns:
         The strip and its pixel grid, which gives the true latitudes back.

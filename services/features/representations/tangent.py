@@ -1,4 +1,4 @@
-"""Eighty flat pictures round the sphere, each with little distortion (Eder et al. 2020; THESIS row 6).
+"""Eighty flat pictures round the sphere, each with little distortion (Eder et al. 2020; thesis 2.2.1.2).
 
 Every picture touches the sphere at the centre of one face of a subdivided icosahedron and is a little larger
 than the face; keypoints are reported only by the face they lie in, hence each once.

@@ -1,4 +1,4 @@
-"""Tangent images: 80 faces of 256 x 256, each direction in exactly one of them (THESIS row 6)."""
+"""Tangent images: 80 faces of 256 x 256, each direction in exactly one of them."""
 
 import numpy as np
 import pytest

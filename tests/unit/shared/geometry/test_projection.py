@@ -1,4 +1,4 @@
-"""Projection of fixed points, steps without dynamics, and a path that follows headings (row 35)."""
+"""Projection of fixed points, steps without dynamics, and a path that follows headings."""
 
 import numpy as np
 import pytest

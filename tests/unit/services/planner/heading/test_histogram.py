@@ -1,4 +1,4 @@
-"""Polar histogram: 18 sectors of 20 degrees, method 4 from nine empty neighbours on (THESIS row 25)."""
+"""Polar histogram: 18 sectors of 20 degrees, method 4 from nine empty neighbours on."""
 
 import numpy as np
 import pytest

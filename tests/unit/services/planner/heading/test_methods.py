@@ -1,4 +1,4 @@
-"""Methods 1 to 6 against values computed by hand (THESIS rows 15 to 23)."""
+"""Methods 1 to 6 against values computed by hand."""
 
 import numpy as np
 import pytest
