@@ -18,7 +18,7 @@ setup: $(STAMP)
 
 $(STAMP): $(INPUTS)
 	@bash deploy/setup/venv.sh "$(PYTHON)" "$(VENV)"
-	@# --no-compile: a run imports a small part of torch, scipy and sympy; compiling all of it doubles the time.
+	@# --no-compile: a run imports a small part of torch and sympy; compiling all of it doubles the time.
 	$(BIN)/python -m pip install --quiet --no-compile --constraint constraints.txt \
 		./deploy/packaging/opencv-shim --editable '.[dev]'
 	$(BIN)/python -m pip check
