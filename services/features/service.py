@@ -67,12 +67,17 @@ class FeatureService:
         features = self._frames.same(key)
         if features is None:
             try:
-                features = self._pipeline.features_of(frame)
+                features = self._extract(frame)
             except BadPictureError as error:
                 self._bus.counters.count("malformed", f"frame {frame.seq}: {error}")
                 return
             self._frames.put(key, features)
         self._outgoing.put(features)
+
+    def _extract(self, frame: Frame) -> Features:
+        start_s = time.perf_counter()
+        features = self._pipeline.features_of(frame)
+        return features.model_copy(update={"extract_ms": (time.perf_counter() - start_s) * 1e3})
 
     def _on_match(self, request: Request[MatchRequest, MatchReply]) -> None:
         try:
@@ -118,7 +123,7 @@ class FeatureService:
 
     def _on_extract(self, request: Request[ExtractRequest, Features]) -> None:
         try:
-            features = self._pipeline.features_of(request.message.frame)
+            features = self._extract(request.message.frame)
         except BadPictureError as error:
             self._bus.counters.count("bad_picture", str(error))
             request.refuse(str(error))

@@ -20,6 +20,7 @@ class Features(Message):
         scores: (N,) detector response, larger is better.
         descriptors: (N, D).
         thumbnail: small JPEG of the frame for people, may be empty.
+        extract_ms: time the feature service took for this picture, decoding and thumbnail included.
     """
 
     SCHEMA: ClassVar[str] = "features.v1"
@@ -31,6 +32,7 @@ class Features(Message):
     scores: Annotated[Array, ArraySpec(("float32",), (None,), MAX_KEYPOINTS)]
     descriptors: Annotated[Array, ArraySpec(("float32", "float16", "uint8"), (None, None), MAX_KEYPOINTS)]
     thumbnail: bytes = Field(default=b"", max_length=200_000)
+    extract_ms: float = Field(default=0.0, ge=0.0)
 
     @model_validator(mode="after")
     def _counts_agree(self) -> "Features":

@@ -58,6 +58,7 @@ def features() -> Features:
         scores=np.array([2.0, 1.0], np.float32),
         descriptors=np.arange(16, dtype=np.float32).reshape(2, 8),
         thumbnail=b"\xff\xd8\xff\xd9",
+        extract_ms=42.5,
     )
 
 

@@ -59,6 +59,7 @@ def test_a_frame_becomes_features_and_the_same_frame_again_the_same_features(bus
     frame = frame_at(0.0, 0.0, seq=4, stamp_ns=77)
     first, again = send_until_features(bus, frame), send_until_features(bus, frame)
     assert (first.seq, first.stamp_ns, first.robot, first.lockstep) == (4, 77, "r1", True)
+    assert first.extract_ms == again.extract_ms > 0.0
     assert len(first.lonlat_rad) > 100
     assert cv2.imdecode(np.frombuffer(first.thumbnail, np.uint8), cv2.IMREAD_COLOR).shape == (160, 320, 3)
     np.testing.assert_array_equal(first.descriptors, again.descriptors)
