@@ -44,6 +44,12 @@ class MissionControl:
         """This planner's lease number."""
         return self._record.epoch
 
+    @property
+    def step_costs_ms(self) -> dict[str, float]:
+        """Time the feature service spent on the questions of the last step, by stage."""
+        matcher = self._matcher
+        return {} if matcher is None else {"match_ms": matcher.match_ms, "verify_ms": matcher.verify_ms}
+
     def claim(self) -> None:
         """Take over from a planner before; goes on with its mission. QueryError while the store is away."""
         request = MissionRecordRequest(action="claim", record=self._record)
@@ -68,8 +74,7 @@ class MissionControl:
         """Decide for one frame of a running mission."""
         assert self._mission is not None
         assert self._matcher is not None
-        self._matcher.frame_seq = observation.features.seq
-        self._matcher.frame_stamp_ns = observation.features.stamp_ns
+        self._matcher.begin(observation.features.seq, observation.features.stamp_ns)
         if self.step_count >= self._record.max_steps:
             why = f"not done within {self._record.max_steps} steps"
             decision = Decision("hold", why=why, outcome="failed", failure="timeout")

@@ -64,12 +64,22 @@ class RemoteMap:
 
 
 class RemoteMatcher:
-    """Asks the feature service about one frame, set before each step."""
+    """Asks the feature service about one frame, set before each step.
+
+    Attributes:
+        match_ms: time the service spent on matching for this frame, all answers together; verify_ms alike.
+    """
 
     def __init__(self, bus: Bus, robot: str, maps: RemoteMap, timeout_s: float) -> None:
         self._bus, self._robot, self._maps, self._timeout_s = bus, robot, maps, timeout_s
         self.frame_seq = 0
         self.frame_stamp_ns = 0
+        self.match_ms = self.verify_ms = 0.0
+
+    def begin(self, frame_seq: int, frame_stamp_ns: int) -> None:
+        """Ask about this frame from now on; what its answers cost is counted from zero."""
+        self.frame_seq, self.frame_stamp_ns = frame_seq, frame_stamp_ns
+        self.match_ms = self.verify_ms = 0.0
 
     def match(
         self, node_ids: Sequence[int], best_k: int = 0, targets: Sequence[Features] = ()
@@ -101,4 +111,6 @@ class RemoteMatcher:
 
     def _ask(self, request: MatchRequest) -> dict[int, NodeMatch]:
         reply = self._bus.ask(MATCH, request, self._timeout_s, robot=self._robot)
+        self.match_ms += reply.match_ms
+        self.verify_ms += reply.verify_ms
         return {match.node_id: match for match in reply.results}

@@ -109,6 +109,7 @@ class Planner:
                 "method": decision.method,
                 "s_cv": decision.s_cv,
                 "via_index": self.control.status().via_index,
+                **self.control.step_costs_ms,
             },
         )
         for note in decision.notes:

@@ -26,6 +26,7 @@ def test_bench_loop_reports_rate_stages_and_machine(repository, tmp_path):
     assert answer.returncode == 0, answer.stderr
     report = json.loads(figures.read_text())
     assert report["steps_per_s"] > 0.0
-    assert {"render", "extract", "plan", "drive"} <= report["stages"].keys()
+    promised = {"render", "transport", "extract", "match", "verify", "plan", "drive"}
+    assert promised <= report["stages"].keys()
     assert all(row["p99_ms"] >= row["p50_ms"] >= 0.0 for row in report["stages"].values())
     assert {"processor", "cpus", "memory_gb"} <= report["machine"].keys()
