@@ -1,13 +1,11 @@
 """What a caller chooses about a stack, and the variables of the Compose file that this becomes."""
 
 import os
-import socket
 from collections.abc import Mapping
-from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 
-HOST = "127.0.0.1"
+from services.launcher.free_ports import HOST, free_ports
 
 
 @dataclass(frozen=True)
@@ -21,12 +19,7 @@ class Ports:
     @classmethod
     def free(cls) -> "Ports":
         """Pick three ports that are free now, for stacks side by side."""
-        with ExitStack() as stack:
-            sockets = [stack.enter_context(socket.socket()) for _ in range(3)]
-            for one in sockets:
-                one.bind((HOST, 0))
-            router, gateway, map_store = (one.getsockname()[1] for one in sockets)
-        return cls(router, gateway, map_store)
+        return cls(*free_ports(3))
 
     @classmethod
     def from_variables(cls, variables: Mapping[str, str]) -> "Ports":
@@ -83,3 +76,6 @@ class StackSettings:
             "TORCH_HOME": base.get("TORCH_HOME") or str(Path("~/.cache/torch").expanduser()),
         }
         return base | {name: value for name, value in chosen.items() if value is not None}
+
+
+__all__ = ["HOST", "Ports", "StackSettings"]

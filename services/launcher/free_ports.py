@@ -1,0 +1,48 @@
+"""Free TCP ports on loopback that nobody gets by chance before the service that is to listen there.
+
+A port asked of the kernel (port 0) lies in its ephemeral range, from which it also serves connections and
+Zenoh peers that are started meanwhile: one of them may take the port while the service still loads.
+"""
+
+import random
+import socket
+from contextlib import ExitStack
+from pathlib import Path
+
+HOST = "127.0.0.1"
+EPHEMERAL_RANGE = Path("/proc/sys/net/ipv4/ip_local_port_range")
+USUAL_EPHEMERAL_FIRST = 32_768
+FIRST = 10_240  # browsers refuse some ports below
+TRIES = 200
+
+
+def free_ports(count: int, ephemeral_range: Path = EPHEMERAL_RANGE) -> list[int]:
+    """Return different ports that are free now, below the kernel's ephemeral range where there is room.
+
+    Args:
+        count: how many.
+        ephemeral_range: file with the first and last port that the kernel gives away by itself.
+    """
+    below = range(FIRST, _ephemeral_first(ephemeral_range))
+    # Stacks of one seed run side by side: drawn from the system's entropy they do not try the same ports.
+    candidates = random.SystemRandom().sample(below, min(TRIES, len(below)))
+    with ExitStack() as held:
+        ports: list[int] = []
+        for candidate in candidates + [0] * count:
+            if len(ports) < count and (port := _bind(held, candidate)) is not None:
+                ports.append(port)
+    return ports
+
+
+def _ephemeral_first(path: Path) -> int:
+    return int(path.read_text(encoding="ascii").split()[0]) if path.exists() else USUAL_EPHEMERAL_FIRST
+
+
+def _bind(held: ExitStack, port: int) -> int | None:
+    """Hold a port until `held` closes; None when it is taken. Port 0 leaves the choice to the kernel."""
+    probe = held.enter_context(socket.socket())
+    try:
+        probe.bind((HOST, port))
+    except OSError:
+        return None
+    return int(probe.getsockname()[1])
