@@ -19,7 +19,7 @@ class PlannerSettings(ServiceSettings):
     model_config = SettingsConfigDict(env_prefix="PLANNER_")
 
     profile: str = "default"
-    heading_ttl_ms: PositiveInt = 400
+    heading_ttl_ms: PositiveInt = 350
     query_timeout_s: PositiveFloat = 5.0
     map_timeout_s: PositiveFloat = 5.0
 
