@@ -22,6 +22,7 @@ class DriveLimits(BaseModel):
     Attributes:
         avoidance: "passing" remembers the side it passes; "momentary" is the thesis's rule.
         obstacle_range_m: distance at which the momentary rule reacts.
+        command_ttl_ms: the robot stops so long after the last command; a new one comes with the distances.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -30,7 +31,7 @@ class DriveLimits(BaseModel):
     wheels: WheelLimits = WheelLimits()
     passing: PassingLimits = PassingLimits()
     obstacle_range_m: PositiveFloat = 0.5
-    command_ttl_ms: PositiveInt = 300
+    command_ttl_ms: PositiveInt = 250
 
 
 def compute_command(

@@ -8,6 +8,7 @@ from services.drive.core import DriveLimits, compute_command
 from services.drive.passing import Passing
 from shared.messages import Heading, Ranges
 
+RANGES_PERIOD_MS = 100
 ANGLES = tuple(i * math.tau / 12 for i in range(12))
 
 
@@ -36,6 +37,11 @@ def test_obstacle_ahead_changes_the_heading_and_slows():
     answer = command(Heading(robot="r1", heading_rad=0.0), ranges(ahead_m=0.45))
     assert answer.avoiding
     assert abs(answer.steer_rad) > math.radians(20.0)
+
+
+def test_commands_outlive_two_readings_and_end_well_within_half_a_second():
+    answer = command(Heading(robot="r1"), ranges())
+    assert 2 * RANGES_PERIOD_MS < answer.ttl_ms <= 250
 
 
 def test_momentary_rule_depends_only_on_its_inputs():
