@@ -5,62 +5,52 @@ It answers each ranges.v1 with one command.v1; in lockstep once the heading.v1 o
 """
 
 import math
+import queue
 import sys
 import time
-import uuid
 
 import msgpack
 import zenoh
 
-BODY_M, AHEAD_M, RADPS, TTL_MS = 0.31, 0.5, 4.0, 300
 
-
-def free(heading_rad, ranges):
-    """Whether a robot of BODY_M radius can go AHEAD_M that way without touching what the sensors saw."""
-    for angle, reach in zip(ranges["angles_rad"], ranges["distances_m"], strict=True):
-        forward, aside = reach * math.cos(angle - heading_rad), reach * math.sin(angle - heading_rad)
-        if 0.0 < forward < AHEAD_M and abs(aside) < BODY_M and reach < ranges["max_range_m"]:
-            return False
-    return True
+def blocked(ranges, way_rad):
+    """Whether something that the sensors saw stands in the next 0.5 m of a lane 0.62 m wide."""
+    readings = zip(ranges["angles_rad"], ranges["distances_m"], strict=True)
+    seen = [(m, angle - way_rad) for angle, m in readings if m < ranges["max_range_m"]]
+    return any(0.0 < m * math.cos(turn) < 0.5 and abs(m * math.sin(turn)) < 0.31 for m, turn in seen)
 
 
 def command(heading, ranges, side):
-    """Command along the free direction nearest to the wished one, and the side it passes on (+1 is left)."""
-    turns = [0.0] + [side * sign * math.radians(d) for sign in (1, -1) for d in range(10, 180, 10)]
-    turn = next((t for t in turns if free(heading["heading_rad"] + t, ranges)), None)
-    go = heading["action"] == "go" and turn is not None
-    steer_rad = math.remainder(heading["heading_rad"] + (turn or 0.0), math.tau)
-    message = {key: heading[key] for key in ("seq", "stamp_ns", "robot", "epoch")}
-    speed = RADPS * heading["speed_fraction"] if go else 0.0
-    message |= {"schema": "command.v1", "steer_rad": steer_rad, "wheel_speed_radps": speed, "ttl_ms": TTL_MS}
-    return message, side if not turn else int(math.copysign(1, turn))
+    """Drive the wished way, else a free one beside it, first on the side (+1 is left) of the last detour."""
+    detours = [0, *(math.radians(s * degrees) for s in (side, -side) for degrees in range(10, 180, 10))]
+    detour = next((d for d in detours if not blocked(ranges, heading["heading_rad"] + d)), None)
+    speed = 4.0 * heading["speed_fraction"] if heading["action"] == "go" and detour is not None else 0.0
+    answer = {key: heading[key] for key in ("seq", "stamp_ns", "robot", "epoch")}
+    answer |= {"schema": "command.v1", "wheel_speed_radps": speed, "ttl_ms": 250}
+    answer["steer_rad"] = math.remainder(heading["heading_rad"] + (detour or 0), math.tau)
+    return answer, math.copysign(1, detour) if detour else side
 
 
 def main(endpoint, robot):
     """Serve until interrupted."""
-    config = zenoh.Config.from_json5(
-        f'{{mode: "peer", connect: {{endpoints: ["{endpoint}"]}}, listen: {{endpoints: ["tcp/127.0.0.1:0"]}},'
-        " scouting: {multicast: {enabled: false}}}"
-    )
+    arrived, newest, side = queue.SimpleQueue(), {}, 1
+    config = zenoh.Config.from_json5(f'{{mode: "client", connect: {{endpoints: ["{endpoint}"]}}}}')
     with zenoh.open(config) as bus:
-        ring = zenoh.handlers.RingChannel
-        inputs = {n: bus.declare_subscriber(f"topnav/{robot}/{n}", ring(1)) for n in ("heading", "ranges")}
-        output, newest, side = bus.declare_publisher(f"topnav/{robot}/command"), {}, 1
-        alive = bus.liveliness().declare_token(f"topnav/alive/drive/{uuid.uuid4().hex}")
+        for name in ("heading", "ranges"):
+            bus.declare_subscriber(f"topnav/{robot}/{name}", arrived.put)
+        commands = bus.declare_publisher(f"topnav/{robot}/command")
+        alive = bus.liveliness().declare_token(f"topnav/alive/drive/{bus.info.zid()}")
         while alive:
-            time.sleep(0.004)
-            for name, subscriber in inputs.items():
-                if (sample := subscriber.try_recv()) is not None:
-                    newest[name] = (msgpack.unpackb(sample.payload.to_bytes()), time.monotonic())
-            if len(newest) < 2:
-                continue
-            (heading, since_s), (ranges, _) = newest["heading"], newest["ranges"]
-            fresh = time.monotonic() - since_s < heading["ttl_ms"] / 1000
-            paired = all(heading[key] == ranges[key] for key in ("seq", "stamp_ns"))
-            if paired if ranges["lockstep"] else fresh:
-                message, side = command(heading, ranges, side)
-                output.put(msgpack.packb(message))
-                del newest["ranges"]
+            message = msgpack.unpackb(arrived.get().payload.to_bytes())
+            newest[message["schema"]] = message | {"came_s": time.monotonic()}
+            if len(newest) == 2:
+                heading, ranges = newest["heading.v1"], newest["ranges.v1"]
+                paired = heading["stamp_ns"] == ranges["stamp_ns"]
+                fresh = time.monotonic() - heading["came_s"] < heading["ttl_ms"] / 1000
+                if paired if ranges["lockstep"] else fresh:
+                    answer, side = command(heading, ranges, side)
+                    commands.put(msgpack.packb(answer))
+                    del newest["ranges.v1"]
 
 
 if __name__ == "__main__":
