@@ -13,10 +13,10 @@ def main() -> None:
     """Run the simulator until a signal; a bad world file ends it with one line."""
     settings = SimulatorSettings.from_environment()
     try:
-        load_world(settings.world)
+        world = load_world(settings.world)
     except WorldFileError as error:
         sys.exit(f"simulator: {error}")
-    run_service("simulator", settings, partial(run, settings))
+    run_service("simulator", settings, partial(run, settings, world))
 
 
 if __name__ == "__main__":

@@ -10,14 +10,13 @@ import numpy.typing as npt
 import sapien
 from sapien import render
 
-from simulator.lighting import bake
-from simulator.mesh_shapes import mesh_of
-from simulator.meshes import Mesh, facing_any, joined
+from simulator.disk_cache import DiskCache
+from simulator.meshes import Mesh
+from simulator.painter import Look, Painter, look_of
 from simulator.panorama import BORDER_PX, CubeToEquirect, Image, face_fov_rad, face_rotations
-from simulator.parts import Material, Part
-from simulator.scene_parts import expand
+from simulator.parts import Light, Material, Part
 from simulator.settings import CameraSettings
-from simulator.textures.catalogue import draw
+from simulator.static_scene import by_material, lit_meshes
 from simulator.world_file import WorldFile
 
 SHADERS = Path(__file__).parent / "shaders" / "baked"
@@ -39,15 +38,31 @@ def flat_pose(x_m: float, y_m: float, yaw_rad: float, z_m: float = 0.0) -> sapie
 
 
 class RenderScene:
-    """The rendered world. Light is computed on construction (a few seconds)."""
+    """The rendered world. Light is computed on construction (a few seconds) unless the cache has it."""
 
-    def __init__(self, world: WorldFile, camera: CameraSettings) -> None:
-        """Build meshes, textures, light and cameras."""
+    def __init__(
+        self,
+        world: WorldFile,
+        contents: tuple[tuple[Part, ...], tuple[Light, ...]],
+        camera: CameraSettings,
+        painter: Painter,
+        cache: DiskCache,
+    ) -> None:
+        """Build meshes, textures, light and cameras.
+
+        Args:
+            world: the world file.
+            contents: its parts and lights, see scene_parts.expand.
+            camera: picture size and place of the camera.
+            painter: draws textures, for this and for every body added later.
+            cache: keeps meshes and their light.
+        """
         set_up_renderer()
         self._settings = camera
+        self._painter = painter
         self._scene = sapien.Scene([render.RenderSystem()])
-        self._materials: dict[Material, render.RenderMaterial] = {}
-        self._add_static(world)
+        self._looks: dict[Look, render.RenderMaterial] = {}
+        self._add_static(world, *contents, cache)
         self._mount, self._cameras = self._add_cameras()
         self._warp = CubeToEquirect(camera.width_px, self._cameras[0].width)
         self._faces = np.empty((6 * self._cameras[0].width, self._cameras[0].width, 4), np.uint8)
@@ -56,7 +71,7 @@ class RenderScene:
         """Add something that moves: parts in the body's frame, lit evenly from above."""
         entity = sapien.Entity()
         body = render.RenderBodyComponent()
-        for material, mesh in _by_material(parts).items():
+        for material, mesh in by_material(parts).items():
             shade = (0.62 + 0.3 * mesh.normals[:, 2:] + 0.08 * mesh.normals[:, :1]) * np.array(
                 [[1.0, 0.98, 0.95]]
             )
@@ -84,31 +99,17 @@ class RenderScene:
             self._faces[k * size : (k + 1) * size] = camera.get_picture("Color")
         return np.asarray(cv2.cvtColor(self._warp(self._faces), cv2.COLOR_RGBA2BGR), np.uint8)
 
-    def _add_static(self, world: WorldFile) -> None:
-        parts, lights = expand(world)
+    def _add_static(
+        self, world: WorldFile, parts: tuple[Part, ...], lights: tuple[Light, ...], cache: DiskCache
+    ) -> None:
+        self._painter.order(part.material for part in parts)  # drawn while the light is computed
         entity = sapien.Entity()
         body = render.RenderBodyComponent()
         eyes = _eyes(world, self._settings.height_m)
-        culled = {material: facing_any(mesh, eyes) for material, mesh in _by_material(parts).items()}
-        groups = {material: mesh for material, mesh in culled.items() if len(mesh.triangles)}
-        whole = joined(list(groups.values()))
-        rng = np.random.default_rng(0)
-        light = bake(
-            whole.vertices,
-            whole.normals,
-            parts,
-            lights,
-            world.lighting.ambient,
-            world.lighting.occlusion,
-            rng,
-        )
-        start = 0
-        for material, mesh in groups.items():
-            shade = light[start : start + len(mesh.vertices)]
-            start += len(mesh.vertices)
-            if material.glow:
-                shade = np.full_like(shade, material.glow)
-            body.attach(self._shape(mesh, shade, material))
+        for lit in lit_meshes(parts, lights, world.lighting, eyes, cache):
+            glow = lit.material.glow
+            shade = np.full_like(lit.light, glow) if glow else lit.light
+            body.attach(self._shape(lit.mesh, shade, lit.material))
         entity.add_component(body)
         self._scene.add_entity(entity)
 
@@ -120,14 +121,14 @@ class RenderScene:
         )
 
     def _material(self, material: Material) -> render.RenderMaterial:
-        if material not in self._materials:
-            picture = draw(material.kind, material.colour, material.seed)
-            rgba = cv2.cvtColor(picture, cv2.COLOR_RGB2RGBA)
+        look = look_of(material)
+        if look not in self._looks:
+            rgba = cv2.cvtColor(self._painter.take(material), cv2.COLOR_RGB2RGBA)
             levels = int(math.log2(min(rgba.shape[:2]))) + 1
-            look = render.RenderMaterial()
-            look.base_color_texture = render.RenderTexture2D(rgba, "R8G8B8A8Unorm", mipmap_levels=levels)
-            self._materials[material] = look
-        return self._materials[material]
+            made = render.RenderMaterial()
+            made.base_color_texture = render.RenderTexture2D(rgba, "R8G8B8A8Unorm", mipmap_levels=levels)
+            self._looks[look] = made
+        return self._looks[look]
 
     def _add_cameras(self) -> tuple[sapien.Entity, list[render.RenderCameraComponent]]:
         mount = sapien.Entity()
@@ -144,14 +145,6 @@ class RenderScene:
             cameras.append(camera)
         self._scene.add_entity(mount)
         return mount, cameras
-
-
-def _by_material(parts: tuple[Part, ...]) -> dict[Material, Mesh]:
-    """One mesh per material: few draw calls are what makes frames cheap."""
-    groups: dict[Material, list[Mesh]] = {}
-    for part in parts:
-        groups.setdefault(part.material, []).append(mesh_of(part))
-    return {material: joined(meshes) for material, meshes in groups.items()}
 
 
 def _eyes(world: WorldFile, height_m: float) -> npt.NDArray[np.float32]:

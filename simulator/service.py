@@ -11,7 +11,7 @@ from simulator.experimenter import Experimenter, RequestError
 from simulator.outbox import MessageMaker
 from simulator.service_settings import SimulatorSettings
 from simulator.simulation import Simulation
-from simulator.world_file import load_world
+from simulator.world_file import WorldFile
 
 log = logging.getLogger(__name__)
 
@@ -111,7 +111,8 @@ class RealTimeLoop(Loop):
     """Physics follows the wall clock; frames and ranges go out at their own rates; commands expire."""
 
     def start(self) -> None:
-        """Start the clocks."""
+        """Start the clocks; a command from before is too old to obey."""
+        self.ports.newest_command()
         self._physics_s = self._frame_s = self._ranges_s = time.monotonic()
 
     def turn(self, now_s: float) -> None:
@@ -140,14 +141,15 @@ class RealTimeLoop(Loop):
             self._physics_s += steps * timestep_s
 
 
-def run(settings: SimulatorSettings, bus: Bus, stop: threading.Event) -> None:
+def run(settings: SimulatorSettings, world: WorldFile, bus: Bus, stop: threading.Event) -> None:
     """Build the world and serve until `stop`."""
-    simulation = Simulation(load_world(settings.world), settings.simulation(), settings.seed)
-    simulation.panorama()  # the first picture builds the shaders: before anyone waits for it
+    simulation = Simulation(world, settings.simulation(), settings.seed)
     ports = Ports(bus, settings.robot)
     loop = (LockstepLoop if settings.lockstep else RealTimeLoop)(simulation, settings, ports)
     bus.announce("simulator")
     log.info("world %s, %s", settings.world, "lockstep" if settings.lockstep else "real time")
+    # The first picture builds the shaders, about half a second: requests can wait for that, clocks cannot.
+    simulation.panorama()
     loop.start()
     while not stop.is_set():
         bus.wait(settings.repeat_s / 4 if settings.lockstep else REAL_TIME_TURN_S)

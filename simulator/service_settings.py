@@ -1,12 +1,25 @@
 """Settings of the simulator process, from SIMULATOR_* variables."""
 
-from typing import Literal
+import os
+from pathlib import Path
+from typing import Annotated, Literal
 
-from pydantic import Field, PositiveFloat
+from pydantic import BeforeValidator, Field, PositiveFloat, PositiveInt
 from pydantic_settings import SettingsConfigDict
 
 from shared.settings import ServiceSettings
 from simulator.settings import CameraSettings, RangeSettings, SimulationSettings
+
+Folder = Annotated[Path | None, BeforeValidator(lambda value: value or None)]
+
+
+def user_cache_dir() -> Path | None:
+    """Folder for topnav below the user's cache folder, $XDG_CACHE_HOME or ~/.cache; None without a home."""
+    base = Path(os.environ.get("XDG_CACHE_HOME", ""))
+    try:
+        return (base if base.is_absolute() else Path("~/.cache").expanduser()) / "topnav"
+    except RuntimeError:
+        return None
 
 
 class SimulatorSettings(ServiceSettings):
@@ -21,6 +34,8 @@ class SimulatorSettings(ServiceSettings):
         frame_rate_hz: most frames a second in real time.
         range_rate_hz: distance readings a second in real time.
         encoding: bgr8 is exact; jpeg is smaller and costs time on both sides.
+        cache_dir: where textures and light are kept between starts; empty keeps nothing.
+        cache_limit_mb: size of that folder, see SimulationSettings.
     """
 
     model_config = SettingsConfigDict(env_prefix="SIMULATOR_")
@@ -38,10 +53,15 @@ class SimulatorSettings(ServiceSettings):
     camera_height_m: PositiveFloat = 0.8
     range_max_m: PositiveFloat = 4.0
     range_noise_m: float = Field(default=0.01, ge=0.0)
+    cache_dir: Folder = Field(default_factory=user_cache_dir)
+    cache_limit_mb: PositiveInt = SimulationSettings().cache_limit_mb
 
     def simulation(self) -> SimulationSettings:
         """The part that the simulation itself needs."""
         camera = CameraSettings(width_px=self.width_px, height_m=self.camera_height_m)
         return SimulationSettings(
-            camera=camera, ranges=RangeSettings(max_m=self.range_max_m, noise_m=self.range_noise_m)
+            camera=camera,
+            ranges=RangeSettings(max_m=self.range_max_m, noise_m=self.range_noise_m),
+            cache_dir=self.cache_dir,
+            cache_limit_mb=self.cache_limit_mb,
         )

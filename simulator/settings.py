@@ -1,5 +1,6 @@
 """Settings of the simulated robot, its sensors and the physics. The bus loop has service_settings.py."""
 
+from pathlib import Path
 from typing import Self
 
 from pydantic import (
@@ -65,10 +66,22 @@ class RobotSettings(_Frozen):
 
 
 class SimulationSettings(_Frozen):
-    """Everything `Simulation` needs besides the world."""
+    """Everything `Simulation` needs besides the world.
+
+    Attributes:
+        timestep_s: of the physics.
+        camera: the spherical camera.
+        ranges: the distance sensors.
+        robot: body and servos.
+        render: whether pictures are wanted.
+        cache_dir: keeps textures and light between starts; None computes them every time.
+        cache_limit_mb: size of that folder, above which the longest unused goes; one world takes about 165.
+    """
 
     timestep_s: PositiveFloat = 0.01
     camera: CameraSettings = CameraSettings()
     ranges: RangeSettings = RangeSettings()
     robot: RobotSettings = RobotSettings()
     render: bool = True
+    cache_dir: Path | None = None
+    cache_limit_mb: PositiveInt = 640

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from simulator.disk_cache import DiskCache
 from simulator.footprints import footprints
 from simulator.freespace import BODY_BAND_M
+from simulator.parts import Light, Part
 from simulator.physics_scene import PhysicsScene
 from simulator.ranges import measure, sensor_angles_rad
 from simulator.scene_parts import expand
@@ -38,9 +40,9 @@ class Simulation:
         """Build the world; the robot stands at the world's start."""
         self.world = world
         self.settings = settings or SimulationSettings()
-        self._parts, _ = expand(world)
+        self._parts, lights = expand(world)
         self._shapes = footprints(self._parts, *BODY_BAND_M)
-        self._view: _View | None = _View(world, self.settings) if self.settings.render else None
+        self._view = _View(world, (self._parts, lights), self.settings) if self.settings.render else None
         self._hider: Pose2 | None = None
         self.reset(seed)
 
@@ -125,18 +127,27 @@ class Simulation:
 class _View:
     """The rendered scene with the bodies of both robots."""
 
-    def __init__(self, world: WorldFile, settings: SimulationSettings) -> None:
+    def __init__(
+        self,
+        world: WorldFile,
+        contents: tuple[tuple[Part, ...], tuple[Light, ...]],
+        settings: SimulationSettings,
+    ) -> None:
         # SAPIEN's renderer is loaded only where pictures are wanted.
+        from simulator.painter import Painter
         from simulator.render_scene import RenderScene
         from simulator.robot_shape import HIDER, SEEKER, chassis_parts, leg_parts, wheel_parts, whole_robot
 
-        self._scene = RenderScene(world, settings.camera)
         robot = settings.robot
-        self._links = {"chassis": self._scene.add_body(chassis_parts(robot, SEEKER))}
-        for k in range(4):
-            self._links[f"leg{k}"] = self._scene.add_body(leg_parts(robot))
-            self._links[f"wheel{k}"] = self._scene.add_body(wheel_parts(robot))
-        self._hider = self._scene.add_body(whole_robot(robot, HIDER))
+        cache = DiskCache(settings.cache_dir, settings.cache_limit_mb * 1_000_000)
+        with Painter(cache) as painter:
+            self._scene = RenderScene(world, contents, settings.camera, painter, cache)
+            self._links = {"chassis": self._scene.add_body(chassis_parts(robot, SEEKER))}
+            for k in range(4):
+                self._links[f"leg{k}"] = self._scene.add_body(leg_parts(robot))
+                self._links[f"wheel{k}"] = self._scene.add_body(wheel_parts(robot))
+            self._hider = self._scene.add_body(whole_robot(robot, HIDER))
+        cache.tidy()
 
     def picture(self, camera: Pose2, physics: PhysicsScene, hider: Pose2 | None) -> Image:
         """Move the bodies to where they are and take the picture."""

@@ -18,6 +18,7 @@ from simulator.furniture.catalogue import FURNITURE
 from simulator.textures.catalogue import KINDS
 
 WORLDS = Path(__file__).parent / "worlds"
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # LibYAML's is much faster, where it is built in
 
 
 class WorldFileError(ValueError):
@@ -163,7 +164,7 @@ def load_world(name_or_path: str) -> WorldFile:
             f"world must be one of {', '.join(world_names())} or a .yaml file; got {name_or_path!r}"
         )
     try:
-        data = yaml.safe_load(path.read_text(encoding="utf-8"))
+        data = yaml.load(path.read_text(encoding="utf-8"), Loader=LOADER)
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise WorldFileError(f"{path}: not valid YAML: {error}") from error
     if not isinstance(data, dict):

@@ -13,8 +13,13 @@ RUN pip install --no-cache-dir --constraint constraints.txt ./deploy/packaging/o
 
 COPY shared shared
 COPY simulator simulator
+# Nothing is written at run time, so the bytecode is made here: every start would compile anew otherwise.
+RUN python -m compileall -q shared simulator
 
-RUN useradd --system --uid 10001 topnav
+RUN useradd --system --uid 10001 topnav \
+    && install --directory --owner topnav /var/lib/topnav/simulator-cache
 USER topnav
 # The root file system is read-only: caches go to the tmpfs.
 ENV HOME=/tmp PYTHONDONTWRITEBYTECODE=1 PYTHONUNBUFFERED=1
+# Compiled shaders outlive the container, as textures and light do (SIMULATOR_CACHE_DIR).
+ENV MESA_SHADER_CACHE_DIR=/var/lib/topnav/simulator-cache

@@ -48,12 +48,16 @@ def flat(height: int, width: int, colour: Rgb) -> FloatArray:
 
 def modulate(image: FloatArray, field: FloatArray, strength: float) -> FloatArray:
     """Brighten and darken an image by a (height, width) field: image * (1 + strength * field)."""
-    return image * (1.0 + strength * field[..., None])
+    factor = strength * field
+    factor += 1.0
+    return image * factor[..., None]
 
 
 def finish(image: FloatArray) -> Image:
     """Clip to 0..255 and round to bytes."""
-    return np.clip(np.rint(image), 0, 255).astype(np.uint8)
+    rounded = np.rint(image)
+    np.clip(rounded, 0, 255, out=rounded)  # in place: fresh memory costs more than the arithmetic
+    return rounded.astype(np.uint8)
 
 
 def vary(rng: np.random.Generator, colour: Rgb, spread: float) -> Rgb:

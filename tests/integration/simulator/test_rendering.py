@@ -94,3 +94,11 @@ def test_hider_is_seen_where_it_stands_and_below_the_horizon_only(simulation):
 
 def test_same_pose_gives_the_same_bytes(simulation):
     np.testing.assert_array_equal(simulation.panorama(), simulation.panorama())
+
+
+def test_a_scene_from_the_cache_looks_the_same_to_the_last_bit(simulation, room_data, tmp_path):
+    world = WorldFile.model_validate(room_data)
+    settings = SimulationSettings(camera=CameraSettings(width_px=WIDTH), cache_dir=tmp_path)
+    for _ in range(2):  # the first fills the cache, the second reads it
+        np.testing.assert_array_equal(Simulation(world, settings).panorama(), simulation.panorama())
+    assert len(list(tmp_path.iterdir())) > 5

@@ -56,7 +56,7 @@ class Peer:
 
 
 @pytest.fixture
-def start(router_endpoint, room_file):
+def start(router_endpoint, room_file, tmp_path):
     """Start a simulator process; returns the peer once it answers."""
     processes = []
     buses = []
@@ -69,6 +69,7 @@ def start(router_endpoint, room_file):
             "SIMULATOR_WIDTH_PX": "256",
             "SIMULATOR_LOCKSTEP": str(lockstep).lower(),
             "SIMULATOR_REPEAT_S": "0.3",
+            "SIMULATOR_CACHE_DIR": str(tmp_path / "cache"),
         }
         manager = open_bus(router_endpoint)
         peer = Peer(manager.__enter__())
