@@ -27,8 +27,8 @@ class PassingLimits(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    radius_m: PositiveFloat = 0.31
-    radius_slow_m: PositiveFloat = 0.28
+    radius_m: PositiveFloat = 0.29
+    radius_slow_m: PositiveFloat = 0.275
     lookahead_m: PositiveFloat = 0.45
     lookahead_min_m: PositiveFloat = 0.12
     memory_steps: PositiveInt = 15

@@ -17,6 +17,7 @@ from services.planner.frontiers import (
     open_directions,
     sector_rad,
 )
+from services.planner.graph import MapGraph
 from services.planner.mapping import add_place, is_new_place
 from services.planner.ports import Decision, MapAccess, Matcher, Note, Observation, Progress
 from services.planner.profiles import Profile
@@ -54,7 +55,6 @@ class FrontierExploration:
         self._profile, self._maps, self._matcher, self._rng = profile, maps, matcher, rng
         self._departure: Departure | None = None
         self._travel: PathFollower | None = None
-        self._here: int | None = None
         self._last_heading_rad = 0.0
         self._failures: dict[int, int] = {}
         self._doubted: set[Leg] = set()
@@ -74,7 +74,6 @@ class FrontierExploration:
     def _first(self, observation: Observation) -> Decision:
         """The only node: random heading (thesis section 4.2)."""
         node_id = add_place(self._maps, observation, {}, self._profile, None)
-        self._here = node_id
         self._last_heading_rad = float(self._rng.uniform(-math.pi, math.pi))
         return self._leave(node_id, 0.0, (Note("node_added", "first place of the map", {"node": node_id}),))
 
@@ -142,7 +141,7 @@ class FrontierExploration:
     ) -> Decision:
         self._explored(departure)
         node_id = add_place(self._maps, observation, matches, self._profile, departure.node_id)
-        self._departure, self._here, self._lost = None, node_id, 0
+        self._departure, self._lost = None, 0
         self._last_heading_rad = departure.heading_rad
         edges = len(self._maps.graph.neighbours(node_id))
         best = ranked(matches, self._profile)[0]
@@ -157,7 +156,7 @@ class FrontierExploration:
     def _close_departure(self, departure: Departure, why: str, *, lost: bool = False) -> Decision:
         """This direction is done; go back to known ground when nothing is seen."""
         self._explored(departure)
-        self._departure, self._here = None, None
+        self._departure = None
         note = Note("direction_closed", f"node {departure.node_id} direction {departure.sector}: {why}")
         if lost:
             back = math.remainder(departure.heading_rad + math.pi, math.tau)
@@ -240,8 +239,8 @@ class FrontierExploration:
         return open_directions(self._maps.graph)
 
 
-def _inliers(graph: object, first: int, second: int) -> int:
-    edge = graph.edge(first, second)  # type: ignore[attr-defined]
+def _inliers(graph: MapGraph, first: int, second: int) -> int:
+    edge = graph.edge(first, second)
     return edge.inliers if edge is not None else 0
 
 

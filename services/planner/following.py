@@ -18,7 +18,7 @@ WINDOW = 4
 
 STUCK_STEPS = 35
 CLOSER = 0.95
-SLOW_RAD = math.radians(6.0)
+SLOW_RAD = math.radians(12.0)
 SLOWEST = 0.15
 NEAREST_STEPS = 8
 """Steps without coming closer after which a place within `near_rad` is as near as obstacles allow."""

@@ -54,7 +54,8 @@ class Goto:
         here = self._matcher.match([], LOCALISE_K, (self._goal,))
         seen_goal = here.pop(GOAL, None)
         if seen_goal is not None and not self._stuck and self._in_sight(seen_goal, ranges):
-            return self._follow([GOAL])
+            self._follow([GOAL])
+            return None
         if not self._targets:
             return self._end("failed", "goal_not_in_map", "the goal resembles no place of the map", ())
         clear = {n for n, m in here.items() if is_clear(m, ranges, self._profile)}
@@ -62,7 +63,8 @@ class Goto:
         starts = {node: cost + self._avoid.get(node, 0.0) for node, cost in starts.items()}
         path = plan_path(self._maps.graph, starts, self._targets, self._profile, self._doubted)
         if path:
-            return self._follow([*path, GOAL])
+            self._follow([*path, GOAL])
+            return None
         self._lost += 1
         nearest = ranked(here, self._profile)[:1]
         s_nearest = similarity(nearest[0][1], self._profile) if nearest else 0

@@ -69,8 +69,8 @@ class MapGraph:
     def _with_goal(
         self, targets: Mapping[int, float], cost: EdgeCost
     ) -> tuple[dict[int, list[int]], dict[int, float]]:
-        goal = "goal"
-        graph: nx.Graph = nx.Graph()
+        goal = -1  # no node has this id
+        graph: nx.Graph[int | str] = nx.Graph()
         graph.add_nodes_from(sorted(self.nodes))
         for (a, b), edge in sorted(self.edges.items()):
             if not edge.suspended:
@@ -80,13 +80,14 @@ class MapGraph:
                 graph.add_edge(node_id, goal, weight=extra)
         if goal not in graph:
             return {}, {}
-        distances, paths = nx.single_source_dijkstra(graph, goal)
-        reached = [node for node in paths if node != goal]
+        distances = nx.single_source_dijkstra_path_length(graph, goal)
+        paths = nx.single_source_dijkstra_path(graph, goal)
+        reached = [node for node in self.nodes if node in paths]
         return {n: list(reversed(paths[n][1:])) for n in reached}, {n: distances[n] for n in reached}
 
     def components(self) -> int:
         """Number of connected parts, suspended edges excluded."""
-        graph: nx.Graph = nx.Graph()
+        graph: nx.Graph[int | str] = nx.Graph()
         graph.add_nodes_from(self.nodes)
         graph.add_edges_from(ends for ends, edge in self.edges.items() if not edge.suspended)
         return int(nx.number_connected_components(graph))

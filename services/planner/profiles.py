@@ -48,7 +48,7 @@ class Profile(BaseModel):
     delete_edges: bool = False
     arrival_rad: float = Field(default=math.radians(1.0), ge=0.0)
     travel_arrival_rad: PositiveFloat = math.radians(3.5)
-    near_rad: PositiveFloat = math.radians(3.5)
+    near_rad: PositiveFloat = math.radians(4.0)
     heading_std_max_rad: PositiveFloat = math.radians(6.0)
     saturation_steps: PositiveInt = 5
     exploration_noise_rad: float = math.radians(50.0)

@@ -18,7 +18,7 @@ SETTLED_STEPS = 300
 
 
 class ThesisExploration:
-    """Every frame joins the map first and is judged afterwards; random headings grow the map."""
+    """Every frame is judged as a node of the map, written only if it stays; random headings grow the map."""
 
     def __init__(self, profile: Profile, maps: MapAccess, matcher: Matcher, rng: np.random.Generator) -> None:
         self._profile, self._maps, self._matcher, self._rng = profile, maps, matcher, rng

@@ -26,10 +26,17 @@ def test_opening_is_a_way_the_robot_fits_through():
 
 
 def test_edge_to_a_near_place_explores_its_direction_only():
-    near = Edge(a=0, b=1, heading_ab_rad=math.pi / 2, heading_ba_rad=-math.pi / 2, inliers=80)
+    near = Edge(a=0, b=1, heading_ab_rad=math.pi / 2, heading_ba_rad=-math.pi / 2, inliers=50)
     nodes = [Node(node_id=0, open=ALL_OPEN), Node(node_id=1, open=ALL_OPEN)]
     node = with_explored(nodes[0], MapGraph(nodes, [near]), 45)
     assert [s for s in range(12) if node.explored[s]] == [3]
+
+
+def test_edge_to_a_very_near_place_explores_the_directions_beside_it():
+    near = Edge(a=0, b=1, heading_ab_rad=math.pi / 2, heading_ba_rad=-math.pi / 2, inliers=80)
+    nodes = [Node(node_id=0, open=ALL_OPEN), Node(node_id=1, open=ALL_OPEN)]
+    node = with_explored(nodes[0], MapGraph(nodes, [near]), 45)
+    assert [s for s in range(12) if node.explored[s]] == [2, 3, 4]
 
 
 def test_edge_to_a_far_place_leaves_the_ground_between_unexplored():
