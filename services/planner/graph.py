@@ -70,7 +70,7 @@ class MapGraph:
         self, targets: Mapping[int, float], cost: EdgeCost
     ) -> tuple[dict[int, list[int]], dict[int, float]]:
         goal = -1  # no node has this id
-        graph: nx.Graph[int | str] = nx.Graph()
+        graph: nx.Graph[int] = nx.Graph()
         graph.add_nodes_from(sorted(self.nodes))
         for (a, b), edge in sorted(self.edges.items()):
             if not edge.suspended:
@@ -87,7 +87,7 @@ class MapGraph:
 
     def components(self) -> int:
         """Number of connected parts, suspended edges excluded."""
-        graph: nx.Graph[int | str] = nx.Graph()
+        graph: nx.Graph[int] = nx.Graph()
         graph.add_nodes_from(self.nodes)
         graph.add_edges_from(ends for ends, edge in self.edges.items() if not edge.suspended)
         return int(nx.number_connected_components(graph))
