@@ -88,7 +88,7 @@ class DiskCache:
         return _arrays(content)
 
     def _write(self, path: Path, key: str, arrays: Arrays) -> None:
-        content = _content(arrays)
+        pieces = _pieces(arrays)
         partial: Path | None = None
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -96,8 +96,7 @@ class DiskCache:
                 dir=path.parent, prefix=path.stem[:16], suffix=PARTIAL, delete=False
             ) as file:
                 partial = Path(file.name)
-                file.write(content)
-                file.write(_seal(key, content))
+                file.writelines([*pieces, _seal(key, *pieces)])
             partial.replace(path)
         except OSError as error:
             self._give_up(error)
@@ -118,17 +117,22 @@ class DiskCache:
             )
 
 
-def _seal(key: str, content: memoryview) -> bytes:
+def _seal(key: str, *pieces: memoryview) -> bytes:
     digest = hashlib.sha256(key.encode())
-    digest.update(content)
+    for piece in pieces:
+        digest.update(piece)
     return digest.digest()
 
 
-def _content(arrays: Arrays) -> memoryview:
-    stream = io.BytesIO()
+def _pieces(arrays: Arrays) -> list[memoryview]:
+    """Header and data of each array, as numpy.save would write them, without copying the data."""
+    pieces: list[memoryview] = []
     for array in arrays:
-        np.lib.format.write_array(stream, np.ascontiguousarray(array), allow_pickle=False)
-    return stream.getbuffer()
+        plain = np.asarray(array, order="C")
+        header = io.BytesIO()
+        np.lib.format.write_array_header_1_0(header, np.lib.format.header_data_from_array_1_0(plain))
+        pieces += [header.getbuffer(), plain.data]
+    return pieces
 
 
 def _arrays(content: memoryview) -> list[npt.NDArray[Any]]:

@@ -51,6 +51,12 @@ def test_what_was_made_once_is_read_back_equal_in_type_shape_and_bytes(cache):
         np.testing.assert_array_equal(one, two)
 
 
+def test_empty_and_single_values_are_kept_too(cache):
+    arrays = [np.zeros((0, 3), np.float32), np.array(3)]
+    cache.fetch(KEY, lambda: arrays)
+    assert [(a.shape, a.dtype) for a in cache.fetch(KEY, list)] == [(a.shape, a.dtype) for a in arrays]
+
+
 def test_another_process_finds_it(cache):
     cache.fetch(KEY, Maker())
     code = (
