@@ -1,6 +1,7 @@
 """The simulator process over a real bus: lockstep, repetition, requests, real time."""
 
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -74,7 +75,8 @@ def start(router_endpoint, room_file, tmp_path):
         manager = open_bus(router_endpoint)
         peer = Peer(manager.__enter__())
         buses.append(manager)
-        processes.append(subprocess.Popen([sys.executable, "-m", "simulator"], env=environment))
+        peer.process = subprocess.Popen([sys.executable, "-m", "simulator"], env=environment)
+        processes.append(peer.process)
         peer.wait_for(lambda: peer.frame is not None, START_S)
         return peer
 
@@ -82,6 +84,8 @@ def start(router_endpoint, room_file, tmp_path):
     for manager in buses:
         manager.__exit__(None, None, None)
     for process in processes:
+        if process.poll() == -signal.SIGKILL:
+            continue
         process.terminate()
         assert process.wait(timeout=20) == 0
 
@@ -136,3 +140,17 @@ def test_real_time_runs_by_itself_and_stops_when_commands_end(start):
     moving_s = time.monotonic()
     peer.wait_for(lambda: peer.truth.speed_mps < 0.01)
     assert time.monotonic() - moving_s < 3.0
+
+
+def test_a_killed_simulator_finds_its_textures_and_light_again(start, tmp_path):
+    def kept():
+        return {path.name: path.stat().st_ino for path in (tmp_path / "cache").iterdir()}
+
+    first = start(lockstep=True)
+    first.process.kill()
+    first.process.wait()
+    before = kept()
+    second = start(lockstep=True)
+    assert len(before) > 5
+    assert kept() == before
+    assert second.frame.data == first.frame.data
