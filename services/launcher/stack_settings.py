@@ -72,9 +72,10 @@ class StackSettings:
             "TOPNAV_ROUTER_PORT": str(self.ports.router),
             "TOPNAV_GATEWAY_PORT": str(self.ports.gateway),
             "TOPNAV_MAP_STORE_PORT": str(self.ports.map_store),
-            # Weights and drawn textures are the same for every stack: keep them per user, not per data folder.
+            # Weights and drawn textures are the same for every stack: one folder per user.
             "TORCH_HOME": base.get("TORCH_HOME") or str(Path("~/.cache/torch").expanduser()),
-            "SIMULATOR_CACHE_DIR": base.get("SIMULATOR_CACHE_DIR") or str(Path("~/.cache/topnav").expanduser()),
+            "SIMULATOR_CACHE_DIR": base.get("SIMULATOR_CACHE_DIR")
+            or str(Path("~/.cache/topnav").expanduser()),
         }
         return base | {name: value for name, value in chosen.items() if value is not None}
 
