@@ -6,7 +6,7 @@ import time
 
 from services.planner.control import MissionControl, MissionError
 from services.planner.ports import Decision, Observation
-from services.planner.profiles import Profile, profile_named
+from services.planner.profiles import Profile
 from services.planner.settings import PlannerSettings
 from shared.bus import Bus
 from shared.messages import Event, Features, Heading, MissionRequest, MissionStatus, Ranges
@@ -26,7 +26,7 @@ class Planner:
 
     def __init__(self, settings: PlannerSettings, bus: Bus) -> None:
         self._settings, self._bus = settings, bus
-        self._profile: Profile = profile_named(settings.profile)
+        self._profile: Profile = settings.rules()
         robot = settings.robot
         self._features_in = bus.subscribe(FEATURES, robot=robot)
         self._ranges_in = bus.subscribe(RANGES, robot=robot)
