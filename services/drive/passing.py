@@ -17,6 +17,7 @@ from shared.geometry.clearance import Obstacles
 
 STEP_RAD = math.radians(10.0)
 BACKTRACK_RAD = math.radians(100.0)
+LOYALTY_RAD = math.radians(50.0)
 JUMP_RAD = math.radians(60.0)
 """A wish that changes this much between two steps is another errand."""
 FULL_TURN_RAD = 2.0 * math.pi
@@ -91,7 +92,9 @@ def steer_past(
             kept = replace(memory, steps=max(0, memory.steps - 1), idle_steps=idle)
             kept = kept if idle < limits.memory_steps else Passing(wished_rad=wished_rad)
             return Steering(wished_rad, False, "free", clearance_m), kept
-    side = memory.side or _easier_side(wished_rad, obstacles, lookahead_m, radius_m)
+    side = memory.side
+    if memory.deflection_rad == 0.0:
+        side = _easier_side(wished_rad, obstacles, lookahead_m, radius_m, memory.side)
     first_rad = max(0.0, memory.deflection_rad - BACKTRACK_RAD)
     offsets_rad = np.arange(first_rad, first_rad + FULL_TURN_RAD, STEP_RAD)
     headings_rad = wished_rad + side * offsets_rad
@@ -111,13 +114,17 @@ def steer_past(
     )
 
 
-def _easier_side(wished_rad: float, obstacles: Obstacles, lookahead_m: float, radius_m: float) -> int:
-    """The side on which a free direction lies nearer to the wished one; left when equal."""
+def _easier_side(
+    wished_rad: float, obstacles: Obstacles, lookahead_m: float, radius_m: float, remembered: int
+) -> int:
+    """The side with a free direction nearer to the wished one; the remembered one unless far worse."""
     offsets_rad = np.arange(STEP_RAD, FULL_TURN_RAD, STEP_RAD)
     best: dict[int, float] = {}
     for side in (1, -1):
         free = obstacles.clearance_m(wished_rad + side * offsets_rad, radius_m) >= lookahead_m
-        best[side] = float(offsets_rad[free.argmax()]) if free.any() else math.inf
+        best[side] = float(offsets_rad[free.argmax()]) if free.any() else FULL_TURN_RAD
+    if remembered and best[remembered] <= best[-remembered] + LOYALTY_RAD:
+        return remembered
     return 1 if best[1] <= best[-1] else -1
 
 
