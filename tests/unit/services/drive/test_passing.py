@@ -1,5 +1,6 @@
 """Passing obstacles: free ways are taken, borders are followed on one side, dead ends are left."""
 
+import itertools
 import math
 
 import numpy as np
@@ -45,7 +46,20 @@ def test_nothing_in_the_way_keeps_the_wished_heading():
 def test_a_wall_ahead_is_passed_and_the_goal_reached():
     path = drive([wall(1.0, -0.6, 0.9)], start=(0.0, 0.0), goal=(2.5, 0.0), steps=120)
     assert math.dist(path[-1], (2.5, 0.0)) < 0.15
-    assert min(y for _, y in path) < -0.7, "the nearer end is on the right"
+    driven_m = sum(math.dist(a, b) for a, b in itertools.pairwise(path))
+    assert driven_m < 2.0 * 2.5, "no wandering"
+
+
+def test_an_end_in_sight_is_preferred():
+    path = drive([wall(0.6, -0.15, 3.0)], start=(0.0, 0.0), goal=(2.5, 0.0), steps=60)
+    assert math.dist(path[-1], (2.5, 0.0)) < 0.15
+    assert min(y for _, y in path) < -0.2
+
+
+def test_a_remembered_side_yields_to_a_far_easier_one():
+    seen = Obstacles(wall(0.5, -0.1, 3.0))
+    _, memory = steer_past(0.0, seen, Passing(side=1), 1.0, LIMITS)
+    assert memory.side == -1
 
 
 def test_a_dead_end_is_left_without_help():
