@@ -57,7 +57,9 @@ def test_an_end_in_sight_is_preferred():
 
 
 def test_a_remembered_side_yields_to_a_far_easier_one():
-    seen = Obstacles(wall(0.5, -0.1, 3.0))
+    along = np.arange(-2.0, 0.5, 0.05)
+    corner = [wall(0.5, -0.1, 0.5), np.stack([along, np.full(len(along), 0.45)], axis=-1)]
+    seen = Obstacles(np.concatenate(corner))
     _, memory = steer_past(0.0, seen, Passing(side=1), 1.0, LIMITS)
     assert memory.side == -1
 
