@@ -10,9 +10,12 @@ from services.launcher.stack_settings import Ports
 from services.launcher.state import StateFolder
 from services.launcher.supervisor import Launcher
 from shared.bus import Bus, open_bus, wait_until
+from shared.messages import MissionRequest
+from shared.topics import MISSION
 
 ROBOT = "r1"
 JOIN_TIMEOUT_S = 15.0
+ASK_TIMEOUT_S = 10.0
 NEEDED = frozenset({"planner", "drive", "features", "map_store", "simulator"})
 
 
@@ -75,6 +78,7 @@ def open_stack(choice: StackChoice) -> Iterator[Stack]:
         return
     with _launcher(choice) as launcher, open_bus(launcher.endpoint) as bus:
         _require_services(bus, launcher.endpoint)
+        _end_left_mission(bus)
         yield Stack(bus, launcher.endpoint, launcher.gateway_url, launcher)
 
 
@@ -100,6 +104,13 @@ def _refuse_settings(choice: StackChoice) -> None:
             f"--{given[0]} cannot change a stack that runs: stop it ('topnav down'), or start it with that "
             f"{given[0]} and leave the option out"
         )
+
+
+def _end_left_mission(bus: Bus) -> None:
+    """End the mission of a command that was killed: the planner takes it up again when it starts."""
+    status = bus.ask(MISSION, MissionRequest(action="status"), ASK_TIMEOUT_S, robot=ROBOT)
+    if status.state in ("running", "paused"):
+        bus.ask(MISSION, MissionRequest(action="cancel"), ASK_TIMEOUT_S, robot=ROBOT)
 
 
 def _require_services(bus: Bus, endpoint: str) -> None:
