@@ -17,6 +17,8 @@ log = logging.getLogger(__name__)
 
 PERIOD_S = 0.05
 RANGES_TTL_S = 0.4
+EXPIRED_S = -1.0e9
+HEADINGS_NEED = ("planner", "features")
 
 
 class Drive:
@@ -30,13 +32,19 @@ class Drive:
         self._memory = Passing()
         self._heading: Heading | None = None
         self._ranges: Ranges | None = None
-        self._heading_s = self._ranges_s = -1.0e9
+        self._heading_s = self._ranges_s = EXPIRED_S
         self._answered: Command | None = None
         self._moving = False
         self._counters = bus.counters
+        self._bereft, self._wake = threading.Event(), bus.wake
+        for service in HEADINGS_NEED:
+            bus.watch_alive(self._watch, service)
 
     def turn(self, now_s: float) -> None:
         """Read what came and send what follows from it."""
+        if self._bereft.is_set():
+            self._bereft.clear()
+            self._heading_s = EXPIRED_S
         fresh_ranges = self._ranges_in.take()
         if fresh_ranges is not None:
             self._ranges, self._ranges_s = fresh_ranges, now_s
@@ -51,6 +59,12 @@ class Drive:
             self._stop(self._heading)
         elif fresh_ranges is not None or fresh_heading is not None:
             self._answer(self._heading, self._ranges)
+
+    def _watch(self, _service: str, _instance: str, alive: bool) -> None:
+        """A service that headings come from is gone: do not wait for the last one to expire. Zenoh's thread."""
+        if not alive:
+            self._bereft.set()
+            self._wake.set()
 
     def _accept(self, heading: Heading) -> bool:
         """Refuse headings of a planner that has been replaced."""
