@@ -61,7 +61,7 @@ class Drive:
             self._answer(self._heading, self._ranges)
 
     def _watch(self, _service: str, _instance: str, alive: bool) -> None:
-        """A service that headings come from is gone: do not wait for the last one to expire. Zenoh's thread."""
+        """A service that headings come from is gone: they expire at once. Called on Zenoh's thread."""
         if not alive:
             self._bereft.set()
             self._wake.set()
