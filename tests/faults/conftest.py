@@ -27,7 +27,7 @@ class RealTime:
     game: Game
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def real_time(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RealTime]:
     """Explore a part of the apartment, then start again with the wall clock leading."""
     data_dir, space = tmp_path_factory.mktemp("stack"), free_space(load_world(WORLD))

@@ -92,7 +92,7 @@ def test_match_finds_the_places_in_order_and_follows_deltas(bus: Bus, store) -> 
 
     store.nodes.pop(0)
     store.reset()
-    assert wait_until(lambda: match(bus, features=current, best_k=9).map_revision == 5, timeout_s=5.0)
+    assert wait_until(lambda: match(bus, features=current, best_k=9).map_revision == 5, timeout_s=20.0)
     assert {result.node_id for result in match(bus, features=current, best_k=9).results} == {1, 2, 3}
 
 

@@ -24,7 +24,7 @@ def test_every_line_answers(http: httpx.Client, gateway: str, robot_bus: Bus, tm
         publisher.put(frame("r1", 42))
         return http.get("/api/robots/r1/frame.jpg").status_code == 200
 
-    assert wait_until(arrived, 5.0)
+    assert wait_until(arrived, 20.0)
     answer = subprocess.run(
         ["bash", "-c", STRICT + examples("bash")[0]],
         env={**os.environ, "TOPNAV_URL": gateway, "no_proxy": "127.0.0.1"},

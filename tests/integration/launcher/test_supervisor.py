@@ -78,9 +78,8 @@ def test_a_crash_loop_is_degraded_and_the_rest_survives(launch):
     restarts = stack.status()["bad"].restarts
     assert wait_until(lambda: stack.status()["bad"].restarts > restarts, 20.0), "it must go on trying"
     assert stack.status()["bad"].last_exit == 3
-    assert stack.status()["good"].state is State.HEALTHY
+    stack.wait_healthy("good", 10.0)
     assert stack.status()["good"].restarts == 0
-    stack.wait_healthy("good", 1.0)
 
 
 def test_a_stack_that_cannot_start_says_why_and_leaves_nothing(tmp_path):
@@ -128,7 +127,7 @@ def test_children_of_a_killed_service_do_not_outlive_it(launch):
     assert wait_until(lambda: log.exists() and log.read_text().strip() != "", 10.0)
     child = int(log.read_text().split()[0])
     os.kill(stack.pid("parent"), signal.SIGKILL)
-    assert wait_until(lambda: gone(child), 5.0)
+    assert wait_until(lambda: gone(child), 20.0)
 
 
 def test_two_stacks_in_one_folder_are_refused(launch, tmp_path):
@@ -177,8 +176,8 @@ def test_no_service_outlives_a_launcher_that_was_killed(tmp_path):
     state = StateFolder(tmp_path / "data").read()
     os.kill(state.launcher_pid, signal.SIGKILL)
     pids = [service.pid for service in state.services.values()]
-    assert wait_until(lambda: all(gone(pid) for pid in pids), 5.0)
-    assert wait_until(lambda: StateFolder(tmp_path / "data").read() is None, 5.0)
+    assert wait_until(lambda: all(gone(pid) for pid in pids), 20.0)
+    assert wait_until(lambda: StateFolder(tmp_path / "data").read() is None, 20.0)
     assert "no stack runs" in run_topnav("down", *data).stdout
 
 
