@@ -12,7 +12,6 @@ from services.drive.velocity import WheelLimits, wheel_speed
 from shared.geometry.clearance import Obstacles
 from shared.messages import Command, Heading, Ranges
 
-FULL_SPEED_CLEARANCE_M = 0.5
 SLOWEST = 0.25
 
 
@@ -22,6 +21,7 @@ class DriveLimits(BaseModel):
     Attributes:
         avoidance: "passing" remembers the side it passes; "momentary" is the thesis's rule.
         obstacle_range_m: distance at which the momentary rule reacts.
+        full_speed_clearance_m: free way ahead below which passing slows down in proportion.
         command_ttl_ms: the robot stops so long after the last command; a new one comes with the distances.
     """
 
@@ -31,6 +31,7 @@ class DriveLimits(BaseModel):
     wheels: WheelLimits = WheelLimits()
     passing: PassingLimits = PassingLimits()
     obstacle_range_m: PositiveFloat = 0.5
+    full_speed_clearance_m: PositiveFloat = 0.5
     command_ttl_ms: PositiveInt = 250
 
 
@@ -45,7 +46,7 @@ def compute_command(
         return stop_command(heading, steering.why, limits), memory
     speed = wheel_speed(heading.s_cv, heading.s_slow, heading.s_max, heading.speed_fraction, limits.wheels)
     if limits.avoidance == "passing":
-        speed *= min(1.0, max(SLOWEST, steering.clearance_m / FULL_SPEED_CLEARANCE_M))
+        speed *= min(1.0, max(SLOWEST, steering.clearance_m / limits.full_speed_clearance_m))
     command = Command(
         seq=heading.seq,
         stamp_ns=heading.stamp_ns,

@@ -5,17 +5,22 @@ from typing import Literal
 from pydantic_settings import SettingsConfigDict
 
 from services.drive.core import DriveLimits
+from services.drive.passing import PassingLimits
 from services.drive.velocity import WheelLimits
 from shared.settings import ServiceSettings
 
-ProfileName = Literal["default", "thesis", "outdoor"]
+ProfileName = Literal["default", "outdoor", "thesis", "thesis_outdoor"]
+
+OUTDOOR_WHEELS = WheelLimits(max_radps=10.0, min_radps=6.0)
+OUTDOOR_PASSING = PassingLimits(radius_m=0.33, radius_slow_m=0.29, lookahead_m=0.9, lookahead_min_m=0.15)
 
 
 class DriveSettings(ServiceSettings):
     """Read from the environment.
 
     Attributes:
-        profile: default (indoor speeds, passing), thesis (indoor speeds, momentary), outdoor (fast, passing).
+        profile: default and outdoor pass obstacles with memory, thesis and thesis_outdoor by the momentary
+            rule; the outdoor ones drive at the thesis's outdoor speeds and look further ahead.
         seed: of the random weights of the momentary rule.
     """
 
@@ -28,7 +33,10 @@ class DriveSettings(ServiceSettings):
         """The limits of the chosen profile."""
         profiles = {
             "default": DriveLimits(),
+            "outdoor": DriveLimits(
+                wheels=OUTDOOR_WHEELS, passing=OUTDOOR_PASSING, full_speed_clearance_m=1.2
+            ),
             "thesis": DriveLimits(avoidance="momentary"),
-            "outdoor": DriveLimits(wheels=WheelLimits(max_radps=10.0, min_radps=6.0), obstacle_range_m=1.5),
+            "thesis_outdoor": DriveLimits(avoidance="momentary", wheels=OUTDOOR_WHEELS, obstacle_range_m=1.5),
         }
         return profiles[self.profile]

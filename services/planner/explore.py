@@ -29,7 +29,6 @@ from shared.messages.matching import NodeMatch
 
 EDGE_CANDIDATES = 12
 NEAR_NODES = 5
-MAX_DEPARTURE_STEPS = 18
 KNOWN_STEPS = 1
 CORNER_STEPS = 2
 MAX_TRAVEL_FAILURES = 2
@@ -112,7 +111,7 @@ class FrontierExploration:
             return self._known(departure, merged)
         if free_way_m(observation.ranges, departure.heading_rad, self._profile) < self._profile.blocked_m:
             return self._close_departure(departure, "blocked by an obstacle")
-        if departure.steps > MAX_DEPARTURE_STEPS:
+        if departure.steps > self._profile.departure_steps:
             return self._close_departure(departure, "nothing new on the way")
         why = f"leaving node {departure.node_id}, S {s_best}"
         return Decision("go", departure.heading_rad, 0, 1.0, "frontier", why)

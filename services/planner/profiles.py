@@ -25,6 +25,7 @@ class Profile(BaseModel):
         path_cost: "disparity" or the thesis's "nodes".
         suspend_after: bad frames in a row before an edge is given up; delete_edges: for good (equation 6.4).
         opening_m: free way that makes a direction worth exploring; blocked_m: too little to go on.
+        departure_steps: steps in an unexplored direction after which nothing new is to be expected there.
         disparity_rad_per_m: how fast bearings change with distance in this kind of place.
         arrival_rad: angular disparity at which a place is reached; 0 uses s_final.
     """
@@ -55,6 +56,7 @@ class Profile(BaseModel):
     admissible_noise_rad: float = math.radians(90.0)
     opening_m: PositiveFloat = 0.55
     blocked_m: PositiveFloat = 0.25
+    departure_steps: PositiveInt = 18
     robot_radius_m: PositiveFloat = 0.3
     robot_slim_m: PositiveFloat = 0.27
     disparity_rad_per_m: PositiveFloat = math.radians(9.0)
@@ -81,7 +83,32 @@ THESIS = Profile(
     arrival_rad=0.0,
 )
 
-PROFILES = {profile.name: profile for profile in (DEFAULT, THESIS)}
+OUTDOOR = DEFAULT.model_copy(
+    update={
+        "name": "outdoor",
+        "arrival_rad": math.radians(0.6),
+        "travel_arrival_rad": math.radians(2.5),
+        "near_rad": math.radians(2.0),
+        "opening_m": 2.0,
+        "blocked_m": 0.4,
+        "departure_steps": 40,
+        "robot_radius_m": 0.35,
+        "robot_slim_m": 0.3,
+        "disparity_rad_per_m": math.radians(3.0),
+    }
+)
+"""Streets and yards: things are further away, so bearings change less with each metre."""
+
+THESIS_OUTDOOR = THESIS.model_copy(
+    update={
+        name: getattr(OUTDOOR, name)
+        for name in ("opening_m", "blocked_m", "departure_steps", "disparity_rad_per_m")
+    }
+    | {"name": "thesis_outdoor", "heading_method": "4"}
+)
+"""The thesis's rules in its village: method 4 (section 4.3)."""
+
+PROFILES = {profile.name: profile for profile in (DEFAULT, OUTDOOR, THESIS, THESIS_OUTDOOR)}
 
 
 def profile_named(name: str) -> Profile:
