@@ -6,7 +6,7 @@ against distance are those measured on rendered frames; headings carry noise and
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -17,8 +17,9 @@ from services.planner.ports import Decision, Mission, Observation
 from shared.messages import Features, Heading, Ranges
 from shared.messages.maps import AddNode, Operation
 from shared.messages.matching import NodeMatch
-from simulator.footprints import cast_rays, footprints
+from simulator.footprints import Footprints, cast_rays, clearance_m, footprints
 from simulator.freespace import FreeSpace, free_space
+from simulator.parts import Part
 from simulator.world_file import load_world
 
 DISTANCES_M = (0.0, 0.35, 0.75, 1.25, 1.75, 2.25, 3.0, 5.0)
@@ -45,13 +46,30 @@ class PlaneWorld:
     def __post_init__(self) -> None:
         self.shapes = footprints(self.space.parts, 0.02, 0.79)
         self.opaque = footprints(self.space.parts, 0.79, 0.81)
+        self.high = footprints(self.space.parts, 1.79, 1.81)
 
-    def sees(self, here: Pose, there: Pose) -> bool:
-        """Whether nothing at camera height stands between two poses."""
-        distance_m = math.dist(here[:2], there[:2])
-        bearing = math.atan2(there[1] - here[1], there[0] - here[0])
-        free_m = cast_rays(np.array(here[:2]), np.array([bearing]), self.opaque, distance_m)
-        return bool(free_m[0] >= distance_m - 1e-6)
+    def put(self, part: Part) -> None:
+        """Put an obstacle into the world, such as a door that closes."""
+        band = footprints((part,), 0.02, 0.79)
+        rows, columns = np.indices(self.space.free.shape).reshape(2, -1)
+        points = np.stack([columns, rows], axis=-1) * self.space.resolution_m + np.array(self.space.origin_m)
+        apart_m = clearance_m(points, band).reshape(self.space.free.shape)
+        free = self.space.free & (apart_m >= self.space.robot_radius_m)
+        self._use(replace(self.space, free=free, parts=(*self.space.parts, part)))
+
+    def take_away(self, before: FreeSpace) -> None:
+        """Go back to an earlier state of the world."""
+        self._use(before)
+
+    def _use(self, space: FreeSpace) -> None:
+        self.space = space
+        self.__post_init__()
+
+    def view(self, here: Pose, there: Pose) -> float:
+        """Share of the view that two poses have in common: furniture hides much of it, a wall nearly all."""
+        if not _open(here, there, self.high):
+            return 0.1
+        return 1.0 if _open(here, there, self.opaque) else 0.3
 
     def observe(self) -> Observation:
         """Features that carry the true pose for `PlaneMatcher` only, and 12 distances."""
@@ -83,6 +101,14 @@ class PlaneWorld:
         self.seq += 1
 
 
+def _open(here: Pose, there: Pose, shapes: Footprints) -> bool:
+    """Whether no outline stands between two poses."""
+    distance_m = math.dist(here[:2], there[:2])
+    bearing = math.atan2(there[1] - here[1], there[0] - here[0])
+    free_m = cast_rays(np.array(here[:2]), np.array([bearing]), shapes, distance_m)
+    return bool(free_m[0] >= distance_m - 1e-6)
+
+
 def picture(pose: Pose, seq: int = 0) -> Features:
     """What a camera at `pose` sees: here, the pose itself."""
     return Features(
@@ -111,10 +137,11 @@ class PlaneMap:
 
 
 class PlaneMatcher:
-    """Matches by true distance and line of sight."""
+    """Matches by true distance and line of sight; `blind` sees nothing that resembles anything."""
 
     def __init__(self, world: PlaneWorld, maps: PlaneMap) -> None:
         self._world, self._maps = world, maps
+        self.blind = False
 
     def match(
         self, node_ids: Sequence[int], best_k: int = 0, targets: Sequence[Features] = ()
@@ -138,7 +165,7 @@ class PlaneMatcher:
     def _pair(self, node_id: int, here: Pose, there: Pose) -> NodeMatch:
         distance_m = math.dist(here[:2], there[:2])
         rng = self._world.rng
-        seen = 1.0 if self._world.sees(here, there) else 0.3
+        seen = 0.0 if self.blind else self._world.view(here, there)
         inliers = int(np.interp(distance_m, DISTANCES_M, INLIERS) * seen * rng.uniform(0.85, 1.15))
         disparity_deg = float(np.interp(distance_m, DISTANCES_M, DISPARITY_DEG))
         heading = math.atan2(there[1] - here[1], there[0] - here[0]) - here[2]

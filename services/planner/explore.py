@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from services.planner.following import Leg, PathFollower, Target
+from services.planner.experience import Experience, Leg
+from services.planner.following import PathFollower, Target
 from services.planner.frontiers import (
     best_sector,
     frontier_sectors,
@@ -22,6 +23,7 @@ from services.planner.mapping import add_place, is_new_place
 from services.planner.ports import Decision, MapAccess, Matcher, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.routing import plan_path, visible
+from services.planner.search import Search, search_back
 from services.planner.similarity import ranked, similarity, trusted
 from services.planner.surroundings import free_way_m, is_clear
 from shared.messages.maps import Node, UpdateNode
@@ -32,6 +34,7 @@ NEAR_NODES = 5
 KNOWN_STEPS = 1
 CORNER_STEPS = 2
 MAX_TRAVEL_FAILURES = 2
+SEARCH_STEPS = 120
 
 
 @dataclass
@@ -57,7 +60,9 @@ class FrontierExploration:
         self._last_heading_rad = 0.0
         self._failures: dict[int, int] = {}
         self._doubted: set[Leg] = set()
-        self._lost = 0
+        self._experience = Experience(profile, maps)
+        self._search: Search | None = None
+        self._cut_off = 0
         self.progress = Progress()
 
     def decide(self, observation: Observation) -> Decision:
@@ -140,7 +145,7 @@ class FrontierExploration:
     ) -> Decision:
         self._explored(departure)
         node_id = add_place(self._maps, observation, matches, self._profile, departure.node_id)
-        self._departure, self._lost = None, 0
+        self._departure, self._search = None, None
         self._last_heading_rad = departure.heading_rad
         edges = len(self._maps.graph.neighbours(node_id))
         best = ranked(matches, self._profile)[0]
@@ -177,12 +182,12 @@ class FrontierExploration:
         matches = self._matcher.match([], NEAR_NODES)
         clear = {n for n, m in matches.items() if is_clear(m, observation.ranges, self._profile)}
         starts = visible(matches, self._profile, self._profile.s_via_min, clear)
-        path = plan_path(graph, starts, frontier, self._profile, self._doubted)
+        path = plan_path(graph, starts, frontier, self._profile, self._doubted, self._experience.banned)
         if not path:
-            return self._search(matches, bool(starts))
-        self._lost = 0
+            return self._no_way(frontier) if starts else self._look_for_map(matches)
+        self._search, self._cut_off = None, 0
         target = Target(None, self._profile.travel_arrival_rad)
-        self._travel = PathFollower(self._profile, self._maps, path, target, self._doubted)
+        self._travel = PathFollower(self._profile, self._maps, path, target, self._doubted, self._experience)
         return self._go_on(observation, self._travel)
 
     def _go_on(self, observation: Observation, travel: PathFollower) -> Decision:
@@ -191,6 +196,7 @@ class FrontierExploration:
         end = travel.path[-1]
         if state == "going":
             return decision
+        failed_leg = travel.current_leg()
         self._travel = None
         if state == "arrived":
             match = self._matcher.match([end]).get(end)
@@ -199,33 +205,44 @@ class FrontierExploration:
         if state == "unclear":
             self._doubted.add(travel.next_leg())
             return Decision("hold", why=f"planning again: {decision.why}", notes=decision.notes)
-        return self._travel_failed(end, decision)
+        return self._travel_failed(end, failed_leg, decision)
 
-    def _travel_failed(self, end: int, decision: Decision) -> Decision:
+    def _travel_failed(self, end: int, failed_leg: Leg | None, decision: Decision) -> Decision:
         """Twice in vain: that node's directions are closed, so that exploration always ends."""
         self._failures[end] = self._failures.get(end, 0) + 1
         notes = (*decision.notes, Note("travel_failed", f"to node {end}: {decision.why}"))
+        if failed_leg is not None:
+            notes += (self._experience.failed(failed_leg, decision.why),)
         if self._failures[end] >= MAX_TRAVEL_FAILURES:
             node = self._maps.graph.nodes[end]
             self._maps.commit([UpdateNode(node=_closed(node))])
             notes += (Note("node_unreachable", f"node {end}: its directions are closed"),)
         return Decision("hold", why=decision.why, notes=notes)
 
-    def _search(self, matches: dict[int, NodeMatch], seen: bool) -> Decision:
-        """Lost mode: towards the most similar place, else back along the last heading."""
-        self._lost += 1
-        if self._lost > 60 or seen:
-            why = (
-                "what is seen has no path to the unexplored places" if seen else "no known place found again"
-            )
-            return Decision("hold", why=why, outcome="failed", failure="no_path" if seen else "lost")
+    def _no_way(self, frontier: dict[int, float]) -> Decision:
+        """Known places are seen, but no path leads on: after a few such frames what is left is closed."""
+        self._cut_off += 1
+        why = f"no path to {len(frontier)} places with unexplored directions"
+        if self._cut_off < self._profile.saturation_steps:
+            return Decision("hold", why=why)
+        nodes = self._maps.graph.nodes
+        self._maps.commit([UpdateNode(node=_closed(nodes[n])) for n in frontier])
+        values: dict[str, float | int | str | bool | None] = {"nodes": len(frontier)}
+        return Decision("hold", why=why, notes=(Note("nodes_unreachable", f"{why}: closed", values),))
+
+    def _look_for_map(self, matches: dict[int, NodeMatch]) -> Decision:
+        """Lost mode (thesis section 4.2): towards the most similar place, else in growing sweeps."""
+        if self._search is None:
+            self._search = search_back(self._last_heading_rad, SEARCH_STEPS)
+        if self._search.exhausted:
+            why = f"no known place found again in {SEARCH_STEPS} steps"
+            return Decision("hold", why=why, outcome="failed", failure="lost")
+        heading_rad = self._search.next_heading()
         best = ranked(matches, self._profile)[:1]
         if best and best[0][1].heading_rad is not None:
-            return Decision(
-                "go", best[0][1].heading_rad, 0, 1.0, "search", f"lost mode: towards node {best[0][0]}"
-            )
-        back = math.remainder(self._last_heading_rad + math.pi, math.tau)
-        return Decision("go", back, 0, 1.0, "reverse", "lost mode: back the way it came")
+            why = f"lost mode: towards node {best[0][0]}"
+            return Decision("go", best[0][1].heading_rad, 0, 1.0, "search", why)
+        return Decision("go", heading_rad, 0, 1.0, "search", "lost mode: back, then in growing sweeps")
 
     def _near(self, node_id: int) -> list[int]:
         """The node left and the neighbours most similar to it."""

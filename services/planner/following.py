@@ -4,12 +4,12 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from services.planner.experience import Experience, Leg, leg
 from services.planner.ports import GOAL, Decision, MapAccess, Matcher, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.similarity import heading_of, similarity, trusted
 from services.planner.surroundings import is_clear
 from shared.messages.features import Features
-from shared.messages.maps import PutEdge
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
 
@@ -23,7 +23,6 @@ SLOWEST = 0.15
 NEAREST_STEPS = 8
 """Steps without coming closer after which a place within `near_rad` is as near as obstacles allow."""
 
-Leg = tuple[int, int]
 FollowState = Literal["going", "arrived", "lost", "stuck", "unclear"]
 
 
@@ -39,11 +38,17 @@ class PathFollower:
     """Drives along `path` (node ids; GOAL may be last) with equation 4.3 and looks ahead along it."""
 
     def __init__(
-        self, profile: Profile, maps: MapAccess, path: list[int], target: Target, doubted: set[Leg]
+        self,
+        profile: Profile,
+        maps: MapAccess,
+        path: list[int],
+        target: Target,
+        doubted: set[Leg],
+        experience: Experience,
     ) -> None:
         self._profile, self._maps, self._target = profile, maps, target
         self._strict = profile.path_cost == "nodes"
-        self._doubted = doubted
+        self._doubted, self._experience = doubted, experience
         self.path = path
         self.index = 0
         self._bad = 0
@@ -119,10 +124,10 @@ class PathFollower:
             if there is None or not self._may_advance(here, there, later, ranges):
                 continue
             s_there = similarity(there, self._profile)
-            self._mark_driven(self.index, later)
+            learnt = self._mark_driven(here)
             self.index, self._best_rad, self._stale = later, float("inf"), 0
             values = {"s_cv": s_here, "s_nv": s_there, "via": self.path[later]}
-            return (Note("via_advanced", f"next via {_name(self.path[later])}", dict(values)),)
+            return (*learnt, Note("via_advanced", f"next via {_name(self.path[later])}", dict(values)))
         return ()
 
     def _may_advance(self, here: NodeMatch | None, there: NodeMatch, later: int, ranges: Ranges) -> bool:
@@ -135,13 +140,13 @@ class PathFollower:
         beyond = later == self.index + 1 and self._is_at(here) and self._known_leg()
         return beyond and s_there > self._profile.s_via_min
 
-    def _mark_driven(self, start: int, end: int) -> None:
-        """A via point passed: the edge was driven once more."""
-        if end != start + 1 or GOAL in self.path[start : end + 1]:
-            return
-        edge = self._maps.graph.edge(self.path[start], self.path[end])
-        if edge is not None and edge.traversals == 0:
-            self._maps.commit([PutEdge(edge=edge.model_copy(update={"traversals": 1, "why": "driven"}))])
+    def _mark_driven(self, match: NodeMatch | None) -> tuple[Note, ...]:
+        """The robot stands at a via point: the leg to it has been driven."""
+        ends = self.current_leg()
+        if ends is None or GOAL in ends or not self._is_at(match):
+            return ()
+        note = self._experience.driven(ends, match)
+        return () if note is None else (note,)
 
     def _arrived(self, match: NodeMatch, s_cv: int) -> bool:
         if s_cv > self._profile.s_final:
@@ -184,11 +189,6 @@ class PathFollower:
 
     def _hold(self, why: str, notes: tuple[Note, ...]) -> Decision:
         return Decision("hold", why=why, notes=notes)
-
-
-def leg(first: int, second: int) -> Leg:
-    """A leg without direction."""
-    return (min(first, second), max(first, second))
 
 
 def _name(node_id: int) -> str:

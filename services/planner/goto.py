@@ -1,13 +1,16 @@
 """Mission goto: drive to where a picture was taken (thesis sections 4.1 and 4.3)."""
 
-from services.planner.following import Leg, PathFollower, Target
+from dataclasses import replace
+
+from services.planner.experience import Experience, Leg, leg
+from services.planner.following import PathFollower, Target
 from services.planner.ports import GOAL, Decision, MapAccess, Matcher, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.routing import plan_path, visible
+from services.planner.search import Search, search_back
 from services.planner.similarity import ranked, similarity, trusted
 from services.planner.surroundings import is_clear, is_clear_from
 from shared.messages.features import Features
-from shared.messages.maps import DeleteEdge, PutEdge
 from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
 from shared.messages.sensors import Ranges
@@ -15,6 +18,7 @@ from shared.messages.sensors import Ranges
 LOCALISE_K = 8
 MAX_LOST = 12
 MAX_STUCK = 12
+SEARCH_STEPS = 150
 
 
 class Goto:
@@ -27,6 +31,10 @@ class Goto:
         self._lost = self._stuck = 0
         self._avoid: dict[int, float] = {}
         self._doubted: set[Leg] = set()
+        self._experience = Experience(profile, maps)
+        self._suspect: tuple[Leg, str] | None = None
+        self._search: Search | None = None
+        self._last_heading_rad = 0.0
         self.progress = Progress()
 
     def decide(self, observation: Observation) -> Decision:
@@ -36,22 +44,51 @@ class Goto:
             self._targets = self._locate_goal()
             notes = (Note("goal_located", f"goal resembles nodes {sorted(self._targets)}"),)
         if self._follower is None:
-            failed = self._plan(observation.ranges)
-            if failed is not None:
-                return failed
+            notes += self._plan_notes(here := self._localise(), observation.ranges)
+            waiting = self._plan(here, observation.ranges)
+            if waiting is not None:
+                return _with_notes(waiting, notes)
         assert self._follower is not None
         state, decision = self._follower.step(observation, self._matcher)
         self.progress = self._follower.progress
         if state == "arrived":
             return self._end("succeeded", "", decision.why, notes + decision.notes)
         if state == "going":
+            self._last_heading_rad = decision.heading_rad
             return _with_notes(decision, notes)
         return self._recover(state, decision, notes)
 
-    def _plan(self, ranges: Ranges) -> Decision | None:
+    def _localise(self) -> dict[int, NodeMatch]:
+        """The goal and the most similar places of the whole map, from the current frame alone."""
+        return self._matcher.match([], LOCALISE_K, (self._goal,))
+
+    def _plan_notes(self, here: dict[int, NodeMatch], ranges: Ranges) -> tuple[Note, ...]:
+        """What localisation says about edges: one that just failed, suspended ones that are seen free."""
+        seen = {n: m for n, m in here.items() if n != GOAL and trusted(m, self._profile)}
+        notes = list(self._judge_suspect(seen))
+        for near in (n for n, m in seen.items() if m.status == "no_baseline"):
+            for far, match in seen.items():
+                if far != near and is_clear(match, ranges, self._profile):
+                    note = self._experience.seen_free(leg(near, far), match)
+                    notes += [] if note is None else [note]
+        return tuple(notes)
+
+    def _judge_suspect(self, seen: dict[int, NodeMatch]) -> tuple[Note, ...]:
+        """A robot that finds itself far from the leg it lost was carried: that says nothing about the leg."""
+        if self._suspect is None or not seen:
+            return ()
+        (ends, why), self._suspect = self._suspect, None
+        graph = self._maps.graph
+        near = {*ends, *graph.neighbours(ends[0]), *graph.neighbours(ends[1])}
+        best = ranked(seen, self._profile)[0][0]
+        if best not in near:
+            return (Note("relocated", f"lost near edge {ends}, found again at node {best}"),)
+        return (self._experience.failed(ends, why),)
+
+    def _plan(self, here: dict[int, NodeMatch], ranges: Ranges) -> Decision | None:
         """Set a follower, or return how the mission goes on without one."""
         assert self._targets is not None
-        here = self._matcher.match([], LOCALISE_K, (self._goal,))
+        here = dict(here)
         seen_goal = here.pop(GOAL, None)
         if seen_goal is not None and not self._stuck and self._in_sight(seen_goal, ranges):
             self._follow([GOAL])
@@ -60,20 +97,44 @@ class Goto:
             return self._end("failed", "goal_not_in_map", "the goal resembles no place of the map", ())
         clear = {n for n, m in here.items() if is_clear(m, ranges, self._profile)}
         starts = visible(here, self._profile, self._profile.s_via_min, clear)
-        starts = {node: cost + self._avoid.get(node, 0.0) for node, cost in starts.items()}
-        path = plan_path(self._maps.graph, starts, self._targets, self._profile, self._doubted)
+        closed = self._experience.unreachable
+        ways = {
+            node: cost + self._avoid.get(node, 0.0) for node, cost in starts.items() if node not in closed
+        }
+        banned = self._experience.banned
+        path = plan_path(self._maps.graph, ways, self._targets, self._profile, self._doubted, banned)
         if path:
+            self._search = None
             self._follow([*path, GOAL])
             return None
+        if starts:
+            return self._no_way()
+        return self._look_for_map(ranked(here, self._profile)[:1])
+
+    def _no_way(self) -> Decision:
+        """Known places are in sight, but every path is closed."""
         self._lost += 1
-        nearest = ranked(here, self._profile)[:1]
+        banned = len(self._experience.banned)
+        why = f"no path from here to the goal, {banned} legs failed in this mission"
+        if self._experience.forgive():
+            return Decision("hold", why=why, notes=(Note("second_try", f"{why}: all are tried once more"),))
+        if self._lost <= MAX_LOST and not banned:
+            return Decision("hold", why=why)
+        return self._end("failed", "blocked" if banned else "no_path", why, ())
+
+    def _look_for_map(self, nearest: list[tuple[int, NodeMatch]]) -> Decision:
+        """Lost: towards what resembles a place most, else in sweeps that grow."""
+        if self._search is None:
+            self._search = search_back(self._last_heading_rad, SEARCH_STEPS)
         s_nearest = similarity(nearest[0][1], self._profile) if nearest else 0
-        if self._lost > MAX_LOST:
-            kind: FailureKind = "no_path" if starts else "lost"
-            return self._end("failed", kind, f"no path from here, best similarity {s_nearest}", ())
+        if self._search.exhausted:
+            why = f"nothing known found in {SEARCH_STEPS} steps, best similarity {s_nearest}"
+            return self._end("failed", "lost", why, ())
+        heading_rad = self._search.next_heading()
+        if nearest and nearest[0][1].heading_rad is not None:
+            heading_rad = nearest[0][1].heading_rad
         why = f"looking for a place I know, best similarity {s_nearest}"
-        heading = nearest[0][1].heading_rad if nearest else None
-        return Decision("go", heading if heading is not None else 0.0, 0, 1.0, "searching", why)
+        return Decision("go", heading_rad, 0, 1.0, "searching", why)
 
     def _locate_goal(self) -> dict[int, float]:
         """Places the goal resembles, with the cost of the last leg from each."""
@@ -88,7 +149,9 @@ class Goto:
 
     def _follow(self, path: list[int]) -> None:
         target = Target(self._goal, self._profile.arrival_rad)
-        self._follower = PathFollower(self._profile, self._maps, path, target, self._doubted)
+        self._follower = PathFollower(
+            self._profile, self._maps, path, target, self._doubted, self._experience
+        )
 
     def _recover(self, state: str, decision: Decision, notes: tuple[Note, ...]) -> Decision:
         """Give up the edge that failed and plan again from what is seen now."""
@@ -100,13 +163,15 @@ class Goto:
         self._follower = None
         self._avoid[via] = self._avoid.get(via, 0.0) + 0.5
         notes += (*decision.notes, Note("replan", f"{state}: {decision.why}"))
-        if ends is not None and GOAL not in ends:
-            notes += (self._give_up(ends, state),)
+        ends = ends if ends is None or GOAL not in ends else None
         if state == "stuck":
+            notes += self._experience.stuck(ends, via)
             self._stuck += 1
             if self._stuck > MAX_STUCK:
                 return self._end("failed", "blocked", decision.why, notes)
-        else:
+        elif ends is not None:
+            self._suspect = (ends, state)
+        if state != "stuck":
             self._lost += 1
             if self._lost > MAX_LOST:
                 return self._end("failed", "lost", decision.why, notes)
@@ -119,20 +184,6 @@ class Goto:
         notes += (*decision.notes, Note("leg_doubted", f"leg {doubted}: {decision.why}"))
         return Decision("hold", why=f"planning again: {decision.why}", notes=notes)
 
-    def _give_up(self, ends: tuple[int, int], why: str) -> Note:
-        """Thesis: delete after one bad frame (equation 6.4); default: count, and suspend the second time."""
-        edge = self._maps.graph.edge(*ends)
-        if edge is None:
-            return Note("edge_gone", f"edge {ends} is no longer in the map")
-        if self._profile.delete_edges:
-            self._maps.commit([DeleteEdge(a=edge.a, b=edge.b)])
-            return Note("edge_deleted", f"edge {ends}: {why}")
-        failures = edge.failures + 1
-        suspended = failures >= 2 and edge.traversals == 0
-        update = {"failures": failures, "suspended": suspended, "why": f"{why} while driving"}
-        self._maps.commit([PutEdge(edge=edge.model_copy(update=update))])
-        return Note("edge_suspended" if suspended else "edge_failed", f"edge {ends}: {why}")
-
     def _end(self, outcome: str, kind: FailureKind, why: str, notes: tuple[Note, ...]) -> Decision:
         return Decision(
             "hold",
@@ -144,14 +195,4 @@ class Goto:
 
 
 def _with_notes(decision: Decision, notes: tuple[Note, ...]) -> Decision:
-    if not notes:
-        return decision
-    return Decision(
-        decision.action,
-        decision.heading_rad,
-        decision.s_cv,
-        decision.speed_fraction,
-        decision.method,
-        decision.why,
-        notes + decision.notes,
-    )
+    return replace(decision, notes=notes + decision.notes) if notes else decision

@@ -12,6 +12,9 @@ EdgeCost = Callable[[Edge], float]
 UNSEEN_GROUND = 6.0
 """Ground nobody has driven or seen free counts this much more: furniture may stand there."""
 
+SUSPENDED_RAD = 20.0
+"""Cost of an edge that experience speaks against: taken only where there is no other way."""
+
 
 class MapGraph:
     """Undirected graph of places (thesis section 4.2)."""
@@ -58,7 +61,10 @@ class MapGraph:
         return edge.heading_ab_rad if edge.a == node_id else edge.heading_ba_rad
 
     def costs_to(self, targets: Mapping[int, float], cost: EdgeCost) -> dict[int, float]:
-        """Cost from every node to the cheapest target; `targets` holds what each adds. Dijkstra."""
+        """Cost from every node to the cheapest target; `targets` holds what each adds. Dijkstra.
+
+        An edge of infinite cost is not used.
+        """
         return dict(self._with_goal(targets, cost)[1])
 
     def path(self, source: int, targets: Mapping[int, float], cost: EdgeCost) -> list[int]:
@@ -73,8 +79,9 @@ class MapGraph:
         graph: nx.Graph[int] = nx.Graph()
         graph.add_nodes_from(sorted(self.nodes))
         for (a, b), edge in sorted(self.edges.items()):
-            if not edge.suspended:
-                graph.add_edge(a, b, weight=cost(edge))
+            weight = cost(edge)
+            if weight < math.inf:
+                graph.add_edge(a, b, weight=weight)
         for node_id, extra in sorted(targets.items()):
             if node_id in self.nodes:
                 graph.add_edge(node_id, goal, weight=extra)
@@ -93,16 +100,16 @@ class MapGraph:
         return int(nx.number_connected_components(graph))
 
 
-def fewest_nodes(_edge: Edge) -> float:
+def fewest_nodes(edge: Edge) -> float:
     """The thesis's cost: every edge counts one (section 4.1)."""
-    return 1.0
+    return SUSPENDED_RAD if edge.suspended else 1.0
 
 
 def least_disparity(edge: Edge) -> float:
     """Sum of angular disparities: grows with distance, prefers edges driven or seen free."""
     disparity = edge.disparity_rad if edge.disparity_rad is not None else 0.5
     trust = 1.0 if edge.traversals or edge.clear else UNSEEN_GROUND
-    return trust * disparity + 0.03 + 0.3 * edge.failures
+    return trust * disparity + 0.03 + 0.3 * edge.failures + SUSPENDED_RAD * edge.suspended
 
 
 def edge_between(

@@ -1,5 +1,6 @@
 """Localisation and path planning (thesis section 4.1): from what is seen now to what the goal resembles."""
 
+import math
 from collections.abc import Collection, Mapping
 
 from services.planner.graph import UNSEEN_GROUND, EdgeCost, MapGraph, fewest_nodes, least_disparity
@@ -46,6 +47,7 @@ def plan_path(
     targets: Mapping[int, float],
     profile: Profile,
     doubted: Collection[tuple[int, int]] = (),
+    banned: Collection[tuple[int, int]] = (),
 ) -> list[int]:
     """Cheapest node sequence from any start to any target; empty when there is none.
 
@@ -55,10 +57,13 @@ def plan_path(
         targets: nodes to reach, with the cost of the leg beyond.
         profile: kind of cost.
         doubted: legs on which no free ground was seen; taken only when there is hardly another way.
+        banned: legs not to be tried.
     """
     base = edge_cost(profile)
 
     def cost(edge: Edge) -> float:
+        if (edge.a, edge.b) in banned:
+            return math.inf
         return base(edge) + DOUBT_RAD * ((edge.a, edge.b) in doubted)
 
     targets = {node: extra + DOUBT_RAD * ((GOAL, node) in doubted) for node, extra in targets.items()}

@@ -41,10 +41,22 @@ def test_unseen_ground_is_avoided_when_there_is_another_way():
     assert MapGraph(nodes, [direct, *around]).path(0, {2: 0.0}, fewest_nodes) == [0, 2]
 
 
-def test_suspended_edge_is_no_way():
-    suspended = Edge(a=0, b=1, suspended=True)
-    places = MapGraph([Node(node_id=0), Node(node_id=1)], [suspended])
-    assert places.path(0, {1: 0.0}, fewest_nodes) == []
+@pytest.mark.parametrize("cost", [fewest_nodes, least_disparity])
+def test_suspended_edge_is_the_last_resort(cost):
+    nodes = [Node(node_id=n) for n in range(8)]
+    suspended = Edge(a=0, b=1, disparity_rad=0.1, clear=True, suspended=True)
+    around = [Edge(a=min(p), b=max(p), disparity_rad=0.3) for p in itertools.pairwise([0, 2, 3, 4, 5, 6, 7])]
+    around.append(Edge(a=1, b=7, disparity_rad=0.3))
+    assert MapGraph(nodes, [suspended]).path(0, {1: 0.0}, cost) == [0, 1]
+    assert MapGraph(nodes, [suspended, *around]).path(0, {1: 0.0}, cost) == [0, 2, 3, 4, 5, 6, 7, 1]
+
+
+def test_an_edge_of_infinite_cost_is_no_way():
+    assert graph([(0, 1)]).path(0, {1: 0.0}, lambda _edge: math.inf) == []
+
+
+def test_suspended_edges_join_no_components():
+    places = MapGraph([Node(node_id=0), Node(node_id=1)], [Edge(a=0, b=1, suspended=True)])
     assert places.components() == 2
 
 

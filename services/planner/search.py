@@ -1,0 +1,48 @@
+"""Lost: sweeps that grow until something known is seen, or patience ends. Pure."""
+
+import math
+from dataclasses import dataclass
+
+FIRST_STEPS = 6
+GROWTH = 1.5
+TURN_RAD = math.radians(137.5)
+"""The golden angle: later sweeps never repeat an earlier direction."""
+
+
+@dataclass
+class Search:
+    """Where to go while nothing is recognised: back along the last heading first, then ever longer sweeps.
+
+    The camera does not turn with the driving direction, so directions in its frame stay comparable. Obstacles
+    are passed by the drive service.
+
+    Attributes:
+        heading_rad: of the present sweep, robot frame.
+        patience_steps: steps after which the search is given up.
+    """
+
+    heading_rad: float
+    patience_steps: int
+    steps: int = 0
+    left: int = FIRST_STEPS
+    sweep_steps: float = FIRST_STEPS
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether to give up."""
+        return self.steps >= self.patience_steps
+
+    def next_heading(self) -> float:
+        """Heading of this step."""
+        if self.left <= 0:
+            self.sweep_steps *= GROWTH
+            self.left = round(self.sweep_steps)
+            self.heading_rad = math.remainder(self.heading_rad + TURN_RAD, math.tau)
+        self.left -= 1
+        self.steps += 1
+        return self.heading_rad
+
+
+def search_back(last_heading_rad: float, patience_steps: int) -> Search:
+    """A search that starts by going back."""
+    return Search(math.remainder(last_heading_rad + math.pi, math.tau), patience_steps)

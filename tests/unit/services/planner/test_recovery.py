@@ -1,0 +1,98 @@
+"""What may happen after mapping: doors close and open, robots are carried, pictures come from elsewhere."""
+
+import copy
+import math
+
+import numpy as np
+import pytest
+
+from services.drive.core import DriveLimits
+from services.planner.explore import FrontierExploration
+from services.planner.goto import Goto
+from services.planner.profiles import DEFAULT
+from simulator.parts import Material, box
+from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, picture, run
+
+START = (2.6, 1.3, 0.0)
+HALL = (-0.2, -3.0, 0.0)
+LOUNGE = (1.6, 2.0, 0.0)
+DOOR = box((0.9, 2.4), (-0.14, -0.02), (0.0, 2.0), Material("lacquer"))
+"""Shuts the only opening between living room and corridor."""
+
+
+@pytest.fixture(scope="module")
+def mapped():
+    world, maps = PlaneWorld(START, np.random.default_rng(2)), PlaneMap()
+    matcher = PlaneMatcher(world, maps)
+    run(world, FrontierExploration(DEFAULT, maps, matcher, np.random.default_rng(2)), DriveLimits(), 5000)
+    return maps
+
+
+@pytest.fixture
+def explored(mapped):
+    world, maps = PlaneWorld(LOUNGE, np.random.default_rng(2)), copy.deepcopy(mapped)
+    return world, maps, PlaneMatcher(world, maps)
+
+
+def go(explored, goal, max_steps=2500):
+    world, maps, matcher = explored
+    return run(world, Goto(DEFAULT, maps, matcher, picture(goal)), DriveLimits(), max_steps)
+
+
+def test_a_closed_door_is_a_typed_failure_and_an_open_one_is_used_again(explored):
+    world, maps, _ = explored
+    before = world.space
+    world.put(DOOR)
+    decision, _ = go(explored, HALL)
+    assert (decision.outcome, decision.failure) == ("failed", "blocked"), decision.why
+    assert any(edge.suspended for edge in maps.graph.edges.values())
+    assert world.collisions == 0
+    world.take_away(before)
+    decision, _ = go(explored, HALL)
+    assert decision.outcome == "succeeded", decision.why
+    assert math.dist(world.pose[:2], HALL[:2]) < 0.35
+
+
+def test_a_door_that_closes_on_one_of_two_ways_is_gone_round(explored):
+    """The lounge is a ring round the sofa: a barrier across one arm leaves the other."""
+    world, _, _ = explored
+    world.put(box((2.6, 4.0), (1.9, 2.0), (0.0, 0.7), Material("lacquer")))
+    decision, _ = go(explored, (4.6, 5.2, 0.0))
+    assert decision.outcome == "succeeded", decision.why
+    assert world.collisions == 0
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_carried_robot_arrives_all_the_same_and_blames_no_edge(explored, seed):
+    world, maps, matcher = explored
+    rng = np.random.default_rng(seed)
+    mission = Goto(DEFAULT, maps, matcher, picture((6.6, 2.0, 0.0)))
+    world.pose = HALL
+    run(world, mission, DriveLimits(), 15)
+    world.pose = world.space.random_pose(rng, 0.1)
+    failures = sum(edge.failures for edge in maps.graph.edges.values())
+    decision, _ = run(world, mission, DriveLimits(), 2000)
+    assert decision.outcome == "succeeded", decision.why
+    assert sum(edge.failures for edge in maps.graph.edges.values()) <= failures + 1
+
+
+def test_a_robot_that_sees_nothing_known_searches_and_gives_up_by_name(explored):
+    world, maps, matcher = explored
+    mission = Goto(DEFAULT, maps, matcher, picture(HALL))
+    mission.decide(world.observe())
+    matcher.blind = True
+    decision, steps = run(world, mission, DriveLimits(), 1000)
+    assert (decision.outcome, decision.failure) == ("failed", "lost")
+    assert steps > 100
+    assert world.collisions == 0
+
+
+def test_a_stretch_without_features_is_crossed(explored):
+    world, maps, matcher = explored
+    mission = Goto(DEFAULT, maps, matcher, picture(HALL))
+    run(world, mission, DriveLimits(), 6)
+    matcher.blind = True
+    run(world, mission, DriveLimits(), 30)
+    matcher.blind = False
+    decision, _ = run(world, mission, DriveLimits(), 1500)
+    assert decision.outcome == "succeeded", decision.why
