@@ -25,14 +25,16 @@ from services.planner.profiles import Profile
 from services.planner.routing import plan_path, visible
 from services.planner.search import Search, search_back
 from services.planner.similarity import ranked, similarity, trusted
-from services.planner.surroundings import free_way_m, is_clear
+from services.planner.surroundings import free_way_m, hidden_openings, is_clear, through_gap_rad
 from shared.messages.maps import Node, UpdateNode
 from shared.messages.matching import NodeMatch
+from shared.messages.sensors import Ranges
 
 EDGE_CANDIDATES = 12
 NEAR_NODES = 5
 KNOWN_STEPS = 1
 CORNER_STEPS = 2
+DOORWAY_NODES = 3
 MAX_TRAVEL_FAILURES = 2
 SEARCH_STEPS = 120
 
@@ -114,12 +116,23 @@ class FrontierExploration:
             if is_new_place(merged, self._profile):
                 return self._new_place(observation, departure, merged)
             return self._known(departure, merged)
+        if self._doorway(observation.ranges, matches):
+            everything = {**self._matcher.match([], EDGE_CANDIDATES), **matches}
+            return self._new_place(observation, departure, everything)
         if free_way_m(observation.ranges, departure.heading_rad, self._profile) < self._profile.blocked_m:
             return self._close_departure(departure, "blocked by an obstacle")
         if departure.steps > self._profile.departure_steps:
             return self._close_departure(departure, "nothing new on the way")
+        heading_rad = through_gap_rad(observation.ranges, departure.heading_rad, self._profile)
         why = f"leaving node {departure.node_id}, S {s_best}"
-        return Decision("go", departure.heading_rad, 0, 1.0, "frontier", why)
+        return Decision("go", heading_rad, 0, 1.0, "frontier", why)
+
+    def _doorway(self, ranges: Ranges, matches: dict[int, NodeMatch]) -> bool:
+        """Whether a way out shows beside the way that the places around do not know."""
+        nodes = self._maps.graph.nodes
+        seen = [(n, m) for n, m in ranked(matches, self._profile) if n in nodes and trusted(m, self._profile)]
+        near = [(nodes[n], m.yaw_rad or 0.0) for n, m in seen[:DOORWAY_NODES]]
+        return bool(near) and bool(hidden_openings(ranges, near, self._profile))
 
     def _out_of_sight(self, departure: Departure, s_best: int) -> Decision:
         """The view changed within a few steps, as at a corner: go back and make a place there."""

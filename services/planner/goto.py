@@ -19,6 +19,7 @@ LOCALISE_K = 8
 MAX_LOST = 12
 MAX_STUCK = 12
 SEARCH_STEPS = 150
+LAST_LEG_RAD = 1.0
 
 
 class Goto:
@@ -160,6 +161,8 @@ class Goto:
             return self._doubt(self._follower.next_leg(), decision, notes)
         ends = self._follower.current_leg()
         via = self._follower.path[self._follower.index]
+        if via == GOAL and self._follower.index:
+            self._blame_last_leg(self._follower.path[-2])
         self._follower = None
         self._avoid[via] = self._avoid.get(via, 0.0) + 0.5
         notes += (*decision.notes, Note("replan", f"{state}: {decision.why}"))
@@ -176,6 +179,11 @@ class Goto:
             if self._lost > MAX_LOST:
                 return self._end("failed", "lost", decision.why, notes)
         return Decision("hold", why=f"planning again: {decision.why}", notes=notes)
+
+    def _blame_last_leg(self, last: int) -> None:
+        """The goal was not found from its last place: those on its other sides come first now."""
+        if self._targets is not None and last in self._targets:
+            self._targets[last] += LAST_LEG_RAD
 
     def _doubt(self, doubted: Leg, decision: Decision, notes: tuple[Note, ...]) -> Decision:
         """No free ground is seen along a leg: plan again with it as the last resort."""

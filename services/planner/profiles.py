@@ -25,6 +25,7 @@ class Profile(BaseModel):
         path_cost: "disparity" or the thesis's "nodes".
         suspend_after: bad frames in a row before an edge is given up; delete_edges: for good (equation 6.4).
         opening_m: free way that makes a direction worth exploring; blocked_m: too little to go on.
+        doorway_m: free way beyond which an opening beside the way is a doorway, worth a place of its own.
         departure_steps: steps in an unexplored direction after which nothing new is to be expected there.
         disparity_rad_per_m: how fast bearings change with distance in this kind of place.
         arrival_rad: angular disparity at which a place is reached; 0 uses s_final.
@@ -56,6 +57,7 @@ class Profile(BaseModel):
     admissible_noise_rad: float = math.radians(90.0)
     opening_m: PositiveFloat = 0.55
     blocked_m: PositiveFloat = 0.25
+    doorway_m: PositiveFloat = 1.0
     departure_steps: PositiveInt = 18
     robot_radius_m: PositiveFloat = 0.3
     robot_slim_m: PositiveFloat = 0.27
@@ -91,6 +93,7 @@ OUTDOOR = DEFAULT.model_copy(
         "near_rad": math.radians(2.0),
         "opening_m": 2.0,
         "blocked_m": 0.4,
+        "doorway_m": 3.0,
         "departure_steps": 40,
         "robot_radius_m": 0.35,
         "robot_slim_m": 0.3,
@@ -102,7 +105,7 @@ OUTDOOR = DEFAULT.model_copy(
 THESIS_OUTDOOR = THESIS.model_copy(
     update={
         name: getattr(OUTDOOR, name)
-        for name in ("opening_m", "blocked_m", "departure_steps", "disparity_rad_per_m")
+        for name in ("opening_m", "blocked_m", "doorway_m", "departure_steps", "disparity_rad_per_m")
     }
     | {"name": "thesis_outdoor", "heading_method": "4"}
 )

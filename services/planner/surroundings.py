@@ -1,6 +1,7 @@
 """What twelve distances say about the way to a place that is only known by its bearing and disparity."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
 
 SECTOR_RAD = math.tau / SECTORS
+ASIDE_RAD = np.deg2rad([0.0, 5.0, -5.0, 10.0, -10.0, 15.0, -15.0, 20.0, -20.0, 25.0, -25.0, 30.0, -30.0])
 WITHIN_SECTOR_RAD = np.deg2rad(np.arange(-15.0, 16.0, 5.0))
 
 
@@ -21,9 +23,46 @@ def free_way_m(ranges: Ranges, heading_rad: float, profile: Profile) -> float:
     return float(obstacles.clearance_m(heading_rad + WITHIN_SECTOR_RAD, profile.robot_slim_m).max())
 
 
+def through_gap_rad(ranges: Ranges, heading_rad: float, profile: Profile) -> float:
+    """The heading, turned aside as little as needed to go on where it is blocked: so gaps are threaded.
+
+    A gap hardly wider than the robot is missed by a straight line that starts a hand's breadth beside it.
+    """
+    obstacles = Obstacles.from_ranges(ranges.angles_rad, ranges.distances_m, ranges.max_range_m)
+    free_m = obstacles.clearance_m(heading_rad + ASIDE_RAD, profile.robot_slim_m)
+    wanted_m = min(profile.opening_m, float(free_m.max()))
+    return math.remainder(heading_rad + float(ASIDE_RAD[(free_m >= wanted_m).argmax()]), math.tau)
+
+
 def openings(ranges: Ranges, profile: Profile) -> tuple[bool, ...]:
     """Per sector, whether the robot can go at least the profile's opening that way."""
     return tuple(free_way_m(ranges, s * SECTOR_RAD, profile) >= profile.opening_m for s in range(SECTORS))
+
+
+def hidden_openings(ranges: Ranges, nodes: Sequence[tuple[Node, float]], profile: Profile) -> list[int]:
+    """Ways out seen from here that none of the near places has: sectors of the robot frame.
+
+    A doorway beside the way shows for a few frames only; places half a metre before and after it know nothing
+    of it. To be worth a place of its own a way out must be clear for `doorway_m`.
+
+    Args:
+        ranges: the distances here.
+        nodes: the places near, each with the yaw of its camera in the robot frame.
+        profile: lengths that count.
+    """
+    found = []
+    for sector in range(SECTORS):
+        heading_rad = sector * SECTOR_RAD
+        if free_way_m(ranges, heading_rad, profile) < profile.doorway_m:
+            continue
+        if not any(_knows(node, heading_rad - yaw_rad) for node, yaw_rad in nodes):
+            found.append(sector)
+    return found
+
+
+def _knows(node: Node, heading_rad: float) -> bool:
+    """Whether a place is open towards `heading_rad`, its own frame."""
+    return node.open[round(heading_rad / SECTOR_RAD) % SECTORS]
 
 
 def length_m(disparity_rad: float, profile: Profile) -> float:

@@ -14,6 +14,9 @@ ARC_POINTS = 5
 NEARER_M = 0.08
 """A neighbour that reads this much less has the nearer end of the same surface."""
 
+GAP_M = 0.4
+"""A neighbour that reads this much more looks past the end of the surface."""
+
 
 @dataclass(frozen=True)
 class Obstacles:
@@ -32,8 +35,9 @@ class Obstacles:
         """Spread each echo nearer than `max_range_m` over the part of its beam it may come from.
 
         An echo can come from anywhere in the beam. Where a neighbouring sensor reads clearly less, both see
-        one surface that runs towards that neighbour: the echo then lies in that half of the beam. So a
-        passage little wider than the robot stays open.
+        one surface that runs towards that neighbour: the echo then lies in that half of the beam. So it does
+        where one neighbour reads the same and the other looks through a gap: a doorway little wider than the
+        robot stays open.
 
         Args:
             angles_rad: axes of the sensors in ascending order round the robot.
@@ -42,8 +46,11 @@ class Obstacles:
         """
         angles, distances = np.asarray(angles_rad), np.asarray(distances_m)
         left, right = np.roll(distances, -1), np.roll(distances, 1)
-        low = np.where((left < distances - NEARER_M) & (left <= right), 0.2, -1.0) * HALF_BEAM_RAD
-        high = np.where((right < distances - NEARER_M) & (right < left), -0.2, 1.0) * HALF_BEAM_RAD
+        low = np.where((left < distances - NEARER_M) & (left <= right), 0.2, -1.0)
+        high = np.where((right < distances - NEARER_M) & (right < left), -0.2, 1.0)
+        low = np.where((np.abs(left - distances) < NEARER_M) & (right > distances + GAP_M), -0.2, low)
+        high = np.where((np.abs(right - distances) < NEARER_M) & (left > distances + GAP_M), 0.2, high)
+        low, high = low * HALF_BEAM_RAD, high * HALF_BEAM_RAD
         share = np.linspace(0.0, 1.0, ARC_POINTS)
         arcs_rad = angles[:, None] + low[:, None] + (high - low)[:, None] * share
         seen = distances < max_range_m * 0.98
