@@ -1,30 +1,38 @@
 """Floor outlines of solid parts, and distances to them. Pure; distance sensors and free space build on it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
-from simulator.parts import Part, solids_between
+from simulator.parts import Part, rotation_z, solids_between
 
 FloatArray = npt.NDArray[np.float64]
 
 
+def _no_polygons() -> FloatArray:
+    return np.zeros((0, 3, 2))
+
+
 @dataclass(frozen=True)
 class Footprints:
-    """Outlines of solids: n rectangles (centre, half size, yaw) and m discs (centre, radius); m, rad."""
+    """Outlines of solids: n rectangles (centre, half size, yaw), m discs (centre, radius), k polygons; m, rad.
+
+    Polygons are (k, corners, 2), convex and counter-clockwise; shorter ones repeat their last corner.
+    """
 
     centres_m: FloatArray
     halves_m: FloatArray
     yaws_rad: FloatArray
     disc_centres_m: FloatArray
     disc_radii_m: FloatArray
+    polygons_m: FloatArray = field(default_factory=_no_polygons)
 
 
 def footprints(parts: tuple[Part, ...], low_m: float, high_m: float) -> Footprints:
     """Outlines of all solid parts that reach into the heights low_m..high_m."""
     solids = solids_between(parts, low_m, high_m)
-    flat = [p for p in solids if p.shape != "cylinder"]
+    flat = [p for p in solids if p.shape not in ("cylinder", "hull")]
     round_ = [p for p in solids if p.shape == "cylinder"]
     return Footprints(
         np.array([p.centre_m[:2] for p in flat], float).reshape(-1, 2),
@@ -32,7 +40,14 @@ def footprints(parts: tuple[Part, ...], low_m: float, high_m: float) -> Footprin
         np.array([p.yaw_rad for p in flat], float),
         np.array([p.centre_m[:2] for p in round_], float).reshape(-1, 2),
         np.array([p.size_m[0] / 2 * max(1.0, p.taper) for p in round_], float),
+        _stacked([hull_corners_m(p) for p in solids if p.shape == "hull"]),
     )
+
+
+def hull_corners_m(part: Part) -> FloatArray:
+    """Corners of a hull seen from above in its frame, (corners, 2) metres."""
+    turned = np.array(part.outline_m) @ rotation_z(part.yaw_rad)[:2, :2].T
+    return np.asarray(turned + np.array(part.centre_m[:2]))
 
 
 def clearance_m(points_m: FloatArray, shapes: Footprints) -> FloatArray:
@@ -45,6 +60,8 @@ def clearance_m(points_m: FloatArray, shapes: Footprints) -> FloatArray:
     for centre, radius in zip(shapes.disc_centres_m, shapes.disc_radii_m, strict=True):
         delta = points_m - centre
         np.minimum(best, np.maximum(np.hypot(delta[:, 0], delta[:, 1]) - radius, 0.0), out=best)
+    for corners in shapes.polygons_m:
+        np.minimum(best, _polygon_distance_m(points_m, corners), out=best)
     return best
 
 
@@ -72,7 +89,61 @@ def cast_rays(origin_m: FloatArray, angles_rad: FloatArray, shapes: Footprints, 
         half = np.sqrt(np.maximum(shapes.disc_radii_m**2 - gap2, 0.0))
         hit = (gap2 <= shapes.disc_radii_m**2) & (along + half >= 0.0)
         best = np.minimum(best, np.where(hit, np.maximum(along - half, 0.0), np.inf).min(axis=1))
+    near = _within(shapes.polygons_m, origin_m, max_m)
+    if len(near):
+        best = np.minimum(best, _cast_at_polygons(origin_m, angles_rad, near).min(axis=1))
     return best
+
+
+def _stacked(polygons: list[FloatArray]) -> FloatArray:
+    """Polygons of different length as one array: the last corner is repeated."""
+    most = max((len(p) for p in polygons), default=3)
+    padded = [np.concatenate([p, np.repeat(p[-1:], most - len(p), axis=0)]) for p in polygons]
+    return np.array(padded).reshape(-1, most, 2)
+
+
+def _within(polygons: FloatArray, origin_m: FloatArray, max_m: float) -> FloatArray:
+    """The polygons whose bounding box is no further away than max_m."""
+    if not len(polygons):
+        return polygons
+    gap = np.maximum(polygons.min(axis=1) - origin_m, origin_m - polygons.max(axis=1))
+    return polygons[(gap < max_m).all(axis=1)]
+
+
+def _edges(polygons: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Outward normals (k, corners, 2), zero for repeated corners, and offsets (k, corners): n x <= c inside."""
+    along = np.roll(polygons, -1, axis=1) - polygons
+    normals = np.stack([along[..., 1], -along[..., 0]], axis=-1)
+    return normals, (normals * polygons).sum(axis=-1)
+
+
+def _cast_at_polygons(origin_m: FloatArray, angles_rad: FloatArray, polygons: FloatArray) -> FloatArray:
+    """Distances along rays to convex polygons by clipping against their edges, (rays, k); inf where missed."""
+    normals, offsets = _edges(polygons)
+    room = (offsets - normals @ origin_m)[None]  # positive: inside of that edge
+    unit = np.stack([np.cos(angles_rad), np.sin(angles_rad)], axis=-1)
+    speed = np.einsum("kcd,rd->rkc", normals, unit)
+    parallel = np.abs(speed) < 1e-12
+    t = room / np.where(parallel, 1.0, speed)
+    enter = np.where(parallel, np.where(room < 0.0, np.inf, -np.inf), np.where(speed < 0.0, t, -np.inf))
+    leave = np.where(parallel | (speed < 0.0), np.inf, t)
+    near, far = enter.max(axis=-1), leave.min(axis=-1)
+    return np.where((near <= far) & (far >= 0.0), np.maximum(near, 0.0), np.inf)
+
+
+def _polygon_distance_m(points_m: FloatArray, corners: FloatArray) -> FloatArray:
+    """Distance from (n, 2) points to one convex polygon, 0 inside; (n,)."""
+    inside = np.ones(len(points_m), bool)
+    squared = np.full(len(points_m), np.inf)
+    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        along, delta = b - a, points_m - a
+        length2 = float(along @ along)
+        if length2 == 0.0:
+            continue
+        inside &= along[0] * delta[:, 1] - along[1] * delta[:, 0] >= 0.0
+        t = np.clip(delta @ along / length2, 0.0, 1.0)
+        np.minimum(squared, ((delta - t[:, None] * along) ** 2).sum(axis=1), out=squared)
+    return np.where(inside, 0.0, np.sqrt(squared))
 
 
 def _into(delta: FloatArray, yaw: FloatArray | float) -> FloatArray:

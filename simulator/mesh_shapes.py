@@ -24,6 +24,8 @@ def mesh_of(part: Part) -> Mesh:
         "cushion": _cushion,
         "drape": _drape,
         "leaf": _leaf,
+        "mesh": _from_file,
+        "hull": _nothing,
     }[part.shape](part)
     rotation = rotation_of(part).astype(np.float32)
     return Mesh(
@@ -32,6 +34,19 @@ def mesh_of(part: Part) -> Mesh:
         local.uvs,
         local.triangles,
     )
+
+
+def _from_file(part: Part) -> Mesh:
+    if part.geometry is None:
+        raise ValueError("a part of shape 'mesh' needs its geometry, got None")
+    return part.geometry.mesh
+
+
+def _nothing(part: Part) -> Mesh:
+    """Hulls are felt and not seen."""
+    del part
+    floats, corners = np.zeros((0, 3), np.float32), np.zeros((0, 3), np.uint32)
+    return Mesh(floats, floats, np.zeros((0, 2), np.float32), corners)
 
 
 def _grid(rows: int, columns: int) -> IntArray:

@@ -10,16 +10,21 @@ from typing import Self
 from simulator import textures
 from simulator.disk_cache import DiskCache
 from simulator.fingerprint import code_fingerprint, fingerprint
-from simulator.parts import Material
+from simulator.parts import Material, Picture
 from simulator.textures.catalogue import draw
 from simulator.textures.noise import Image
 
 MOST_THREADS = 4
-Look = tuple[str, tuple[int, int, int], int]
+Drawn = tuple[str, tuple[int, int, int], int]
+Look = Drawn | Picture
 
 
 def look_of(material: Material) -> Look:
     """What decides the texture of a material."""
+    return material.picture or _drawn(material)
+
+
+def _drawn(material: Material) -> Drawn:
     return material.kind, material.colour, material.seed
 
 
@@ -31,7 +36,7 @@ class Painter:
         self._cache = cache
         self._code = code_fingerprint(Path(textures.__file__).parent.glob("*.py"))
         self._pool = ThreadPoolExecutor(min(MOST_THREADS, os.cpu_count() or 1), "painter")
-        self._ordered: dict[Look, Future[Image]] = {}
+        self._ordered: dict[Drawn, Future[Image]] = {}
 
     def __enter__(self) -> Self:
         return self
@@ -45,14 +50,16 @@ class Painter:
     def order(self, materials: Iterable[Material]) -> None:
         """Begin with these materials, in this order, and return at once."""
         for material in materials:
-            look = look_of(material)
-            if look not in self._ordered:
+            look = _drawn(material)
+            if material.picture is None and look not in self._ordered:
                 self._ordered[look] = self._pool.submit(self._paint, *look)
 
     def take(self, material: Material) -> Image:
         """Wait for the texture of a material, and forget it; (height, width, 3) RGB bytes."""
+        if material.picture is not None:
+            return material.picture.pixels
         self.order([material])
-        return self._ordered.pop(look_of(material)).result()
+        return self._ordered.pop(_drawn(material)).result()
 
     def _paint(self, kind: str, colour: tuple[int, int, int], seed: int) -> Image:
         key = fingerprint("texture", self._code, kind, tuple(int(c) for c in colour), int(seed))

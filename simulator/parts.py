@@ -7,19 +7,41 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from simulator.meshes import Mesh
+
 Vec3 = tuple[float, float, float]
 Rgb = tuple[int, int, int]
-Shape = Literal["box", "cylinder", "ellipsoid", "cushion", "drape", "leaf"]
+Shape = Literal["box", "cylinder", "ellipsoid", "cushion", "drape", "leaf", "mesh", "hull"]
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Pixels of a texture from a file: (height, width, 3) RGB bytes, row 0 at the top. The digest is the identity."""
+
+    digest: str
+    pixels: npt.NDArray[np.uint8] = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """Triangles from a file, in the frame of their part. The digest is the identity."""
+
+    digest: str
+    mesh: Mesh = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True)
 class Material:
-    """Look of a surface: texture kind (see textures.catalogue), colour, seed; above 0, `glow` shines."""
+    """Look of a surface: texture kind (see textures.catalogue), colour, seed; above 0, `glow` shines.
+
+    A `picture` takes the place of the drawn texture.
+    """
 
     kind: str
     colour: Rgb = (200, 200, 200)
     seed: int = 0
     glow: float = 0.0
+    picture: Picture | None = None
 
 
 @dataclass(frozen=True)
@@ -28,13 +50,16 @@ class Part:
 
     Attributes:
         shape: cylinders stand along local z, `taper` is top radius / bottom radius; cushions are boxes with
-            round edges; a drape is a waved sheet in local y-z; a leaf is a bent sheet along local x.
+            round edges; a drape is a waved sheet in local y-z; a leaf is a bent sheet along local x; a mesh
+            shows its `geometry`; a hull is an invisible upright prism that only stops the robot.
         centre_m: centre of the bounding box.
         size_m: full extent along the local axes.
         yaw_rad: rotation about z; pitch_rad and roll_rad come first (leaves and hanging things only).
         solid: whether it stops the robot. Solid parts have neither pitch nor roll.
         tile_m: side of one texture repeat; None stretches the texture over each face.
         uv: part of the texture used when stretched: u0, v0, u1, v1 with v = 0 at the top.
+        geometry: triangles of a mesh, around its centre.
+        outline_m: corners of a hull around its centre, convex, counter-clockwise from above.
     """
 
     shape: Shape
@@ -49,6 +74,8 @@ class Part:
     uv: tuple[float, float, float, float] = (0.0, 0.0, 1.0, 1.0)
     taper: float = 1.0
     casts_shadow: bool = True
+    geometry: Geometry | None = None
+    outline_m: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True)

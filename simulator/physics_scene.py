@@ -10,12 +10,14 @@ import numpy as np
 import sapien
 from sapien import physx
 
+from simulator.footprints import hull_corners_m
 from simulator.parts import Part, solids_between
 from simulator.robot import UPRIGHT, Robot
 from simulator.settings import RobotSettings
 
 TOUCH_N_S = 1e-6
 EPISODE_GAP_S = 0.5
+THRESHOLD_M = 0.02  # hulls below this are neither felt by the distance sensors nor hit by the robot
 
 
 class PhysicsScene:
@@ -74,6 +76,8 @@ def _add_static(scene: sapien.Scene, parts: tuple[Part, ...], height_m: float) -
     entity = floor.build_static(name="floor")
     solids = scene.create_actor_builder()
     for part in solids_between(parts, 0.0, height_m + 0.05):
+        if part.shape == "hull":
+            continue
         x, y, z = part.centre_m
         turn = sapien.Pose([x, y, z], [math.cos(part.yaw_rad / 2), 0, 0, math.sin(part.yaw_rad / 2)])
         if part.shape == "cylinder":
@@ -87,4 +91,23 @@ def _add_static(scene: sapien.Scene, parts: tuple[Part, ...], height_m: float) -
         else:
             solids.add_box_collision(turn, half_size=[s / 2 for s in part.size_m], material=material)
     solids.build_static(name="solids")
+    _add_hulls(scene, solids_between(parts, THRESHOLD_M, height_m + 0.05), material)
     return int(entity.per_scene_id)
+
+
+def _add_hulls(scene: sapien.Scene, parts: list[Part], material: physx.PhysxMaterial) -> None:
+    """Add upright prisms: the very outlines that the distance sensors measure."""
+    hulls = [part for part in parts if part.shape == "hull"]
+    if not hulls:
+        return
+    body = physx.PhysxRigidStaticComponent()
+    for part in hulls:
+        outline = hull_corners_m(part) - np.array(part.centre_m[:2])
+        half = part.size_m[2] / 2
+        corners = np.array([(x, y, z) for z in (-half, half) for x, y in outline], np.float32)
+        shape = physx.PhysxCollisionShapeConvexMesh(corners, np.ones(3, np.float32), material)
+        shape.set_local_pose(sapien.Pose(list(part.centre_m)))
+        body.attach(shape)
+    entity = sapien.Entity()
+    entity.add_component(body)
+    scene.add_entity(entity)
