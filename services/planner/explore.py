@@ -79,7 +79,7 @@ class FrontierExploration:
 
     def _first(self, observation: Observation) -> Decision:
         """The only node: random heading (thesis section 4.2)."""
-        node_id = add_place(self._maps, observation, {}, self._profile, None)
+        node_id, _ = add_place(self._maps, observation, {}, self._profile, None)
         self._last_heading_rad = float(self._rng.uniform(-math.pi, math.pi))
         return self._leave(node_id, 0.0, (Note("node_added", "first place of the map", {"node": node_id}),))
 
@@ -108,16 +108,16 @@ class FrontierExploration:
         if s_best <= self._profile.s_edge_min:
             return self._out_of_sight(departure, s_best)
         if departure.retreating:
-            everything = {**self._matcher.match([], EDGE_CANDIDATES), **matches}
+            everything = {**self._candidates(), **matches}
             return self._new_place(observation, departure, everything)
         if is_new_place(matches, self._profile):
-            everything = self._matcher.match([], EDGE_CANDIDATES)
+            everything = self._candidates()
             merged = {**everything, **matches}
             if is_new_place(merged, self._profile):
                 return self._new_place(observation, departure, merged)
             return self._known(departure, merged)
         if self._doorway(observation.ranges, matches):
-            everything = {**self._matcher.match([], EDGE_CANDIDATES), **matches}
+            everything = {**self._candidates(), **matches}
             return self._new_place(observation, departure, everything)
         if free_way_m(observation.ranges, departure.heading_rad, self._profile) < self._profile.blocked_m:
             return self._close_departure(departure, "blocked by an obstacle")
@@ -157,7 +157,7 @@ class FrontierExploration:
         self, observation: Observation, departure: Departure, matches: dict[int, NodeMatch]
     ) -> Decision:
         self._explored(departure)
-        node_id = add_place(self._maps, observation, matches, self._profile, departure.node_id)
+        node_id, refused = add_place(self._maps, observation, matches, self._profile, departure.node_id)
         self._departure, self._search = None, None
         self._last_heading_rad = departure.heading_rad
         edges = len(self._maps.graph.neighbours(node_id))
@@ -168,7 +168,8 @@ class FrontierExploration:
             "nearest": best[0],
             "s": similarity(best[1], self._profile),
         }
-        return self._leave(node_id, 0.0, (Note("node_added", f"new place with {edges} edges", dict(values)),))
+        added = Note("node_added", f"new place with {edges} edges", dict(values))
+        return self._leave(node_id, 0.0, (added, *refused))
 
     def _close_departure(self, departure: Departure, why: str, *, lost: bool = False) -> Decision:
         """This direction is done; go back to known ground when nothing is seen."""
@@ -256,6 +257,13 @@ class FrontierExploration:
             why = f"lost mode: towards node {best[0][0]}"
             return Decision("go", best[0][1].heading_rad, 0, 1.0, "search", why)
         return Decision("go", heading_rad, 0, 1.0, "search", "lost mode: back, then in growing sweeps")
+
+    def _candidates(self) -> dict[int, NodeMatch]:
+        """Places that may get an edge: the most similar ones, or the newest (thesis section 6.1.1)."""
+        newest = self._profile.edge_window
+        if not newest:
+            return self._matcher.match([], EDGE_CANDIDATES)
+        return self._matcher.match(sorted(self._maps.graph.nodes)[-newest:], 0)
 
     def _near(self, node_id: int) -> list[int]:
         """The node left and the neighbours most similar to it."""

@@ -1,8 +1,9 @@
 """Making a place and its edges from the current frame (thesis equations 4.1 and 4.2)."""
 
+from services.planner.closures import unsupported_closures
 from services.planner.frontiers import with_explored
 from services.planner.graph import MapGraph, edge_between
-from services.planner.ports import MapAccess, Observation
+from services.planner.ports import MapAccess, Note, Observation
 from services.planner.profiles import Profile
 from services.planner.similarity import heading_of, ranked, similarity, trusted
 from services.planner.surroundings import is_clear, is_clear_from, openings
@@ -22,7 +23,7 @@ def add_place(
     matches: dict[int, NodeMatch],
     profile: Profile,
     driven_from: int | None,
-) -> int:
+) -> tuple[int, tuple[Note, ...]]:
     """Write the frame as a node with all edges that rule 4.1 admits, in one transaction.
 
     Args:
@@ -33,9 +34,11 @@ def add_place(
         driven_from: node the robot came from; its edge counts as driven.
 
     Returns:
-        The new node's id.
+        The new node's id, and a note for each edge that was refused for want of a witness.
     """
     node_id = maps.graph.next_id()
+    admitted = {n: m for n, m in matches.items() if n in maps.graph.nodes and _admitted(m, profile)}
+    refused = _refused(maps.graph, admitted, profile, driven_from)
     edges = [
         _edge(
             node_id,
@@ -46,8 +49,8 @@ def add_place(
             or is_clear_from(maps.graph.nodes[other], match, profile),
             driven=other == driven_from,
         )
-        for other, match in matches.items()
-        if other in maps.graph.nodes and _admitted(match, profile)
+        for other, match in admitted.items()
+        if other not in refused
     ]
     features = observation.features
     node = Node(
@@ -67,7 +70,14 @@ def add_place(
     operations += [PutEdge(edge=edge) for edge in edges]
     operations += changed
     maps.commit(operations)
-    return node_id
+    return node_id, tuple(Note("closure_refused", f"node {node_id}: {why}") for why in refused.values())
+
+
+def _refused(
+    graph: MapGraph, admitted: dict[int, NodeMatch], profile: Profile, driven_from: int | None
+) -> dict[int, str]:
+    """Edges without a witness; raw similarity asks for none, as in the thesis."""
+    return {} if profile.similarity == "raw" else unsupported_closures(graph, admitted, driven_from)
 
 
 def _admitted(match: NodeMatch, profile: Profile) -> bool:

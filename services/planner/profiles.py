@@ -6,7 +6,7 @@ The thesis's 60 / 80 / 90 / 110 of 150 are bound to SuperPoint and SuperGlue; ot
 import math
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field, PositiveFloat, PositiveInt
+from pydantic import BaseModel, ConfigDict, Field, NonNegativeInt, PositiveFloat, PositiveInt
 
 from services.planner.heading.registry import MethodName
 
@@ -17,6 +17,7 @@ class Profile(BaseModel):
     Attributes:
         similarity: S counts verified matches (inliers) or raw ones (thesis).
         s_edge_min, s_node_max: map thresholds of equations 4.1 and 4.2.
+        edge_window: how many of the newest places may get an edge to a new one; 0 takes the most similar of all.
         s_explored: an edge this similar leaves nothing unexplored in its direction.
         s_via_min, s_via_max: thresholds of equation 4.3; s_final ends a mission by count alone.
         s_slow, s_max: of the velocity law, equation 6.5.
@@ -37,6 +38,7 @@ class Profile(BaseModel):
     similarity: Literal["verified", "raw"] = "verified"
     s_edge_min: PositiveInt = 30
     s_node_max: PositiveInt = 90
+    edge_window: NonNegativeInt = 0
     s_explored: PositiveInt = 45
     s_via_min: PositiveInt = 22
     s_via_max: PositiveInt = 100

@@ -1,6 +1,6 @@
 """Settings of the planner service, from PLANNER_* variables."""
 
-from pydantic import PositiveFloat, PositiveInt, field_validator
+from pydantic import NonNegativeInt, PositiveFloat, PositiveInt, field_validator
 from pydantic_settings import SettingsConfigDict
 
 from services.planner.heading.registry import MethodName
@@ -14,6 +14,7 @@ class PlannerSettings(ServiceSettings):
     Attributes:
         profile: name of the thresholds and rules.
         heading_method: replaces the profile's: epipolar, histogram or 1 to 6.
+        edge_window: replaces the profile's: how many of the newest places may get an edge to a new one.
         heading_ttl_ms: how long the drive service may follow one heading in real time.
         query_timeout_s: for a match; map_timeout_s: for a map transaction.
     """
@@ -22,16 +23,16 @@ class PlannerSettings(ServiceSettings):
 
     profile: str = "default"
     heading_method: MethodName | None = None
+    edge_window: NonNegativeInt | None = None
     heading_ttl_ms: PositiveInt = 350
     query_timeout_s: PositiveFloat = 5.0
     map_timeout_s: PositiveFloat = 5.0
 
     def rules(self) -> Profile:
         """The profile with what these settings replace."""
-        profile = profile_named(self.profile)
-        if self.heading_method is None:
-            return profile
-        return profile.model_copy(update={"heading_method": self.heading_method})
+        given = {"heading_method": self.heading_method, "edge_window": self.edge_window}
+        update = {name: value for name, value in given.items() if value is not None}
+        return profile_named(self.profile).model_copy(update=update)
 
     @field_validator("profile")
     @classmethod

@@ -1,0 +1,76 @@
+"""Loop closures: an edge to a far part of the map needs a witness there. Pure.
+
+Two streets of equal houses give matches that fit one motion of the camera. A neighbour of the place that is
+claimed must then fit as well: the turn and the direction it is seen at follow from the edge between the two.
+"""
+
+import math
+from collections.abc import Mapping
+
+import networkx as nx
+
+from services.planner.graph import MapGraph
+from shared.messages.matching import NodeMatch
+
+NEAR_HOPS = 3
+"""Within so many edges of the place the robot came from an edge closes no loop."""
+
+YAW_RAD = math.radians(8.0)
+DIRECTION_RAD = math.radians(15.0)
+
+
+def unsupported_closures(
+    graph: MapGraph, matches: Mapping[int, NodeMatch], driven_from: int | None
+) -> dict[int, str]:
+    """Places of `matches` far from where the robot came from that no neighbour of theirs bears witness for.
+
+    Args:
+        graph: the map without the new place.
+        matches: trusted matches of the new frame that would become edges.
+        driven_from: the place the robot came from; None (the first place, or carried) asks for no witness.
+
+    Returns:
+        Place and reason.
+    """
+    if driven_from is None or driven_from not in graph.nodes:
+        return {}
+    near = _within(graph, driven_from)
+    refused = {}
+    for place in sorted(set(matches) - near):
+        witnesses = [n for n in graph.neighbours(place) if n in matches]
+        if any(agrees(graph, matches, place, witness) for witness in witnesses):
+            continue
+        refused[place] = f"{len(witnesses)} neighbours of node {place} seen, none agrees"
+    return refused
+
+
+def agrees(graph: MapGraph, matches: Mapping[int, NodeMatch], place: int, witness: int) -> bool:
+    """Whether the turns add up round the triangle frame, place, witness, and its directions can close.
+
+    Seen from the frame, the direction place -> witness must lie between the direction to the witness and the
+    opposite of the direction to the place.
+    """
+    edge, to_place, to_witness = graph.edge(place, witness), matches[place], matches[witness]
+    if edge is None or edge.yaw_ab_rad is None or to_place.yaw_rad is None or to_witness.yaw_rad is None:
+        return False
+    turned = edge.yaw_ab_rad if edge.a == place else -edge.yaw_ab_rad
+    if abs(math.remainder(to_place.yaw_rad + turned - to_witness.yaw_rad, math.tau)) > YAW_RAD:
+        return False
+    onward = graph.heading(place, witness)
+    if to_place.heading_rad is None or to_witness.heading_rad is None or onward is None:
+        return True  # one of them is where the frame is: there is no triangle
+    onward_rad = onward + to_place.yaw_rad
+    back_rad = to_place.heading_rad + math.pi
+    detour = _apart(to_witness.heading_rad, onward_rad) + _apart(onward_rad, back_rad)
+    return detour - _apart(to_witness.heading_rad, back_rad) < DIRECTION_RAD
+
+
+def _within(graph: MapGraph, start: int) -> set[int]:
+    plain: nx.Graph[int] = nx.Graph()
+    plain.add_nodes_from(graph.nodes)
+    plain.add_edges_from(ends for ends, edge in graph.edges.items() if not edge.suspended)
+    return set(nx.single_source_shortest_path_length(plain, start, cutoff=NEAR_HOPS))
+
+
+def _apart(first_rad: float, second_rad: float) -> float:
+    return abs(math.remainder(first_rad - second_rad, math.tau))

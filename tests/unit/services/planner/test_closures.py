@@ -1,0 +1,75 @@
+"""An edge to a far part of the map needs a neighbour there that fits."""
+
+import math
+
+import pytest
+
+from services.planner.closures import agrees, unsupported_closures
+from services.planner.graph import MapGraph, edge_between
+from shared.messages.maps import Edge, Node
+from shared.messages.matching import NodeMatch
+
+POSES = [(float(x), 0.0, 0.1 * x) for x in range(8)] + [(7.0, 1.0, 0.5), (0.5, 1.0, -0.3)]
+"""Places 0 to 7 in a row, 8 beside the last one, and the pose of the new frame."""
+
+FRAME = 9
+
+
+def relation(first, second):
+    """Heading and yaw of the second pose seen from the first."""
+    (x, y, yaw), (u, v, turned) = POSES[first], POSES[second]
+    return math.atan2(v - y, u - x) - yaw, math.remainder(turned - yaw, math.tau)
+
+
+def match(place, turned_rad=0.0, aside_rad=0.0):
+    heading, yaw = relation(FRAME, place)
+    return NodeMatch(
+        node_id=place,
+        raw_matches=90,
+        inliers=70,
+        status="ok",
+        heading_rad=math.remainder(heading + aside_rad, math.tau),
+        yaw_rad=math.remainder(yaw + turned_rad, math.tau),
+    )
+
+
+@pytest.fixture
+def graph():
+    ends = [(k, k + 1) for k in range(7)] + [(7, 8), (6, 8)]
+    edges = [Edge.model_validate(edge_between(a, b, *relation(a, b))) for a, b in ends]
+    return MapGraph([Node(node_id=n) for n in range(9)], edges)
+
+
+def test_places_near_where_the_robot_came_from_need_no_witness(graph):
+    assert unsupported_closures(graph, {0: match(0), 3: match(3)}, driven_from=0) == {}
+
+
+def test_a_far_place_needs_a_neighbour_that_fits(graph):
+    assert set(unsupported_closures(graph, {0: match(0), 7: match(7)}, driven_from=0)) == {7}
+    seen = {0: match(0), 7: match(7), 6: match(6)}
+    assert unsupported_closures(graph, seen, driven_from=0) == {}
+
+
+def test_a_carried_robot_is_asked_for_none(graph):
+    assert unsupported_closures(graph, {7: match(7)}, driven_from=None) == {}
+
+
+@pytest.mark.parametrize("place", [6, 7, 8])
+def test_true_neighbours_agree(graph, place):
+    for witness in graph.neighbours(place):
+        assert agrees(graph, {place: match(place), witness: match(witness)}, place, witness)
+
+
+def test_a_turn_that_does_not_add_up_disagrees(graph):
+    seen = {7: match(7, turned_rad=math.radians(12.0)), 8: match(8)}
+    assert not agrees(graph, seen, 7, 8)
+
+
+def test_directions_that_cannot_close_disagree(graph):
+    seen = {7: match(7), 8: match(8, aside_rad=math.radians(-40.0))}
+    assert not agrees(graph, seen, 7, 8)
+
+
+def test_where_the_frame_stands_at_the_place_only_the_turn_counts(graph):
+    here = match(7).model_copy(update={"status": "no_baseline", "heading_rad": None})
+    assert agrees(graph, {7: here, 8: match(8)}, 7, 8)
