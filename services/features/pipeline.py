@@ -19,7 +19,7 @@ class Pipeline:
         self.extractor = create_extractor(profile)
         self.representation = create_representation(profile)
         self.matcher = create_matcher(profile, self.extractor.distance)
-        self.verification = two_view_settings(profile.verification_deg)
+        self.verification = two_view_settings(profile.verification_deg, uneven_ground=profile.uneven_ground)
         self._enough_px = profile.resize[1] if profile.resize is not None else None
         self._thumbnail = (thumbnail_width_px, thumbnail_quality)
 

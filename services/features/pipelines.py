@@ -17,6 +17,7 @@ class Profile:
         resize: rows and columns the whole picture is resized to (thesis: 400, 800); None = as it comes.
         upright: describe keypoints without turning them; the robot's camera always stands upright.
         verification_deg: largest angle off the epipolar plane of a verified match, degrees.
+        uneven_ground: where the plane explains too little, try any motion of the camera.
     """
 
     extractor: str
@@ -28,6 +29,7 @@ class Profile:
     resize: tuple[int, int] | None = (400, 800)
     upright: bool = True
     verification_deg: float = 0.7
+    uneven_ground: bool = False
 
     @property
     def identity(self) -> str:

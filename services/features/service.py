@@ -12,7 +12,6 @@ from services.features.map_cache import MapWords
 from services.features.map_reader import MapReader
 from services.features.matching_requests import RequestError, pair, verify_paired
 from services.features.pipeline import Pipeline
-from services.features.pipelines import find_profile
 from services.features.settings import FeaturesSettings
 from shared.bus import Bus, Request
 from shared.messages.features import ExtractRequest, Features
@@ -31,9 +30,7 @@ class FeatureService:
     def __init__(self, settings: FeaturesSettings, bus: Bus) -> None:
         cv2.setNumThreads(settings.threads)
         self._bus = bus
-        self._pipeline = Pipeline(
-            find_profile(settings.pipeline), settings.thumbnail_width_px, settings.thumbnail_quality
-        )
+        self._pipeline = Pipeline(settings.profile(), settings.thumbnail_width_px, settings.thumbnail_quality)
         self._frames = FrameCache(settings.frames_kept)
         self._maps = MapReader(bus, settings.map_timeout_s)
         self._incoming = bus.subscribe(FRAME, robot=settings.robot)
@@ -135,7 +132,7 @@ def run(settings: FeaturesSettings, bus: Bus, stop: Event) -> None:
     """Serve until `stop` is set."""
     service = FeatureService(settings, bus)
     bus.announce("features")
-    log.info("ready, pipeline %s", find_profile(settings.pipeline).identity)
+    log.info("ready, pipeline %s", settings.profile().identity)
     while not stop.is_set():
         service.work()
         bus.wait(IDLE_S)

@@ -1,9 +1,11 @@
 """Settings of the feature service; importing them loads no image library."""
 
+from dataclasses import replace
+
 from pydantic import Field, PositiveFloat, field_validator
 from pydantic_settings import SettingsConfigDict
 
-from services.features.pipelines import find_profile
+from services.features.pipelines import Profile, find_profile
 from shared.settings import ServiceSettings
 
 
@@ -12,6 +14,7 @@ class FeaturesSettings(ServiceSettings):
 
     Attributes:
         pipeline: profile name, see `pipelines`.
+        uneven_ground: verify by any motion of the camera where the plane explains too little.
         threads: cores OpenCV may use.
         frames_kept: newest frames whose features a MATCH can name by number.
         map_timeout_s: longest wait for the map store.
@@ -22,11 +25,16 @@ class FeaturesSettings(ServiceSettings):
     model_config = SettingsConfigDict(env_prefix="FEATURES_")
 
     pipeline: str = "sift"
+    uneven_ground: bool = False
     threads: int = Field(default=2, ge=1, le=64)
     frames_kept: int = Field(default=8, ge=1, le=1024)
     map_timeout_s: PositiveFloat = 5.0
     thumbnail_width_px: int = Field(default=320, ge=16, le=1024)
     thumbnail_quality: int = Field(default=70, ge=1, le=100)
+
+    def profile(self) -> Profile:
+        """The pipeline's profile with what these settings replace."""
+        return replace(find_profile(self.pipeline), uneven_ground=self.uneven_ground)
 
     @field_validator("pipeline")
     @classmethod

@@ -5,6 +5,7 @@ import sys
 
 import pytest
 
+from services.features.pipeline import Pipeline
 from services.features.pipelines import PROFILES, find_profile
 from services.features.registry import PLUGINS, create
 from services.features.settings import FeaturesSettings
@@ -47,3 +48,8 @@ def test_a_plugin_file_has_the_name_of_its_plugin():
 def test_what_an_import_does_not_load(module, absent):
     code = f"import sys, {module}; sys.exit(any(name in sys.modules for name in {absent!r}))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_uneven_ground_asks_for_any_motion_of_the_camera():
+    assert not Pipeline(FeaturesSettings().profile()).verification.fallback
+    assert Pipeline(FeaturesSettings(uneven_ground=True).profile()).verification.fallback
