@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simulator.parts import Light, Part, rotation_of
+from simulator.surface_points import surface_points
 
 FloatArray = npt.NDArray[np.float32]
 CELL_M = 0.06
@@ -112,9 +113,12 @@ class _FilledGrid:
     def _fill(self, part: Part, half: npt.NDArray[np.float64]) -> None:
         """Fill every cell that holds a sample point of the part; samples are denser than cells."""
         axes = [np.linspace(-h, h, max(2, int(np.ceil(2 * h / (0.7 * CELL_M))) + 1)) for h in half]
-        points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3) @ rotation_of(
-            part
-        ).T + np.array(part.centre_m)
+        local = (
+            np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+            if part.geometry is None
+            else surface_points(part.geometry.mesh, 0.7 * CELL_M)
+        )
+        points = local @ rotation_of(part).T + np.array(part.centre_m)
         i, j, k = np.clip(((points - self._low) / CELL_M).astype(int), 0, np.array(self._filled.shape) - 1).T
         self._filled[i, j, k] = True
 

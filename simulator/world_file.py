@@ -11,9 +11,12 @@ from pydantic import (
     Field,
     PositiveFloat,
     ValidationError,
+    ValidationInfo,
+    field_validator,
     model_validator,
 )
 
+from simulator.assets.folder import AssetFolder
 from simulator.furniture.catalogue import FURNITURE
 from simulator.textures.catalogue import KINDS
 
@@ -87,6 +90,12 @@ class Item(_Model):
     z_m: float = 0.0
     seed: int = Field(default=0, ge=0)
     options: dict[str, Any] = Field(default_factory=dict)
+
+    @field_validator("options")
+    @classmethod
+    def _files_opened(cls, options: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
+        kind = FURNITURE.get(info.data.get("kind", ""))
+        return kind.opened(options, info.context) if kind else options
 
     @model_validator(mode="after")
     def _known(self) -> Self:
@@ -172,7 +181,7 @@ def load_world(name_or_path: str) -> WorldFile:
             f"{path}: must be a mapping with format, name, rooms, start; got {type(data).__name__}"
         )
     try:
-        return WorldFile.model_validate(data)
+        return WorldFile.model_validate(data, context=AssetFolder(path.parent))
     except ValidationError as error:
         faults = "; ".join(
             f"{'.'.join(str(part) for part in e['loc']) or 'world'}: {e['msg']}" for e in error.errors()

@@ -1,13 +1,14 @@
 """Furniture kinds by name. A kind is a function whose keyword arguments, with defaults, are its options."""
 
 import inspect
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import ConfigDict, ValidationError, validate_call
 
+from simulator.assets.folder import AssetFolder
 from simulator.furniture import (
     basket,
     bench,
@@ -20,6 +21,7 @@ from simulator.furniture import (
     curtained_window,
     door,
     lamps,
+    mesh,
     paintings,
     panels,
     plant,
@@ -31,7 +33,10 @@ from simulator.furniture import (
     table,
     television,
 )
+from simulator.option_limits import MOST_PARTS, MOST_SIZE_M, check_value, short
 from simulator.parts import Piece
+
+FileKind = Literal["model", "picture"]
 
 
 @dataclass(frozen=True)
@@ -40,20 +45,54 @@ class Kind:
 
     name: str
     function: Callable[..., Piece]
+    files: Mapping[str, FileKind] = field(default_factory=dict)  # options that name files
+
+    def opened(self, options: dict[str, Any], folder: AssetFolder | None) -> dict[str, Any]:
+        """Put what the files hold in place of their names.
+
+        Raises:
+            ValueError: there is no folder to read from, or a file cannot be used.
+        """
+        read: dict[str, Any] = {}
+        for name in self.files.keys() & options.keys():
+            value = options[name]
+            if value is None or not isinstance(value, str):
+                continue
+            if folder is None:
+                raise ValueError(f"{self.name}.{name}: files are found beside a world file; use load_world")
+            try:
+                read[name] = folder.model(value) if self.files[name] == "model" else folder.picture(value)
+            except ValueError as error:
+                raise ValueError(f"{self.name}.{name}: {error}") from error
+        return {**options, **read}
 
     def check(self, options: dict[str, Any]) -> None:
         """Raise ValueError if an option is unknown or does not fit."""
         known = [name for name in inspect.signature(self.function).parameters if name != "rng"]
-        unknown = sorted(set(options) - set(known))
+        unknown = sorted(str(name) for name in set(options) - set(known))
         if unknown:
             raise ValueError(
-                f"{self.name} has no option {', '.join(unknown)}; it has {', '.join(known) or 'none'}"
+                f"{self.name} has no option {', '.join(unknown)[:80]}; it has {', '.join(known) or 'none'}"
             )
+        for name, value in options.items():
+            check_value(f"{self.name} options: {name}", value)
         try:
-            self.build(options, 0)
+            piece = self.build(options, 0)
         except ValidationError as error:
-            faults = "; ".join(f"{e['loc'][0]}: {e['msg']}, got {e['input']!r}" for e in error.errors())
-            raise ValueError(f"{self.name} options: {faults}") from error
+            faults = "; ".join(
+                f"{e['loc'][0]}: {e['msg']}, got {short(e['input'])}" for e in error.errors() if e["loc"]
+            )
+            raise ValueError(f"{self.name} options: {faults or error}") from error
+        except (ArithmeticError, LookupError, TypeError, ValueError) as error:
+            raise ValueError(f"{self.name} cannot be built with these options: {error}") from error
+        self._check_piece(piece)
+
+    def _check_piece(self, piece: Piece) -> None:
+        numbers = [v for part in piece.parts for v in (*part.size_m, *part.centre_m)]
+        if len(piece.parts) > MOST_PARTS or not np.isfinite(numbers).all():
+            raise ValueError(f"{self.name} must have at most {MOST_PARTS} parts, all of finite size")
+        if any(not 0.0 <= side <= MOST_SIZE_M for part in piece.parts for side in part.size_m):
+            raise ValueError(f"{self.name} options: sizes must be 0 to {MOST_SIZE_M:g} m; check its options")
 
     def build(self, options: dict[str, Any], seed: int) -> Piece:
         """Make the piece in its own frame: origin on the floor (or at its anchor), front along +x."""
@@ -93,4 +132,4 @@ FURNITURE: dict[str, Kind] = {
         clock.clock,
         basket.basket,
     )
-}
+} | {"mesh": Kind("mesh", mesh.mesh, {"file": "model", "texture": "picture"})}

@@ -1,0 +1,1 @@
+"""Files that users bring: models and pictures beside their world file."""

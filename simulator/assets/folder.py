@@ -1,0 +1,100 @@
+"""The folder of a world file, out of which nothing is read."""
+
+import hashlib
+from pathlib import Path, PurePosixPath
+
+from simulator.assets.model import AssetError, Model
+from simulator.assets.model_file import SUFFIXES, read_model
+from simulator.assets.picture_file import PICTURE_SUFFIXES, picture_from_bytes
+from simulator.parts import Picture
+
+MOST_BYTES = 64_000_000
+
+
+class AssetFolder:
+    """Reads models and pictures by their path relative to a folder, each file once."""
+
+    def __init__(self, folder: Path) -> None:
+        """Use the folder of a world file; nothing is read yet."""
+        self._root = folder.resolve()
+        self._models: dict[Path, Model] = {}
+        self._pictures: dict[Path, Picture] = {}
+
+    def model(self, name: str) -> Model:
+        """Read a model, with the materials and pictures that it names.
+
+        Raises:
+            AssetError: it is not there, lies outside the folder, or is broken.
+        """
+        path = self._find(name, SUFFIXES)
+        if path not in self._models:
+            self._models[path] = read_model(path, self._bytes(path), self._beside(path))
+        return self._models[path]
+
+    def picture(self, name: str) -> Picture:
+        """Read a picture; raises AssetError as `model` does."""
+        path = self._find(name, PICTURE_SUFFIXES)
+        if path not in self._pictures:
+            self._pictures[path] = picture_from_bytes(self._bytes(path), path.name)
+        return self._pictures[path]
+
+    def _beside(self, model: Path) -> "_Beside":
+        return _Beside(self, model.parent.relative_to(self._root))
+
+    def _find(self, name: object, suffixes: tuple[str, ...]) -> Path:
+        if not isinstance(name, str) or not name or "\0" in name:
+            raise AssetError(f"must be a path relative to the world file, got {name!r:.80}")
+        if Path(name).suffix.lower() not in suffixes:
+            raise AssetError(
+                f"{name!r:.120} must end in {', '.join(suffixes)}; export or convert it to one of these"
+            )
+        return self.inside(name)
+
+    def inside(self, name: str) -> Path:
+        """Absolute path of a file of the folder; AssetError if it is elsewhere or not there."""
+        try:
+            path = (self._root / name).resolve()
+        except (OSError, RuntimeError, ValueError) as error:
+            raise AssetError(f"{name!r:.120} is no usable path: {error}") from error
+        if Path(name).is_absolute() or not path.is_relative_to(self._root):
+            raise AssetError(
+                f"{name!r:.120} must lie in the world's folder {self._root}, got {path}; copy it there"
+            )
+        if not path.is_file():
+            raise AssetError(f"{name!r:.120}: no such file in {self._root}; paths count from the world file")
+        return path
+
+    def _bytes(self, path: Path) -> bytes:
+        try:
+            size = path.stat().st_size
+            if size > MOST_BYTES:
+                raise AssetError(
+                    f"{path.name} must be at most {MOST_BYTES // 1_000_000} MB, got {size / 1e6:.1f} MB; reduce it"
+                )
+            return path.read_bytes()
+        except OSError as error:
+            raise AssetError(f"{path.name} cannot be read: {error.strerror or error}") from error
+
+
+class _Beside:
+    """What a model names: files relative to the model's own folder. Keeps what went wrong and what was read."""
+
+    def __init__(self, assets: AssetFolder, folder: Path) -> None:
+        self._assets, self._folder = assets, folder
+        self.faults: list[str] = []
+        self._digest = hashlib.sha256()
+
+    def read(self, name: str) -> bytes:
+        """Content of a file that the model names; a fault is kept, as the reader would pass over it."""
+        try:
+            path = self._assets.inside(str(PurePosixPath(self._folder) / name.replace("\\", "/")))
+            data = self._assets._bytes(path)
+        except AssetError as error:
+            self.faults.append(str(error))
+            raise
+        self._digest.update(data)
+        return data
+
+    def digest(self) -> bytes:
+        """Hash of all that was read."""
+        return self._digest.digest()

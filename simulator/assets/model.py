@@ -1,0 +1,47 @@
+"""A model read from a file: patches of triangles, each with its picture."""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from simulator.meshes import Mesh
+from simulator.parts import Picture
+
+FloatArray = npt.NDArray[np.floating]
+UpAxis = Literal["y", "z"]
+
+
+class AssetError(ValueError):
+    """A file cannot be used; the message says which, what was expected, what came, and what to do."""
+
+
+@dataclass(frozen=True)
+class Patch:
+    """Triangles of one look, in the axes of the file and its unit.
+
+    Attributes:
+        mesh: vertices, normals, uv (v = 0 at the top) and triangles.
+        picture: its texture.
+        mapped: whether the file gave texture coordinates, so that another picture can take this one's place.
+        two_sided: whether the file wants its back seen.
+    """
+
+    mesh: Mesh
+    picture: Picture
+    mapped: bool
+    two_sided: bool
+
+
+@dataclass(frozen=True)
+class Model:
+    """All patches of a file. The digest, of the content and of the files it names, is the identity."""
+
+    digest: str
+    name: str
+    patches: tuple[Patch, ...] = field(compare=False, repr=False)
+
+    def vertices(self) -> FloatArray:
+        """All vertices, (n, 3), in the axes of the file."""
+        return np.concatenate([patch.mesh.vertices for patch in self.patches])

@@ -1,0 +1,49 @@
+"""Picture files -> textures, decoded with bounds."""
+
+import hashlib
+import io
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image, UnidentifiedImageError
+
+from simulator.assets.model import AssetError
+from simulator.parts import Picture
+
+PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".webp")
+MOST_SIDE_PX = 4096
+
+
+def picture_from_bytes(data: bytes, name: str) -> Picture:
+    """Decode a PNG, JPEG or WebP file.
+
+    Raises:
+        AssetError: it is broken or larger than MOST_SIDE_PX.
+    """
+    try:
+        opened = Image.open(io.BytesIO(data), formats=("PNG", "JPEG", "WEBP"))
+    except (UnidentifiedImageError, Image.DecompressionBombError, OSError, ValueError, SyntaxError) as error:
+        raise AssetError(f"picture {name!r:.80} must be a PNG, JPEG or WebP file: {error!s:.120}") from error
+    return picture_from_image(opened, name)
+
+
+def picture_from_image(image: Any, name: str) -> Picture:
+    """Decode a picture that Pillow has opened; see `picture_from_bytes`."""
+    width, height = image.size
+    if max(width, height) > MOST_SIDE_PX:
+        raise AssetError(
+            f"picture {name!r:.80} must be at most {MOST_SIDE_PX} x {MOST_SIDE_PX} pixels, "
+            f"got {width} x {height}; scale it down"
+        )
+    try:
+        pixels = np.ascontiguousarray(image.convert("RGB"), np.uint8)
+    except (OSError, ValueError, SyntaxError, MemoryError, EOFError) as error:
+        raise AssetError(f"picture {name!r:.80} is broken: {error!s:.120}; export it again") from error
+    return picture_of(pixels)
+
+
+def picture_of(pixels: npt.NDArray[np.uint8]) -> Picture:
+    """A texture of (height, width, 3) RGB bytes, named by its content."""
+    digest = hashlib.sha256(repr(pixels.shape).encode() + pixels.tobytes()).hexdigest()
+    return Picture(digest[:32], pixels)
