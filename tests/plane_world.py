@@ -19,7 +19,7 @@ from shared.messages.maps import AddNode, Operation
 from shared.messages.matching import NodeMatch
 from simulator.footprints import Footprints, cast_rays, clearance_m, footprints
 from simulator.freespace import FreeSpace, free_space
-from simulator.parts import Part
+from simulator.parts import Material, Part, post
 from simulator.world_file import load_world
 
 DISTANCES_M = (0.0, 0.35, 0.75, 1.25, 1.75, 2.25, 3.0, 5.0)
@@ -29,7 +29,43 @@ BEAM_RAYS = np.deg2rad(np.linspace(-15.0, 15.0, 7))
 MAX_RANGE_M = 4.0
 STEP_S = 0.3
 WHEEL_RADIUS_M = 0.08
+BODY_RADIUS_M = 0.25
 Pose = tuple[float, float, float]
+
+
+@dataclass
+class Walker:
+    """A person who walks to and fro and stops in front of the robot."""
+
+    ends: tuple[tuple[float, float], tuple[float, float]]
+    speed_mps: float = 0.5
+    radius_m: float = 0.22
+    polite_m: float = 0.75
+    share: float = 0.0
+    direction: int = 1
+
+    @property
+    def point(self) -> tuple[float, float]:
+        """Where the person is."""
+        (x, y), (u, v) = self.ends
+        return x + self.share * (u - x), y + self.share * (v - y)
+
+    def walk(self, robot: Pose) -> None:
+        """One step, unless the robot would be too near."""
+        before = self.share
+        self.share += self.direction * self.speed_mps * STEP_S / math.dist(*self.ends)
+        if not 0.0 <= self.share <= 1.0:
+            self.direction, self.share = -self.direction, min(1.0, max(0.0, self.share))
+        if math.dist(self.point, robot[:2]) < self.polite_m:
+            self.share = before
+
+    def touches(self, point: tuple[float, float]) -> bool:
+        """Whether a robot there bumps into the person."""
+        return math.dist(self.point, point) < self.radius_m + BODY_RADIUS_M
+
+    def part(self) -> Part:
+        """The person as a solid."""
+        return post(*self.point, (0.0, 1.7), self.radius_m, Material("lacquer"))
 
 
 @dataclass
@@ -42,6 +78,7 @@ class PlaneWorld:
     seq: int = 0
     collisions: int = 0
     driven_m: float = 0.0
+    walkers: list["Walker"] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.shapes = footprints(self.space.parts, 0.02, 0.79)
@@ -75,7 +112,12 @@ class PlaneWorld:
         """Features that carry the true pose for `PlaneMatcher` only, and 12 distances."""
         angles = np.arange(12) * math.tau / 12
         rays = (self.pose[2] + angles[:, None] + BEAM_RAYS).ravel()
-        hits = cast_rays(np.array(self.pose[:2]), rays, self.shapes, MAX_RANGE_M).reshape(12, -1).min(axis=1)
+        here = np.array(self.pose[:2])
+        hits = cast_rays(here, rays, self.shapes, MAX_RANGE_M)
+        if self.walkers:
+            moving = footprints(tuple(walker.part() for walker in self.walkers), 0.02, 0.79)
+            hits = np.minimum(hits, cast_rays(here, rays, moving, MAX_RANGE_M))
+        hits = hits.reshape(12, -1).min(axis=1)
         noisy = np.clip(hits + self.rng.normal(0.0, 0.01, 12), 0.0, MAX_RANGE_M)
         ranges = Ranges(
             seq=self.seq,
@@ -93,11 +135,13 @@ class PlaneWorld:
         for _ in range(4):
             x = self.pose[0] + math.cos(heading) * length_m / 4
             y = self.pose[1] + math.sin(heading) * length_m / 4
-            if not self.space.is_free((x, y)):
+            if not self.space.is_free((x, y)) or any(walker.touches((x, y)) for walker in self.walkers):
                 self.collisions += 1
                 break
             self.pose = (x, y, self.pose[2])
             self.driven_m += length_m / 4
+        for walker in self.walkers:
+            walker.walk(self.pose)
         self.seq += 1
 
 

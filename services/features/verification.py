@@ -57,8 +57,8 @@ def verify(
 def two_view_settings(verification_deg: float, *, uneven_ground: bool = False) -> TwoViewSettings:
     """Defaults of the estimation with the pipeline's own threshold, degrees.
 
-    On a flat floor the essential-matrix fallback added 0.2 % inliers and took two thirds more time, as much on
-    wrong places as on right ones; it is for a camera that tilts.
+    On a flat floor the essential-matrix fallback added 0.2 % inliers and took two thirds more time, as much
+    on wrong places as on right ones; it is for a camera that tilts.
     """
     return TwoViewSettings(threshold_rad=float(np.deg2rad(verification_deg)), fallback=uneven_ground)
 

@@ -17,7 +17,7 @@ class Profile(BaseModel):
     Attributes:
         similarity: S counts verified matches (inliers) or raw ones (thesis).
         s_edge_min, s_node_max: map thresholds of equations 4.1 and 4.2.
-        edge_window: how many of the newest places may get an edge to a new one; 0 takes the most similar of all.
+        edge_window: so many of the newest places may get an edge to a new one; 0: the most similar of all.
         s_explored: an edge this similar leaves nothing unexplored in its direction.
         s_via_min, s_via_max: thresholds of equation 4.3; s_final ends a mission by count alone.
         s_slow, s_max: of the velocity law, equation 6.5.

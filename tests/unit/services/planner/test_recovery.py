@@ -11,7 +11,7 @@ from services.planner.explore import FrontierExploration
 from services.planner.goto import Goto
 from services.planner.profiles import DEFAULT
 from simulator.parts import Material, box
-from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, picture, run
+from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, Walker, picture, run
 
 START = (2.6, 1.3, 0.0)
 HALL = (-0.2, -3.0, 0.0)
@@ -96,3 +96,19 @@ def test_a_stretch_without_features_is_crossed(explored):
     matcher.blind = False
     decision, _ = run(world, mission, DriveLimits(), 1500)
     assert decision.outcome == "succeeded", decision.why
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_people_who_walk_about_are_passed_without_touching_them(explored, seed):
+    world, maps, matcher = explored
+    world.walkers = [
+        Walker(((0.0, -0.9), (7.0, -0.9))),
+        Walker(((1.7, 1.5), (1.7, -0.8)), speed_mps=0.3),
+        Walker(((4.4, 0.9), (4.4, 5.0)), speed_mps=0.7),
+    ]
+    rng = np.random.default_rng(seed)
+    for _ in range(4):
+        goal = world.space.random_pose(rng, 0.1)
+        decision, _ = run(world, Goto(DEFAULT, maps, matcher, picture(goal)), DriveLimits(), 2500)
+        assert decision.outcome == "succeeded", decision.why
+    assert world.collisions == 0
