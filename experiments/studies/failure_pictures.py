@@ -1,0 +1,124 @@
+"""The thesis's failures that show in pictures: edges between look-alike places, headings that are wrong."""
+
+import math
+from collections.abc import Callable
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from experiments.map_client import require_map
+from experiments.output import rounded
+from experiments.stack import StackChoice, open_stack
+from experiments.studies.pair_features import cache_folder, features_of_pairs
+from experiments.studies.pair_headings import PairResult, judge_pair
+from experiments.studies.pairs import PosePair, draw_pair
+from experiments.truth_file import load_truth, truth_path
+from services.features.interfaces import FeatureSet
+from services.features.pipeline import Pipeline
+from services.features.pipelines import find_profile
+from services.features.verification import feature_set
+from services.planner.profiles import Profile
+from shared.geometry.two_view import two_view
+from shared.messages import MapRequest
+from shared.messages.simulation import Pose
+from shared.topics import MAP
+from simulator.freespace import FreeSpace, free_space
+from simulator.world_file import load_world
+
+WRONG_RAD = math.radians(45.0)
+READ_TIMEOUT_S = 60.0
+
+Row = dict[str, Any]
+
+
+def wrong_headings(
+    data_dir: Path, world_name: str, what: str, centre_m: tuple[float, float], radius_m: float, pairs: int
+) -> Row:
+    """Share of headings more than 45 degrees off between frames round a place.
+
+    The thesis's choice (methods 1 and 4 by the histogram, raw matches) is method 4 here, its best one.
+    """
+    world = load_world(world_name)
+    pipeline = Pipeline(find_profile("sift"))
+    space = free_space(world)
+    drawn = _near(space, centre_m, radius_m, pairs, np.random.default_rng(1))
+    folder = cache_folder(data_dir / "cache", world, pipeline, 1).with_suffix(f".{what.replace(' ', '-')}")
+    features = features_of_pairs(drawn, world, pipeline, folder, lambda: None)
+    judged = [
+        judge_pair(pair, both, pipeline, n)
+        for n, (pair, both) in enumerate(zip(drawn, features, strict=True))
+    ]
+    return {
+        "failure": what,
+        "world": world_name,
+        "pairs": pairs,
+        "thesis": _share(judged, lambda r: r.raw_errors_rad["4"]),
+        "ours": _share(judged, lambda r: r.verified_errors_rad["epipolar"]),
+    }
+
+
+def long_edges(data_dir: Path, map_name: str, profile: Profile, longest_m: float) -> Row:
+    """Edges of one map's places without and with verification; a long one joins places far apart or hidden.
+
+    Args:
+        data_dir: where the map and the true poses of its nodes are.
+        map_name: an explored map.
+        profile: thresholds: s_edge_min counts raw matches without verification, verified ones with it.
+        longest_m: further apart than this a pair of places is no neighbourhood.
+    """
+    truth = load_truth(truth_path(data_dir, map_name))
+    poses = truth.poses if truth is not None else {}
+    pipeline = Pipeline(find_profile("sift"))
+    with open_stack(StackChoice(data_dir, lockstep=True)) as stack:
+        require_map(stack, map_name)
+        reply = stack.bus.ask(MAP, MapRequest(action="read_features"), READ_TIMEOUT_S, map=map_name)
+    places = {f.node_id: feature_set(f.features) for f in reply.features if f.node_id in poses}
+    raw, verified = _edges(places, pipeline, profile.s_edge_min)
+    return {
+        "failure": "long edges between look-alike places",
+        "map": map_name,
+        "places": len(places),
+        "thesis": {"edges": len(raw), "long": sum(_apart_m(poses, e) > longest_m for e in raw)},
+        "ours": {"edges": len(verified), "long": sum(_apart_m(poses, e) > longest_m for e in verified)},
+    }
+
+
+def _edges(
+    places: dict[int, FeatureSet], pipeline: Pipeline, s_min: int
+) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
+    raw, verified = [], []
+    for number, (a, b) in enumerate(combinations(sorted(places), 2)):
+        (rows,) = pipeline.matcher.match(places[a], [places[b]])
+        if len(rows) <= s_min:
+            continue
+        raw.append((a, b))
+        current, target = places[a].lonlat_rad[rows[:, 0]], places[b].lonlat_rad[rows[:, 1]]
+        result = two_view(current, target, np.random.default_rng(number), pipeline.verification)
+        if result.inliers > s_min:
+            verified.append((a, b))
+    return raw, verified
+
+
+def _near(
+    space: FreeSpace, centre_m: tuple[float, float], radius_m: float, count: int, rng: np.random.Generator
+) -> list[PosePair]:
+    found: list[PosePair] = []
+    while len(found) < count:
+        pair = draw_pair(space, rng)
+        middle = ((pair.current.x_m + pair.target.x_m) / 2, (pair.current.y_m + pair.target.y_m) / 2)
+        if math.dist(middle, centre_m) <= radius_m:
+            found.append(pair)
+    return found
+
+
+def _share(results: list[PairResult], error: Callable[[PairResult], float | None]) -> Row:
+    errors = [e for r in results if (e := error(r)) is not None]
+    wrong = sum(e > WRONG_RAD for e in errors)
+    return {"answered": len(errors), "wrong": wrong, "wrong_share": rounded(wrong / max(1, len(errors)), 3)}
+
+
+def _apart_m(poses: dict[int, Pose], ends: tuple[int, int]) -> float:
+    a, b = poses[ends[0]], poses[ends[1]]
+    return math.hypot(a.x_m - b.x_m, a.y_m - b.y_m)

@@ -1,0 +1,65 @@
+"""`topnav study failures`: what went wrong in the thesis, by its rule and by ours."""
+
+from collections.abc import Callable
+from typing import Annotated
+
+import typer
+
+from experiments import options
+from experiments.failure import ExperimentError, one_line_errors
+from experiments.output import write_json
+from experiments.studies.failure_driving import Row, corner, oscillation
+from experiments.studies.failure_pictures import long_edges, wrong_headings
+from experiments.tables import print_rows
+from services.planner.profiles import OUTDOOR
+
+KINDS = ("oscillation", "corner", "door", "truck", "long-edges")
+DOOR_M, DOOR_RADIUS_M = (1.65, -0.1), 0.9
+TRUCK_RADIUS_M = 6.0
+LONG_M = 15.0
+
+
+def main(
+    only: Annotated[
+        str, typer.Option(help=f"One of {', '.join(KINDS)}; default: all but those without a map.")
+    ] = "",
+    map_name: Annotated[
+        str, typer.Option("--map", help="Explored map of the apartment (oscillation).")
+    ] = "flat",
+    village_map: Annotated[str, typer.Option(help="Explored map of the village (long-edges).")] = "village",
+    truck_m: Annotated[tuple[float, float], typer.Option(help="Where the factory's truck stands.")] = (
+        30.0,
+        8.0,
+    ),
+    rounds: Annotated[int, typer.Option(min=1, help="Rounds of the oscillation study.")] = 8,
+    pairs: Annotated[int, typer.Option(min=10, help="Frame pairs of the heading studies.")] = 120,
+    seed: options.Seed = 1,
+    json_file: options.JsonFile = None,
+    data_dir: options.DataDir = options.DATA_DIR,
+) -> None:
+    """Each failure of the thesis: reproduced with its rule, and the same work with ours."""
+    studies: dict[str, Callable[[], Row]] = {
+        "oscillation": lambda: oscillation(data_dir, "apartment", map_name, rounds, seed),
+        "corner": lambda: corner("apartment", seed),
+        "door": lambda: wrong_headings(
+            data_dir, "apartment", "faulty headings at a door", DOOR_M, DOOR_RADIUS_M, pairs
+        ),
+        "truck": lambda: wrong_headings(
+            data_dir, "factory", "false motion at the truck", truck_m, TRUCK_RADIUS_M, pairs
+        ),
+        "long-edges": lambda: long_edges(data_dir, village_map, OUTDOOR, LONG_M),
+    }
+    if only and only not in studies:
+        raise typer.BadParameter(f"--only must be one of {', '.join(KINDS)}, got {only!r}")
+    rows = []
+    with one_line_errors():
+        for name in [only] if only else list(studies):
+            rows.append({**studies[name](), "command": f"topnav study failures --only {name}"})
+            if json_file is not None:
+                write_json(json_file, {"seed": seed, "results": rows})
+    if not rows:
+        raise ExperimentError("nothing was measured")
+    for row in rows:
+        print_rows(
+            f"{row['failure']} ({row['command']})", [{"rule": k, **row[k]} for k in ("thesis", "ours")]
+        )
