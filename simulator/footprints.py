@@ -16,9 +16,10 @@ def _no_polygons() -> FloatArray:
 
 @dataclass(frozen=True)
 class Footprints:
-    """Outlines of solids: n rectangles (centre, half size, yaw), m discs (centre, radius), k polygons; m, rad.
+    """Outlines of solids: n rectangles (centre, half size, yaw), m discs (centre, radius), k polygons.
 
-    Polygons are (k, corners, 2), convex and counter-clockwise; shorter ones repeat their last corner.
+    Metres and radians. Polygons are (k, corners, 2), convex, counter-clockwise; shorter ones repeat their last
+    corner.
     """
 
     centres_m: FloatArray
@@ -107,18 +108,18 @@ def _within(polygons: FloatArray, origin_m: FloatArray, max_m: float) -> FloatAr
     if not len(polygons):
         return polygons
     gap = np.maximum(polygons.min(axis=1) - origin_m, origin_m - polygons.max(axis=1))
-    return polygons[(gap < max_m).all(axis=1)]
+    return np.asarray(polygons[(gap < max_m).all(axis=1)])
 
 
 def _edges(polygons: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Outward normals (k, corners, 2), zero for repeated corners, and offsets (k, corners): n x <= c inside."""
+    """Outward normals (k, corners, 2), zero at repeated corners, and offsets (k, corners): n x <= c."""
     along = np.roll(polygons, -1, axis=1) - polygons
     normals = np.stack([along[..., 1], -along[..., 0]], axis=-1)
     return normals, (normals * polygons).sum(axis=-1)
 
 
 def _cast_at_polygons(origin_m: FloatArray, angles_rad: FloatArray, polygons: FloatArray) -> FloatArray:
-    """Distances along rays to convex polygons by clipping against their edges, (rays, k); inf where missed."""
+    """Distances along rays to convex polygons by clipping at their edges, (rays, k); inf if missed."""
     normals, offsets = _edges(polygons)
     room = (offsets - normals @ origin_m)[None]  # positive: inside of that edge
     unit = np.stack([np.cos(angles_rad), np.sin(angles_rad)], axis=-1)
@@ -128,7 +129,7 @@ def _cast_at_polygons(origin_m: FloatArray, angles_rad: FloatArray, polygons: Fl
     enter = np.where(parallel, np.where(room < 0.0, np.inf, -np.inf), np.where(speed < 0.0, t, -np.inf))
     leave = np.where(parallel | (speed < 0.0), np.inf, t)
     near, far = enter.max(axis=-1), leave.min(axis=-1)
-    return np.where((near <= far) & (far >= 0.0), np.maximum(near, 0.0), np.inf)
+    return np.asarray(np.where((near <= far) & (far >= 0.0), np.maximum(near, 0.0), np.inf))
 
 
 def _polygon_distance_m(points_m: FloatArray, corners: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Bounds on what a world file may say: numbers that no furniture needs are refused before anything is built. Pure."""
+"""Bounds on options in world files: what no furniture needs is refused before anything is built. Pure."""
 
 import math
 import reprlib

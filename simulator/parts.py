@@ -16,7 +16,7 @@ Shape = Literal["box", "cylinder", "ellipsoid", "cushion", "drape", "leaf", "mes
 
 @dataclass(frozen=True)
 class Picture:
-    """Pixels of a texture from a file: (height, width, 3) RGB bytes, row 0 at the top. The digest is the identity."""
+    """Texture from a file: (height, width, 3) RGB bytes, row 0 at the top. The digest is the identity."""
 
     digest: str
     pixels: npt.NDArray[np.uint8] = field(compare=False, repr=False)

@@ -1,10 +1,11 @@
 """A mesh -> upright convex prisms that stop the robot where the mesh would. Pure.
 
-The mesh is cut into slices; what hangs together within a slice becomes one convex outline. So a table's legs are
-apart from one another and its top is above them, and the free floor between the legs stays free.
+The mesh is cut into slices; what hangs together within a slice becomes one convex outline. So a table's legs
+are apart from one another and its top is above them, and the free floor between the legs stays free.
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import cv2
 import numpy as np
@@ -43,7 +44,7 @@ def prisms_of(vertices: FloatArray, triangles: npt.NDArray[np.integer]) -> list[
     cuts = np.append(cuts[: max(1, len(cuts))], max(high, low + SKIN_M))
     done: list[Prism] = []
     open_: list[Prism] = []
-    for z0, z1 in zip(cuts[:-1], cuts[1:], strict=True):
+    for z0, z1 in pairwise(cuts):
         fresh = _slice(vertices, triangles, places, float(z0), float(z1))
         closed, open_ = _continued(open_, fresh)
         done += closed
@@ -59,14 +60,14 @@ def prisms_of(vertices: FloatArray, triangles: npt.NDArray[np.integer]) -> list[
 def hull_outline(points: FloatArray) -> FloatArray:
     """Convex outline of (n, 2) points with a skin, of at most DIRECTIONS corners, counter-clockwise."""
     skin = SKIN_M / 2 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], float)
-    thick = (points[:, None] + skin).reshape(-1, 2).astype(np.float32)
-    hull = cv2.convexHull(thick).reshape(-1, 2).astype(float)
+    return _convex((points[:, None] + skin).reshape(-1, 2))
+
+
+def _convex(points: FloatArray) -> FloatArray:
+    hull = cv2.convexHull(points.astype(np.float32)).reshape(-1, 2).astype(float)
     if len(hull) > DIRECTIONS:
         hull = _circumscribed(hull)
-    ahead, behind = np.roll(hull, -1, axis=0), np.roll(hull, 1, axis=0)
-    turned = (hull[:, 0] * ahead[:, 1] - hull[:, 1] * ahead[:, 0]).sum() < 0
-    del behind
-    return np.asarray(hull[::-1] if turned else hull)
+    return np.asarray(hull if _twice_area(hull) > 0 else hull[::-1])
 
 
 def _circumscribed(hull: FloatArray) -> FloatArray:
@@ -82,7 +83,11 @@ def _circumscribed(hull: FloatArray) -> FloatArray:
 
 
 def _slice(
-    vertices: FloatArray, triangles: npt.NDArray[np.integer], places: npt.NDArray[np.integer], z0: float, z1: float
+    vertices: FloatArray,
+    triangles: npt.NDArray[np.integer],
+    places: npt.NDArray[np.integer],
+    z0: float,
+    z1: float,
 ) -> list[Prism]:
     z = vertices[triangles, 2]
     chosen = (z.max(axis=1) >= z0) & (z.min(axis=1) < z1)
@@ -120,9 +125,7 @@ def _clipped(
     return np.concatenate(points), np.concatenate(owner)
 
 
-def _connected(
-    places: npt.NDArray[np.integer], z: FloatArray, z0: float, z1: float
-) -> npt.NDArray[np.int64]:
+def _connected(places: npt.NDArray[np.integer], z: FloatArray, z0: float, z1: float) -> npt.NDArray[np.int64]:
     """Group of each triangle: joined by corners within the slice and by edges that pass through it."""
     number = np.arange(len(places))
     within = (z >= z0) & (z <= z1)
@@ -166,17 +169,21 @@ def _continued(below: list[Prism], fresh: list[Prism]) -> tuple[list[Prism], lis
     """
     left, grown = list(below), []
     for prism in fresh:
-        for k, other in enumerate(left):
-            both = hull_outline(np.concatenate([prism.outline_m, other.outline_m]))
-            same = _area(both) < SAME_AREA * min(_area(prism.outline_m), _area(other.outline_m)) + 1e-4
-            if same and abs(prism.low_m - other.high_m) < SKIN_M:
-                prism = Prism(other.low_m, prism.high_m, both if _area(both) > _area(prism.outline_m) * 1.001 else prism.outline_m)
-                left.pop(k)
+        whole = prism
+        for other in left:
+            if abs(prism.low_m - other.high_m) > SKIN_M:
+                continue
+            both = _convex(np.concatenate([prism.outline_m, other.outline_m]))
+            least = min(_twice_area(prism.outline_m), _twice_area(other.outline_m))
+            if _twice_area(both) < SAME_AREA * least + SKIN_M**2:
+                whole = Prism(other.low_m, prism.high_m, both)
+                left = [one for one in left if one is not other]
                 break
-        grown.append(prism)
+        grown.append(whole)
     return left, grown
 
 
-def _area(outline: FloatArray) -> float:
+def _twice_area(outline: FloatArray) -> float:
+    """Twice the area that an outline encloses, positive if it runs counter-clockwise."""
     x, y = outline.T
-    return float(abs((x * np.roll(y, -1) - y * np.roll(x, -1)).sum()) / 2)
+    return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())

@@ -9,6 +9,7 @@ from simulator.assets.picture_file import PICTURE_SUFFIXES, picture_from_bytes
 from simulator.parts import Picture
 
 MOST_BYTES = 64_000_000
+NAMED_SUFFIXES = (".mtl", ".bin")  # what a model may name beside pictures
 
 
 class AssetFolder:
@@ -28,14 +29,14 @@ class AssetFolder:
         """
         path = self._find(name, SUFFIXES)
         if path not in self._models:
-            self._models[path] = read_model(path, self._bytes(path), self._beside(path))
+            self._models[path] = read_model(path, self.read(path), self._beside(path))
         return self._models[path]
 
     def picture(self, name: str) -> Picture:
         """Read a picture; raises AssetError as `model` does."""
         path = self._find(name, PICTURE_SUFFIXES)
         if path not in self._pictures:
-            self._pictures[path] = picture_from_bytes(self._bytes(path), path.name)
+            self._pictures[path] = picture_from_bytes(self.read(path), path.name)
         return self._pictures[path]
 
     def _beside(self, model: Path) -> "_Beside":
@@ -64,12 +65,13 @@ class AssetFolder:
             raise AssetError(f"{name!r:.120}: no such file in {self._root}; paths count from the world file")
         return path
 
-    def _bytes(self, path: Path) -> bytes:
+    def read(self, path: Path) -> bytes:
+        """Content of a file of the folder; AssetError if it is too large or cannot be read."""
         try:
             size = path.stat().st_size
             if size > MOST_BYTES:
                 raise AssetError(
-                    f"{path.name} must be at most {MOST_BYTES // 1_000_000} MB, got {size / 1e6:.1f} MB; reduce it"
+                    f"{path.name} must be at most {MOST_BYTES // 1_000_000} MB, got {size / 1e6:.1f}; reduce it"
                 )
             return path.read_bytes()
         except OSError as error:
@@ -77,7 +79,7 @@ class AssetFolder:
 
 
 class _Beside:
-    """What a model names: files relative to the model's own folder. Keeps what went wrong and what was read."""
+    """What a model names: files relative to the model's own folder. Keeps the faults."""
 
     def __init__(self, assets: AssetFolder, folder: Path) -> None:
         self._assets, self._folder = assets, folder
@@ -88,7 +90,13 @@ class _Beside:
         """Content of a file that the model names; a fault is kept, as the reader would pass over it."""
         try:
             path = self._assets.inside(str(PurePosixPath(self._folder) / name.replace("\\", "/")))
-            data = self._assets._bytes(path)
+            data = self._assets.read(path)
+            if path.suffix.lower() in PICTURE_SUFFIXES:
+                picture_from_bytes(data, path.name)
+            elif path.suffix.lower() not in NAMED_SUFFIXES:
+                raise AssetError(
+                    f"{path.name} must end in {', '.join((*PICTURE_SUFFIXES, *NAMED_SUFFIXES))}; convert it"
+                )
         except AssetError as error:
             self.faults.append(str(error))
             raise

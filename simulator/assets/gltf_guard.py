@@ -36,8 +36,16 @@ def check_header(header: dict[str, Any], name: str) -> None:
     """Refuse what would exhaust memory or never end.
 
     Raises:
-        AssetError: too many vertices or nodes, or nodes that are no tree.
+        AssetError: too many vertices or nodes, nodes that are no tree, or a header of another make.
     """
+    try:
+        _check(header, name)
+        textured_primitives(header)
+    except (AttributeError, LookupError, TypeError) as error:
+        raise AssetError(f"{name} is not a valid glTF file: {error!r:.120}; export it again") from error
+
+
+def _check(header: dict[str, Any], name: str) -> None:
     needed = [str(one) for one in header.get("extensionsRequired", [])]
     if any("draco" in one or "meshopt" in one for one in needed):
         raise AssetError(f"{name} is compressed ({', '.join(needed)}); export it without compression")
@@ -51,6 +59,15 @@ def check_header(header: dict[str, Any], name: str) -> None:
     if len(nodes) > MOST_NODES:
         raise AssetError(f"{name} must have at most {MOST_NODES} nodes, got {len(nodes)}; join them")
     _check_tree(nodes, name)
+
+
+def textured_primitives(header: dict[str, Any]) -> int:
+    """How many of the triangle sets that the nodes show have a picture by their material."""
+    materials, meshes = header.get("materials", []), header.get("meshes", [])
+    shown = {node["mesh"] for node in header.get("nodes", []) if "mesh" in node}
+    primitives = [one for k in shown for one in meshes[k]["primitives"] if "material" in one]
+    looks = [materials[one["material"]] for one in primitives if "TEXCOORD_0" in one["attributes"]]
+    return sum("baseColorTexture" in look.get("pbrMetallicRoughness", {}) for look in looks)
 
 
 def _check_tree(nodes: list[dict[str, Any]], name: str) -> None:

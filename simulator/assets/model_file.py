@@ -1,4 +1,4 @@
-"""Model files (glTF 2.0, OBJ) -> patches. Parsed by trimesh; what it passes over in silence is an error here."""
+"""Model files (glTF 2.0, OBJ) -> patches. Parsed by trimesh; what it passes over in silence is an error."""
 
 import hashlib
 import io
@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from simulator.assets.gltf_guard import MOST_VERTICES, check_header, header_of
+from simulator.assets.gltf_guard import MOST_VERTICES, check_header, header_of, textured_primitives
 from simulator.assets.model import AssetError, Model, Patch
 from simulator.assets.picture_file import picture_from_image, picture_of
 from simulator.assets.shading import creased, painted
@@ -38,9 +38,13 @@ def read_model(path: Path, data: bytes, neighbours: Neighbours) -> Model:
         AssetError: not a model, too large, broken, or a file that it names is.
     """
     name, suffix = path.name, path.suffix.lower().lstrip(".")
-    if suffix != "obj":
-        check_header(header_of(data, name), name)
+    header = {} if suffix == "obj" else header_of(data, name)
+    check_header(header, name)
     scene = _parsed(data, suffix, name, neighbours)
+    looks = [getattr(shape.visual, "material", None) for shape in scene.geometry.values()]
+    pictures = sum(getattr(look, "baseColorTexture", None) is not None for look in looks)
+    if pictures < textured_primitives(header):
+        raise AssetError(f"{name}: a picture in it must be a PNG, JPEG or WebP file; export it again")
     patches: list[Patch] = []
     for node in scene.graph.nodes_geometry:
         transform, key = scene.graph[node]
@@ -50,7 +54,7 @@ def read_model(path: Path, data: bytes, neighbours: Neighbours) -> Model:
             total = sum(len(patch.mesh.triangles) for patch in patches)
             if total > MOST_TRIANGLES:
                 raise AssetError(
-                    f"{name} must have at most {MOST_TRIANGLES} triangles, got over {total - 1}; reduce the mesh"
+                    f"{name} must have at most {MOST_TRIANGLES} triangles, got {total}; reduce the mesh"
                 )
     patches = [patch for patch in patches if len(patch.mesh.triangles)]
     if not patches:
@@ -128,9 +132,7 @@ def _patch(shape: Any, transform: npt.NDArray[np.float64], linear: bool, name: s
     return Patch(own, picture_of(pixels), uvs is not None and own is mesh, two_sided)
 
 
-def _check_arrays(
-    vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64], name: str
-) -> None:
+def _check_arrays(vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64], name: str) -> None:
     if len(triangles) > MOST_TRIANGLES or len(vertices) > MOST_VERTICES:
         raise AssetError(
             f"{name} must have at most {MOST_TRIANGLES} triangles and {MOST_VERTICES} vertices, "
@@ -146,10 +148,12 @@ def _check_arrays(
     bad = ~np.isfinite(vertices).all(axis=1)
     if bad.any():
         raise AssetError(
-            f"{name}: vertices must be finite, got {vertices[bad][0].tolist()} at {int(np.argmax(bad))}; repair it"
+            f"{name}: vertices must be finite, got {vertices[bad][0].tolist()} at {int(np.argmax(bad))}"
         )
     if np.abs(vertices).max() > 1e6:
-        raise AssetError(f"{name}: coordinates must be below 1e6, got {np.abs(vertices).max():.3g}; repair it")
+        raise AssetError(
+            f"{name}: coordinates must be below 1e6, got {np.abs(vertices).max():.3g}; repair it"
+        )
 
 
 def _base_colour(material: Any, linear: bool) -> npt.NDArray[np.float64]:
@@ -159,14 +163,15 @@ def _base_colour(material: Any, linear: bool) -> npt.NDArray[np.float64]:
         factor = getattr(material, "diffuse", None)
     if factor is None:
         has_look = material is not None and (
-            getattr(material, "baseColorTexture", None) is not None or getattr(material, "image", None) is not None
+            getattr(material, "baseColorTexture", None) is not None
+            or getattr(material, "image", None) is not None
         )
         return np.array((255, 255, 255) if has_look or linear else GREY, float)
     colour = np.asarray(factor, float).reshape(-1)[:3]
     if colour.shape != (3,) or not np.isfinite(colour).all():
         return np.array(GREY, float)
     colour = np.clip(colour, 0, 255)
-    return np.round(255.0 * (colour / 255.0) ** GAMMA) if linear else colour
+    return np.asarray(np.round(255.0 * (colour / 255.0) ** GAMMA) if linear else colour)
 
 
 def _vertex_colours(shape: Any, linear: bool) -> npt.NDArray[np.float64] | None:
@@ -181,4 +186,4 @@ def _vertex_colours(shape: Any, linear: bool) -> npt.NDArray[np.float64] | None:
     values = np.asarray(colours)
     scale = {"u1": 1.0, "u2": 255.0 / 65535.0}.get(values.dtype.str[1:], 255.0)
     rgb = np.clip(values[:, :3].astype(float) * scale, 0.0, 255.0)
-    return np.round(255.0 * (rgb / 255.0) ** GAMMA) if linear else rgb
+    return np.asarray(np.round(255.0 * (rgb / 255.0) ** GAMMA) if linear else rgb)

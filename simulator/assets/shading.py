@@ -13,12 +13,12 @@ SMALLEST_AREA = 1e-14
 def creased(
     vertices: FloatArray, triangles: npt.NDArray[np.integer], uvs: FloatArray | None
 ) -> tuple[Mesh, npt.NDArray[np.int64]]:
-    """Triangles with normals: smooth where faces meet at less than 40 degrees, sharp elsewhere.
+    """Give triangles normals: smooth where faces meet at less than 40 degrees, sharp elsewhere.
 
     Files often carry no normals or wrong ones, and light is computed at the vertices.
 
     Returns:
-        The mesh, and the vertex of the input that each of its vertices comes from. Flat triangles are left out.
+        The mesh, and the vertex of the input that each of its vertices comes from. Slivers are left out.
     """
     corners = vertices[triangles].astype(np.float64)
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -28,7 +28,7 @@ def creased(
     flat = cross / area[:, None]
     _, place = np.unique(np.asarray(vertices, np.float32), axis=0, return_inverse=True)
     places = place.reshape(-1)[triangles]
-    total = np.stack(
+    total: npt.NDArray[np.float64] = np.stack(
         [
             np.bincount(places.ravel(), np.repeat(cross[:, k], 3), minlength=int(place.max(initial=-1)) + 1)
             for k in range(3)
@@ -49,9 +49,7 @@ def creased(
     return mesh, source
 
 
-def painted(
-    mesh: Mesh, colours: npt.NDArray[np.uint8]
-) -> tuple[Mesh, npt.NDArray[np.uint8]]:
+def painted(mesh: Mesh, colours: npt.NDArray[np.uint8]) -> tuple[Mesh, npt.NDArray[np.uint8]]:
     """Show colours of vertices by a picture: each kind of triangle has a cell of 2 x 2 texels.
 
     Bilinear sampling between the middles of three texels gives the same shades as interpolating between
@@ -74,5 +72,7 @@ def painted(
     middle = np.stack([column, row], axis=-1)[:, None] * 2.0 + np.array([[0.5, 0.5], [1.5, 0.5], [0.5, 1.5]])
     uv = (middle / (2 * side)).reshape(-1, 2).astype(np.float32)
     flat = mesh.triangles.reshape(-1)
-    own = Mesh(mesh.vertices[flat], mesh.normals[flat], uv, np.arange(len(flat), dtype=np.uint32).reshape(-1, 3))
+    own = Mesh(
+        mesh.vertices[flat], mesh.normals[flat], uv, np.arange(len(flat), dtype=np.uint32).reshape(-1, 3)
+    )
     return own, np.ascontiguousarray(picture)

@@ -54,9 +54,7 @@ def mesh(
     if texture is not None and not all(patch.mapped for patch in file.patches):
         raise AssetError(f"{file.name} has no texture coordinates for a texture; unwrap it and export again")
     place = _placement(file, scale, size_m, up, centred)
-    material = [
-        Material("mesh", picture=texture or patch.picture, glow=glow) for patch in file.patches
-    ]
+    material = [Material("mesh", picture=texture or patch.picture, glow=glow) for patch in file.patches]
     shapes = [_placed(patch, *place, two_sided) for patch in file.patches]
     key = (file.digest, scale, size_m, up, centred, two_sided)
     parts = [
