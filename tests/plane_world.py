@@ -230,11 +230,21 @@ class PlaneMatcher:
 
 
 def run(
-    world: PlaneWorld, mission: Mission, limits: DriveLimits, max_steps: int, path: list[Pose] | None = None
+    world: PlaneWorld,
+    mission: Mission,
+    limits: DriveLimits,
+    max_steps: int,
+    path: list[Pose] | None = None,
+    restart_steps: int = 0,
 ) -> tuple[Decision, int]:
-    """Observe, decide, drive until the mission ends; the last decision and the number of steps."""
+    """Observe, decide, drive until the mission ends; the last decision and the number of steps.
+
+    Every `restart_steps` the drive service starts anew, if that is not 0.
+    """
     memory = Passing()
     for step in range(max_steps):
+        if restart_steps and step % restart_steps == 0:
+            memory = Passing()
         observation = world.observe()
         decision = mission.decide(observation)
         if decision.outcome:

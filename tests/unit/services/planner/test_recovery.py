@@ -112,3 +112,13 @@ def test_people_who_walk_about_are_passed_without_touching_them(explored, seed):
         decision, _ = run(world, Goto(DEFAULT, maps, matcher, picture(goal)), DriveLimits(), 2500)
         assert decision.outcome == "succeeded", decision.why
     assert world.collisions == 0
+
+
+@pytest.mark.parametrize("restart_steps", [11, 37])
+def test_a_drive_service_that_starts_anew_finds_its_way_round_furniture_again(explored, restart_steps):
+    world, maps, matcher = explored
+    mission = Goto(DEFAULT, maps, matcher, picture((6.8, 5.2, 0.0)))
+    world.pose = HALL
+    decision, _ = run(world, mission, DriveLimits(), 2500, restart_steps=restart_steps)
+    assert decision.outcome == "succeeded", decision.why
+    assert world.collisions == 0
