@@ -18,8 +18,8 @@ def _no_polygons() -> FloatArray:
 class Footprints:
     """Outlines of solids: n rectangles (centre, half size, yaw), m discs (centre, radius), k polygons.
 
-    Metres and radians. Polygons are (k, corners, 2), convex, counter-clockwise; shorter ones repeat their last
-    corner.
+    Metres and radians. Polygons are (k, corners, 2), convex, counter-clockwise; shorter ones repeat their
+    last corner.
     """
 
     centres_m: FloatArray

@@ -3,13 +3,11 @@
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-import yaml
 from pydantic import (
     AfterValidator,
     BaseModel,
     ConfigDict,
     Field,
-    PositiveFloat,
     ValidationError,
     ValidationInfo,
     field_validator,
@@ -19,9 +17,9 @@ from pydantic import (
 from simulator.assets.folder import AssetFolder
 from simulator.furniture.catalogue import FURNITURE
 from simulator.textures.catalogue import KINDS
+from simulator.yaml_reading import YamlFileError, read_yaml
 
 WORLDS = Path(__file__).parent / "worlds"
-LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # LibYAML's is much faster, where it is built in
 
 
 class WorldFileError(ValueError):
@@ -40,7 +38,14 @@ def _texture(value: str) -> str:
     return value
 
 
-Interval = Annotated[tuple[float, float], AfterValidator(_interval)]
+MOST_M = 500.0  # of any coordinate
+MOST_SPAN_M = 250.0  # of a whole world
+Metres = Annotated[float, Field(ge=-MOST_M, le=MOST_M)]
+Degrees = Annotated[float, Field(ge=-3600.0, le=3600.0)]
+Height = Annotated[float, Field(gt=0.0, le=30.0)]
+Name = Annotated[str, Field(min_length=1, max_length=80)]
+Interval = Annotated[tuple[Metres, Metres], AfterValidator(_interval)]
+Seed = Annotated[int, Field(ge=0, lt=2**63)]
 Channel = Annotated[int, Field(ge=0, le=255)]
 
 
@@ -53,8 +58,8 @@ class Surface(_Model):
 
     texture: Annotated[str, AfterValidator(_texture)]
     colour: tuple[Channel, Channel, Channel]
-    seed: int = Field(default=0, ge=0)
-    tile_m: PositiveFloat = 4.0
+    seed: Seed = 0
+    tile_m: float = Field(default=4.0, ge=0.05, le=MOST_M)
 
 
 class Rectangle(_Model):
@@ -67,17 +72,17 @@ class Rectangle(_Model):
 class Room(Rectangle):
     """A rectangle of floor with walls round it. Rooms that touch are open towards each other."""
 
-    name: str
+    name: Name
     floor: Surface
     walls: Surface
     ceiling: Surface
-    height_m: PositiveFloat | None = None
+    height_m: Height | None = None
 
 
 class Opening(Rectangle):
     """A passage through the walls between two rooms: the rectangle of floor inside the wall."""
 
-    height_m: PositiveFloat = 2.1
+    height_m: Height = 2.1
     floor: Surface
 
 
@@ -85,10 +90,10 @@ class Item(_Model):
     """A piece of furniture: kind, position, heading of its front, height, seed, and options of that kind."""
 
     kind: str
-    at_m: tuple[float, float]
-    yaw_deg: float = 0.0
-    z_m: float = 0.0
-    seed: int = Field(default=0, ge=0)
+    at_m: tuple[Metres, Metres]
+    yaw_deg: Degrees = 0.0
+    z_m: Metres = 0.0
+    seed: Seed = 0
     options: dict[str, Any] = Field(default_factory=dict)
 
     @field_validator("options")
@@ -110,9 +115,9 @@ class Item(_Model):
 class Start(_Model):
     """Where the robot starts."""
 
-    x_m: float
-    y_m: float
-    yaw_deg: float = 0.0
+    x_m: Metres
+    y_m: Metres
+    yaw_deg: Degrees = 0.0
 
 
 class Lighting(_Model):
@@ -126,13 +131,13 @@ class WorldFile(_Model):
     """A whole world."""
 
     format: Literal["topnav-world/1"]
-    name: str
-    wall_height_m: PositiveFloat = 2.6
-    wall_thickness_m: PositiveFloat = 0.075
+    name: Name
+    wall_height_m: Height = 2.6
+    wall_thickness_m: float = Field(default=0.075, ge=0.01, le=5.0)
     lighting: Lighting = Lighting()
-    rooms: tuple[Room, ...] = Field(min_length=1)
-    openings: tuple[Opening, ...] = ()
-    furniture: tuple[Item, ...] = ()
+    rooms: tuple[Room, ...] = Field(min_length=1, max_length=200)
+    openings: tuple[Opening, ...] = Field(default=(), max_length=400)
+    furniture: tuple[Item, ...] = Field(default=(), max_length=3000)
     start: Start
 
     def rectangles(self) -> list[tuple[tuple[float, float], tuple[float, float]]]:
@@ -143,6 +148,15 @@ class WorldFile(_Model):
     def holds(self, x_m: float, y_m: float) -> bool:
         """Whether a point lies inside a room or opening."""
         return any(x[0] < x_m < x[1] and y[0] < y_m < y[1] for x, y in self.rectangles())
+
+    @model_validator(mode="after")
+    def _not_vast(self) -> Self:
+        for axis in (0, 1):
+            low = min(rect[axis][0] for rect in self.rectangles())
+            high = max(rect[axis][1] for rect in self.rectangles())
+            if high - low > MOST_SPAN_M:
+                raise ValueError(f"the world must be at most {MOST_SPAN_M:g} m wide, got {high - low:g} m")
+        return self
 
     @model_validator(mode="after")
     def _start_inside(self) -> Self:
@@ -173,9 +187,9 @@ def load_world(name_or_path: str) -> WorldFile:
             f"world must be one of {', '.join(world_names())} or a .yaml file; got {name_or_path!r}"
         )
     try:
-        data = yaml.load(path.read_text(encoding="utf-8"), Loader=LOADER)
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise WorldFileError(f"{path}: not valid YAML: {error}") from error
+        data = read_yaml(path)
+    except YamlFileError as error:
+        raise WorldFileError(f"{path}: {error}") from error
     if not isinstance(data, dict):
         raise WorldFileError(
             f"{path}: must be a mapping with format, name, rooms, start; got {type(data).__name__}"

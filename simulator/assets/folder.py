@@ -71,7 +71,7 @@ class AssetFolder:
             size = path.stat().st_size
             if size > MOST_BYTES:
                 raise AssetError(
-                    f"{path.name} must be at most {MOST_BYTES // 1_000_000} MB, got {size / 1e6:.1f}; reduce it"
+                    f"{path.name} must be at most {MOST_BYTES // 1_000_000} MB, got {size / 1e6:.1f}"
                 )
             return path.read_bytes()
         except OSError as error:
