@@ -76,7 +76,7 @@ def _check_extent(text: str) -> None:
         elif isinstance(event, yaml.AliasEvent):
             if any(one.anchor == event.anchor for one in stack):
                 raise YamlFileError(f"*{event.anchor} refers to what it is a part of")
-            stack[-1].values += sizes.get(event.anchor, 1)
+            stack[-1].values += sizes.get(event.anchor or "", 1)
         if len(stack) > MOST_DEPTH:
             raise YamlFileError(f"must be nested at most {MOST_DEPTH} deep")
         if stack[-1].values > MOST_VALUES:

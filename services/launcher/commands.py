@@ -26,6 +26,7 @@ COMMANDS: dict[str, LazyCommand] = {
     "study": LazyCommand("experiments.studies", "Experiments on headings, matching, disturbances and scale."),
     "calibrate": LazyCommand("experiments.calibrate", "Measure the thresholds of a pipeline."),
     "bench": LazyCommand("experiments.bench", "Time the stages of the control loop."),
+    "world": LazyCommand("experiments.worlds", "Check a world file before anybody drives in it."),
     "map": LazyCommand("experiments.maps", "List, export, import, rename and delete maps."),
 }
 

@@ -3,6 +3,7 @@
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -87,6 +88,10 @@ class Kind:
             raise ValueError(f"{self.name} cannot be built with these options: {error}") from error
         self._check_piece(piece)
 
+    @cached_property
+    def _checked(self) -> Callable[..., Piece]:
+        return validate_call(config=ConfigDict(arbitrary_types_allowed=True))(self.function)
+
     def _check_piece(self, piece: Piece) -> None:
         numbers = [v for part in piece.parts for v in (*part.size_m, *part.centre_m)]
         if len(piece.parts) > MOST_PARTS or not np.isfinite(numbers).all():
@@ -96,8 +101,7 @@ class Kind:
 
     def build(self, options: dict[str, Any], seed: int) -> Piece:
         """Make the piece in its own frame: origin on the floor (or at its anchor), front along +x."""
-        checked = validate_call(config=ConfigDict(arbitrary_types_allowed=True))(self.function)
-        return checked(np.random.default_rng([seed, *self.name.encode()]), **options)
+        return self._checked(np.random.default_rng([seed, *self.name.encode()]), **options)
 
 
 FURNITURE: dict[str, Kind] = {
