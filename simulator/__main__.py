@@ -6,6 +6,7 @@ from functools import partial
 from shared.lifecycle import run_service
 from simulator.service import run
 from simulator.service_settings import SimulatorSettings
+from simulator.world_check import start_faults
 from simulator.world_file import WorldFileError, load_world
 
 
@@ -16,6 +17,8 @@ def main() -> None:
         world = load_world(settings.world)
     except WorldFileError as error:
         sys.exit(f"simulator: {error}")
+    if faults := start_faults(world):
+        sys.exit(f"simulator: {settings.world}: {faults[0]}")
     run_service("simulator", settings, partial(run, settings, world))
 
 

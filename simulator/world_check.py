@@ -101,7 +101,7 @@ def start_faults(world: WorldFile, robot_radius_m: float = ROBOT_RADIUS_M) -> li
         if distance < min(nearest, gap + 1e-6):
             nearest, name = distance, f"furniture.{k} ({item.kind})"
     return [
-        f"start ({world.start.x_m:g}, {world.start.y_m:g}) must be {robot_radius_m:g} m away from everything, "
+        f"start ({world.start.x_m:g}, {world.start.y_m:g}) must be {robot_radius_m:g} m from everything, "
         f"{name} is {gap:.2f} m away; move one of them"
     ]
 
