@@ -5,7 +5,6 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Polygon, Rectangle
 
 from simulator.footprints import hull_corners_m
-from simulator.footprints import hull_corners_m
 from simulator.freespace import BODY_BAND_M
 from simulator.parts import Part, solids_between
 from simulator.rooms import room_parts
@@ -48,8 +47,6 @@ def _outline(part: Part, colour: str, zorder: int) -> Rectangle | Circle | Polyg
     style = {"facecolor": colour, "edgecolor": colour, "linewidth": 0.8, "zorder": zorder}
     if part.shape == "cylinder":
         return Circle((x, y), part.size_m[0] / 2, **style)
-    if part.shape == "hull":
-        return Polygon(hull_corners_m(part), closed=True, **style)
     if part.shape == "hull":
         return Polygon(hull_corners_m(part), closed=True, **style)
     half = np.array(part.size_m[:2]) / 2
