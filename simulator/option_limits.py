@@ -15,6 +15,8 @@ def check_value(name: str, value: object, depth: int = 0) -> None:
     if isinstance(value, int | float) and not isinstance(value, bool):
         if not (math.isfinite(value) and abs(value) <= MOST_NUMBER):
             raise ValueError(f"{name}: must be a number within +-{MOST_NUMBER:g}, got {short(value)}")
+        if name.endswith("_m") and value < 0:
+            raise ValueError(f"{name}: must be a length of at least 0, got {short(value)}")
     elif isinstance(value, str):
         if len(value) > MOST_TEXT:
             raise ValueError(f"{name}: must have at most {MOST_TEXT} characters, got {len(value)}")

@@ -48,6 +48,10 @@ class Kind:
     function: Callable[..., Piece]
     files: Mapping[str, FileKind] = field(default_factory=dict)  # options that name files
 
+    def options(self) -> list[str]:
+        """Names of its options."""
+        return [name for name in inspect.signature(self.function).parameters if name != "rng"]
+
     def opened(self, options: dict[str, Any], folder: AssetFolder | None) -> dict[str, Any]:
         """Put what the files hold in place of their names.
 
@@ -69,7 +73,7 @@ class Kind:
 
     def check(self, options: dict[str, Any]) -> None:
         """Raise ValueError if an option is unknown or does not fit."""
-        known = [name for name in inspect.signature(self.function).parameters if name != "rng"]
+        known = self.options()
         unknown = sorted(str(name) for name in set(options) - set(known))
         if unknown:
             raise ValueError(
