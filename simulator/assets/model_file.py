@@ -123,6 +123,8 @@ def _patch(shape: Any, transform: npt.NDArray[np.float64], linear: bool, name: s
             pixels = (pixels * (base / 255.0)).astype(np.uint8)
         return Patch(mesh, picture_of(pixels), True, two_sided)
     colours = _vertex_colours(shape, linear)
+    if colours is not None and material is None:
+        base = np.full(3, 255.0)
     whole = np.broadcast_to(base, (len(vertices), 3)) if colours is None else colours * (base / 255.0)
     if len(mesh.triangles) == 0:
         return Patch(mesh, picture_of(np.zeros((2, 2, 3), np.uint8)), False, two_sided)

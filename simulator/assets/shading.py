@@ -8,6 +8,7 @@ from simulator.meshes import Mesh
 FloatArray = npt.NDArray[np.floating]
 CREASE_COS = float(np.cos(np.deg2rad(40.0)))
 SMALLEST_AREA = 1e-14
+MOST_FACES = 64  # at one place; further ones do not count
 
 
 def creased(
@@ -24,21 +25,10 @@ def creased(
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(cross, axis=1)
     kept = area > SMALLEST_AREA * max(1.0, float(np.ptp(vertices)) ** 2)
-    triangles, cross, area = triangles[kept], cross[kept], area[kept]
-    flat = cross / area[:, None]
+    triangles, cross = triangles[kept], cross[kept]
     _, place = np.unique(np.asarray(vertices, np.float32), axis=0, return_inverse=True)
-    places = place.reshape(-1)[triangles]
-    total: npt.NDArray[np.float64] = np.stack(
-        [
-            np.bincount(places.ravel(), np.repeat(cross[:, k], 3), minlength=int(place.max(initial=-1)) + 1)
-            for k in range(3)
-        ],
-        axis=-1,
-    )
-    total /= np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-30)
-    smooth = total[places]
-    sharp = (smooth * flat[:, None]).sum(axis=-1) < CREASE_COS
-    normals = np.where(sharp[..., None], flat[:, None], smooth).reshape(-1, 3).astype(np.float32)
+    corner_normals = _smoothed(place.reshape(-1)[triangles].ravel(), np.repeat(cross, 3, axis=0))
+    normals = corner_normals.astype(np.float32)
     rows = np.concatenate([triangles.reshape(-1, 1).astype(np.float64), np.round(normals, 3)], axis=1)
     _, first, back = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     source = triangles.reshape(-1)[first].astype(np.int64)
@@ -47,6 +37,30 @@ def creased(
         vertices[source].astype(np.float32), normals[first], uv, back.reshape(-1, 3).astype(np.uint32)
     )
     return mesh, source
+
+
+def _smoothed(places: npt.NDArray[np.integer], cross: FloatArray) -> npt.NDArray[np.float64]:
+    """Normals of corners: sums over the faces at the same place that are turned by less than the crease.
+
+    Args:
+        places: (n,) place of each corner.
+        cross: (n, 3) normal of its face, as long as the face is large.
+    """
+    order = np.argsort(places, kind="stable")
+    place, weighted = places[order], np.asarray(cross, np.float64)[order]
+    unit = weighted / np.linalg.norm(weighted, axis=1, keepdims=True)
+    total = weighted.copy()
+    for step in range(1, min(MOST_FACES, len(place))):
+        same = np.flatnonzero(place[step:] == place[:-step])
+        if not len(same):
+            break
+        one = same[(unit[same] * unit[same + step]).sum(axis=1) > CREASE_COS]
+        total[one] += weighted[one + step]
+        total[one + step] += weighted[one]
+    total /= np.linalg.norm(total, axis=1, keepdims=True)
+    found = np.empty_like(total)
+    found[order] = total
+    return found
 
 
 def painted(mesh: Mesh, colours: npt.NDArray[np.uint8]) -> tuple[Mesh, npt.NDArray[np.uint8]]:
