@@ -12,6 +12,7 @@ from experiments import options
 from experiments.output import write_json
 from simulator.world_check import WorldReport, examine
 from simulator.world_file import WorldFile, load_world
+from simulator.world_reference import reference, renewed
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, no_args_is_help=True)
 
@@ -37,12 +38,21 @@ def check(
     if json_file is not None:
         write_json(json_file, asdict(report))
     if plan is not None:
-        from experiments.plots.plans import draw_map
-
-        draw_map(plan, file, {}, ())
+        _draw(file, plan)
     if panorama is not None and not report.faults:
         _render(file, panorama)
     raise typer.Exit(1 if report.faults else 0)
+
+
+@app.command()
+def kinds(
+    into: Annotated[Path | None, typer.Option(help="Renew the tables of this page instead.")] = None,
+) -> None:
+    """List furniture with its options, and textures, as Markdown."""
+    if into is None:
+        typer.echo(reference())
+    else:
+        into.write_text(renewed(into.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 def _show(report: WorldReport) -> None:
@@ -69,6 +79,22 @@ def _show(report: WorldReport) -> None:
         console.print(f"[red]fault[/red]  {fault}", highlight=False)
     for doubt in report.doubts:
         console.print(f"[yellow]check[/yellow]  {doubt}", highlight=False)
+
+
+def _draw(world: WorldFile, path: Path) -> None:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    from experiments.plots.world import draw_world
+
+    figure = Figure(figsize=(8, 8), dpi=130, layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    draw_world(axes, world)
+    axes.plot([world.start.x_m], [world.start.y_m], "o", color="#1a9a3c")
+    axes.set_title(f"{world.name}, start in green")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path)
 
 
 def _render(world: WorldFile, path: Path) -> None:
