@@ -17,7 +17,7 @@ from simulator.refine import refined
 FloatArray = npt.NDArray[np.float64]
 Collision = Literal["convex", "box", "none"]
 Sides = tuple[float | None, float | None, float | None]
-SMALLEST_M, LARGEST_M = 0.005, 200.0
+SMALLEST_M, LARGEST_M = 0.005, 100.0
 MOST_FINE = 400_000
 FROM_Y_UP = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # glTF's front, +z, becomes +x
 

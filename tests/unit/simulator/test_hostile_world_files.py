@@ -162,7 +162,7 @@ def test_traps_of_yaml_are_refused_within_a_second(tmp_path, text, message):
         (("furniture",), [{"kind": "rug", "at_m": [1, 1]}] * 3001, "furniture.*at most 3000"),
         (("furniture", 0, "options"), {"length_m": float("nan")}, "length_m: must be a number within"),
         (("furniture", 0, "options"), {"length_m": 1e12}, r"within \+-1000"),
-        (("furniture", 0, "options"), {"length_m": -3.0}, "length_m: must be a length of at least 0"),
+        (("furniture", 0, "options"), {"length_m": -3.0}, "length_m: must be a length of 0 to 100 m"),
         (("furniture", 0, "options"), {"colour": [1, 2, 3, 4]}, "colour"),
         (("furniture", 0, "seed"), -1, "seed"),
         (("furniture", 0, "seed"), 2**70, "seed"),

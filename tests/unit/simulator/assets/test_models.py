@@ -124,7 +124,7 @@ def nan_points():
         ("m.obj", obj_text(nan_points()), "vertices must be finite"),
         ("m.obj", obj_text(quads=QUADS + 90), "m.obj"),
         ("m.obj", obj_text(BOX * 0), "must hold triangles"),
-        ("m.obj", obj_text(BOX * 1e-5), r"0\.005 to 200 m large"),
+        ("m.obj", obj_text(BOX * 1e-5), r"0\.005 to 100 m large"),
         ("m.obj", obj_text(BOX * 1e3), r"set scale \(0\.001 for millimetres\)"),
         ("m.obj", obj_text(extra="mtllib gone.mtl\nusemtl a\n"), "gone.mtl.*no such file"),
         ("m.obj", obj_text(extra="mtllib ../../../etc/passwd\n"), "must lie in the world's folder"),
