@@ -1,6 +1,7 @@
-"""Answers the experimenter's requests: reset, placing the robots, pictures from anywhere."""
+"""Answers the experimenter's requests: reset, placing robots and furniture, pictures from anywhere."""
 
 from shared.messages import Frame, SimulationReply, SimulationRequest
+from simulator.changes import ChangeError
 from simulator.outbox import MessageMaker
 from simulator.simulation import Pose2, Simulation
 
@@ -22,7 +23,7 @@ class Experimenter:
             The reply, and whether what the robot senses has changed, so that the frame in flight is void.
 
         Raises:
-            RequestError: a pose is missing or lies outside the world.
+            RequestError: a pose is missing or lies outside the world, or the world cannot change like that.
         """
         frame: Frame | None = None
         if request.action == "reset":
@@ -41,10 +42,27 @@ class Experimenter:
             true = self._simulation.truth()
             here = (true.x_m, true.y_m, true.yaw_rad)
             frame = self._look(here if request.pose is None else self._pose(request), seq, stamp_ns)
-        changed = request.action in {"reset", "place_robot", "place_hider", "remove_hider"}
+        elif request.action in {"set_item", "place_obstacle"}:
+            self._change_world(request)
+        changed = request.action not in {"look", "truth"}
         return SimulationReply(
             seq=seq, stamp_ns=stamp_ns, truth=self._maker.truth(seq, stamp_ns), frame=frame
         ), changed
+
+    def _change_world(self, request: SimulationRequest) -> None:
+        """Move, remove, restore or add a piece of furniture."""
+        try:
+            if request.action == "set_item":
+                if request.item is None:
+                    raise RequestError("set_item needs the item's name, got none")
+                pose = self._pose(request) if request.pose is not None else None
+                self._simulation.set_item(request.item, request.present, pose)
+                return
+            if request.kind is None:
+                raise RequestError("place_obstacle needs a kind of furniture, got none")
+            self._simulation.place_obstacle(request.kind, self._pose(request), request.item)
+        except ChangeError as error:
+            raise RequestError(f"{request.action}: {error}") from error
 
     def _look(self, pose: Pose2, seq: int, stamp_ns: int) -> Frame:
         return self._maker.picture(self._simulation.panorama_at(*pose), seq, stamp_ns)

@@ -44,6 +44,26 @@ class PhysicsScene:
         self._last_touch_s = -math.inf
         self.time_s, self.collisions = 0.0, 0
 
+    def add_walker(self, solid: Part) -> physx.PhysxRigidDynamicComponent:
+        """Add a box or an upright cylinder that goes where it is put and pushes; see `move_walker`."""
+        builder = self._scene.create_actor_builder()
+        _add_solid(builder, solid, physx.PhysxMaterial(0.2, 0.2, 0.0))
+        entity = builder.build_kinematic(name="walker")
+        return entity.find_component_by_type(physx.PhysxRigidDynamicComponent)
+
+    def move_walker(
+        self,
+        walker: physx.PhysxRigidDynamicComponent,
+        pose: tuple[float, float, float],
+        at_once: bool = False,
+    ) -> None:
+        """Where a walker is after the next step, or, `at_once`, now."""
+        x_m, y_m, yaw_rad = pose
+        target = sapien.Pose([x_m, y_m, 0.0], [math.cos(yaw_rad / 2), 0, 0, math.sin(yaw_rad / 2)])
+        if at_once:
+            walker.entity.set_pose(target)
+        walker.set_kinematic_target(target)
+
     def step(self) -> None:
         """Advance by one timestep."""
         self.robot.control(self._timestep_s)
@@ -76,23 +96,27 @@ def _add_static(scene: sapien.Scene, parts: tuple[Part, ...], height_m: float) -
     entity = floor.build_static(name="floor")
     solids = scene.create_actor_builder()
     for part in solids_between(parts, 0.0, height_m + 0.05):
-        if part.shape == "hull":
-            continue
-        x, y, z = part.centre_m
-        turn = sapien.Pose([x, y, z], [math.cos(part.yaw_rad / 2), 0, 0, math.sin(part.yaw_rad / 2)])
-        if part.shape == "cylinder":
-            radius = part.size_m[0] / 2 * max(1.0, part.taper)
-            solids.add_cylinder_collision(
-                turn * sapien.Pose([0, 0, 0], UPRIGHT),
-                radius=radius,
-                half_length=part.size_m[2] / 2,
-                material=material,
-            )
-        else:
-            solids.add_box_collision(turn, half_size=[s / 2 for s in part.size_m], material=material)
+        if part.shape != "hull":
+            _add_solid(solids, part, material)
     solids.build_static(name="solids")
     _add_hulls(scene, solids_between(parts, THRESHOLD_M, height_m + 0.05), material)
     return int(entity.per_scene_id)
+
+
+def _add_solid(builder: sapien.ActorBuilder, part: Part, material: physx.PhysxMaterial) -> None:
+    """Add one part to a body: a cylinder, or a box for every other shape."""
+    x, y, z = part.centre_m
+    turn = sapien.Pose([x, y, z], [math.cos(part.yaw_rad / 2), 0, 0, math.sin(part.yaw_rad / 2)])
+    if part.shape == "cylinder":
+        radius = part.size_m[0] / 2 * max(1.0, part.taper)
+        builder.add_cylinder_collision(
+            turn * sapien.Pose([0, 0, 0], UPRIGHT),
+            radius=radius,
+            half_length=part.size_m[2] / 2,
+            material=material,
+        )
+    else:
+        builder.add_box_collision(turn, half_size=[s / 2 for s in part.size_m], material=material)
 
 
 def _add_hulls(scene: sapien.Scene, parts: list[Part], material: physx.PhysxMaterial) -> None:

@@ -75,6 +75,11 @@ class Robot:
         w, x, y, z = (float(v) for v in pose.q)
         return float(pose.p[0]), float(pose.p[1]), math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
+    def motion(self) -> tuple[float, float, float]:
+        """Velocity of the chassis along x and y of the world (m/s), and its turning (rad/s)."""
+        x_mps, y_mps = (float(v) for v in self._articulation.root_linear_velocity[:2])
+        return x_mps, y_mps, float(self._articulation.root_angular_velocity[2])
+
     def speed_mps(self) -> float:
         """Speed of the chassis over the floor."""
         return float(np.hypot(*self._articulation.root_linear_velocity[:2]))

@@ -5,9 +5,10 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, PositiveFloat, PositiveInt
-from pydantic_settings import SettingsConfigDict
+from pydantic_settings import NoDecode, SettingsConfigDict
 
 from shared.settings import ServiceSettings
+from simulator.disturbances.levels import Disturbances
 from simulator.settings import CameraSettings, RangeSettings, SimulationSettings
 
 Folder = Annotated[Path | None, BeforeValidator(lambda value: value or None)]
@@ -36,6 +37,8 @@ class SimulatorSettings(ServiceSettings):
         encoding: bgr8 is exact; jpeg is smaller and costs time on both sides.
         cache_dir: where textures and light are kept between starts; empty keeps nothing.
         cache_limit_mb: size of that folder, see SimulationSettings.
+        disturbance: levels from 0 to 1 of what disturbs camera and world, as "fog=0.5,noise=0.3".
+        polite_people: see SimulationSettings.
     """
 
     model_config = SettingsConfigDict(env_prefix="SIMULATOR_")
@@ -55,6 +58,8 @@ class SimulatorSettings(ServiceSettings):
     range_noise_m: float = Field(default=0.01, ge=0.0)
     cache_dir: Folder = Field(default_factory=user_cache_dir)
     cache_limit_mb: PositiveInt = SimulationSettings().cache_limit_mb
+    disturbance: Annotated[Disturbances, NoDecode] = Disturbances()
+    polite_people: bool = True
 
     def simulation(self) -> SimulationSettings:
         """The part that the simulation itself needs."""
@@ -64,4 +69,6 @@ class SimulatorSettings(ServiceSettings):
             ranges=RangeSettings(max_m=self.range_max_m, noise_m=self.range_noise_m),
             cache_dir=self.cache_dir,
             cache_limit_mb=self.cache_limit_mb,
+            disturbances=self.disturbance,
+            polite_people=self.polite_people,
         )

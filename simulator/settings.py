@@ -13,6 +13,8 @@ from pydantic import (
     model_validator,
 )
 
+from simulator.disturbances.levels import Disturbances
+
 
 class _Frozen(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
@@ -76,6 +78,8 @@ class SimulationSettings(_Frozen):
         render: whether pictures are wanted.
         cache_dir: keeps textures and light between starts; None computes them every time.
         cache_limit_mb: size of that folder, above which the longest unused goes; one world takes about 165.
+        disturbances: how strongly camera and world are disturbed; nothing by default.
+        polite_people: walkers wait for the robot; without, they walk into it.
     """
 
     timestep_s: PositiveFloat = 0.01
@@ -85,3 +89,5 @@ class SimulationSettings(_Frozen):
     render: bool = True
     cache_dir: Path | None = None
     cache_limit_mb: PositiveInt = 640
+    disturbances: Disturbances = Disturbances()
+    polite_people: bool = True

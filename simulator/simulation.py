@@ -2,22 +2,31 @@
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from simulator.disk_cache import DiskCache
-from simulator.footprints import footprints
-from simulator.freespace import BODY_BAND_M
-from simulator.parts import Light, Part
+from simulator.bodies import Bodies
+from simulator.changes import ChangeError, Changes, changed_world, with_item, with_obstacle
+from simulator.disturbances.camera import Moment
+from simulator.disturbances.outlines import combined
+from simulator.disturbances.rearranging import rearranged
+from simulator.disturbances.walking import Crowd, crowd_of
+from simulator.footprints import clearance_m, footprints
+from simulator.freespace import BODY_BAND_M, free_space
 from simulator.physics_scene import PhysicsScene
 from simulator.ranges import measure, sensor_angles_rad
 from simulator.scene_parts import expand
 from simulator.settings import SimulationSettings
 from simulator.world_file import WorldFile
 
+if TYPE_CHECKING:
+    from simulator.view import View
+
 Pose2 = tuple[float, float, float]
 Image = npt.NDArray[np.uint8]
+TOUCH_M = 0.02  # less than this of a new thing inside the robot is pushed out by physics
 
 
 @dataclass(frozen=True)
@@ -38,11 +47,13 @@ class Simulation:
 
     def __init__(self, world: WorldFile, settings: SimulationSettings | None = None, seed: int = 0) -> None:
         """Build the world; the robot stands at the world's start."""
-        self.world = world
         self.settings = settings or SimulationSettings()
-        self._parts, lights = expand(world)
-        self._shapes = footprints(self._parts, *BODY_BAND_M)
-        self._view = _View(world, (self._parts, lights), self.settings) if self.settings.render else None
+        levels = self.settings.disturbances
+        self._file = world
+        self._changes: Changes = rearranged(world, levels.furniture, seed)
+        self._show(changed_world(world, self._changes))
+        self._crowd = self._gather(seed)
+        self._view = self._look_at() if self.settings.render else None
         self._hider: Pose2 | None = None
         self.reset(seed)
 
@@ -51,6 +62,7 @@ class Simulation:
         start = self.world.start
         self._seed = seed
         self._readings = 0
+        self._crowd.restart()
         self._build(pose or (start.x_m, start.y_m, math.radians(start.yaw_deg)), 0.0, 0)
 
     def place_robot(self, x_m: float, y_m: float, yaw_rad: float) -> None:
@@ -64,6 +76,22 @@ class Simulation:
     def remove_hider(self) -> None:
         """Take the second robot away."""
         self._hider = None
+
+    def set_item(self, name: str, present: bool | None = None, pose: Pose2 | None = None) -> None:
+        """Take a piece of furniture away, put it back, or move it: seen, felt and hit from now on.
+
+        Raises:
+            ChangeError: no such item, nothing to do, or it would stand in the robot.
+        """
+        self._change(with_item(self._file, self._changes, name, present, pose))
+
+    def place_obstacle(self, kind: str, pose: Pose2, name: str | None = None) -> None:
+        """Add a piece of furniture that the world file does not have.
+
+        Raises:
+            ChangeError: unknown kind, taken name, or it would stand in the robot.
+        """
+        self._change(with_obstacle(self._file, self._changes, name, kind, pose))
 
     def command(self, steer_rad: float, wheel_speed_radps: float, ttl_s: float = math.inf) -> None:
         """Roll towards a heading (robot frame) at a wheel speed for up to `ttl_s` of simulated time."""
@@ -83,25 +111,25 @@ class Simulation:
         for _ in range(max(1, round(duration_s / self.settings.timestep_s))):
             if self._physics.time_s >= self._expires_s - 1e-9:
                 self.stop()
+            if self._walkers:
+                self._walk()
             self._physics.step()
 
     def panorama(self) -> Image:
         """What the robot's camera sees, (height, width, 3) BGR."""
-        return self.panorama_at(*self._physics.robot.pose())
+        robot = self._physics.robot
+        return self._picture(robot.pose(), robot.motion())
 
     def panorama_at(self, x_m: float, y_m: float, yaw_rad: float) -> Image:
         """What a camera at any pose sees, with both robots where they are; (height, width, 3) BGR."""
-        if self._view is None:
-            raise RuntimeError(
-                "this simulation was made with render=False; set SimulationSettings.render to take pictures"
-            )
-        return self._view.picture((x_m, y_m, yaw_rad), self._physics, self._hider)
+        return self._picture((x_m, y_m, yaw_rad), (0.0, 0.0, 0.0))
 
     def ranges(self) -> npt.NDArray[np.float64]:
         """Distances of the twelve sensors, metres; every call is a new reading with its own noise."""
         rng = np.random.default_rng([self._seed, self._readings])
         self._readings += 1
-        return measure(*self._physics.robot.pose(), self._shapes, self.settings.ranges, rng)
+        shapes = combined(self._shapes, self._crowd.outlines()) if self._walkers else self._shapes
+        return measure(*self._physics.robot.pose(), shapes, self.settings.ranges, rng)
 
     def steer_angles_rad(self) -> list[float]:
         """Measured angles of the four steer servos."""
@@ -122,36 +150,55 @@ class Simulation:
         self._physics = PhysicsScene(self._parts, self.settings.robot, self.settings.timestep_s, pose)
         self._physics.time_s, self._physics.collisions = time_s, collisions
         self._expires_s = math.inf
+        self._crowd.make_room(pose[:2])
+        self._walkers = [self._physics.add_walker(w.figure.solid) for w in self._crowd.walkers]
+        for body, walker in zip(self._walkers, self._crowd.walkers, strict=True):
+            self._physics.move_walker(body, walker.pose(), at_once=True)
 
+    def _walk(self) -> None:
+        """Everybody takes a step; physics carries the bodies there in its next step."""
+        self._crowd.advance(self.settings.timestep_s, self._physics.robot.pose()[:2])
+        for body, walker in zip(self._walkers, self._crowd.walkers, strict=True):
+            self._physics.move_walker(body, walker.pose())
 
-class _View:
-    """The rendered scene with the bodies of both robots."""
+    def _show(self, world: WorldFile) -> None:
+        self.world = world
+        self._parts, self._lights = expand(world)
+        self._shapes = footprints(self._parts, *BODY_BAND_M)
 
-    def __init__(
-        self,
-        world: WorldFile,
-        contents: tuple[tuple[Part, ...], tuple[Light, ...]],
-        settings: SimulationSettings,
-    ) -> None:
+    def _gather(self, seed: int) -> Crowd:
+        level, robot_m = self.settings.disturbances.people, self.settings.robot.body_radius_m
+        if level == 0.0:
+            return Crowd([], robot_m)
+        return crowd_of(free_space(self.world), level, seed, self.settings.polite_people)
+
+    def _look_at(self) -> "View":
         # SAPIEN's renderer is loaded only where pictures are wanted.
-        from simulator.painter import Painter
-        from simulator.render_scene import RenderScene
-        from simulator.robot_shape import HIDER, SEEKER, chassis_parts, leg_parts, wheel_parts, whole_robot
+        from simulator.view import View
 
-        robot = settings.robot
-        cache = DiskCache(settings.cache_dir, settings.cache_limit_mb * 1_000_000)
-        with Painter(cache) as painter:
-            self._scene = RenderScene(world, contents, settings.camera, painter, cache)
-            self._links = {"chassis": self._scene.add_body(chassis_parts(robot, SEEKER))}
-            for k in range(4):
-                self._links[f"leg{k}"] = self._scene.add_body(leg_parts(robot))
-                self._links[f"wheel{k}"] = self._scene.add_body(wheel_parts(robot))
-            self._hider = self._scene.add_body(whole_robot(robot, HIDER))
-        cache.tidy()
+        figures = [walker.figure for walker in self._crowd.walkers]
+        return View(self.world, (self._parts, self._lights), self.settings, figures)
 
-    def picture(self, camera: Pose2, physics: PhysicsScene, hider: Pose2 | None) -> Image:
-        """Move the bodies to where they are and take the picture."""
-        for name, entity in self._links.items():
-            self._scene.move(entity, physics.robot.links[name].entity.pose)
-        self._scene.move_flat(self._hider, hider)
-        return self._scene.panorama(camera)
+    def _picture(self, camera: Pose2, motion: Pose2) -> Image:
+        if self._view is None:
+            raise RuntimeError(
+                "this simulation was made with render=False; set SimulationSettings.render to take pictures"
+            )
+        bodies = {name: link.entity.pose for name, link in self._physics.robot.links.items()}
+        walkers = [walker.pose() for walker in self._crowd.walkers]
+        moment = Moment(self._seed, self._physics.time_s, camera)
+        return self._view.picture(camera, motion, Bodies(bodies, self._hider, walkers), moment)
+
+    def _change(self, changes: Changes) -> None:
+        """Build the changed world round the robot, which stops but stays where it is."""
+        before = self._changes, self.world
+        pose = self._physics.robot.pose()
+        self._show(changed_world(self._file, changes))
+        if clearance_m(np.array([pose[:2]]), self._shapes)[0] < self.settings.robot.body_radius_m - TOUCH_M:
+            self._show(before[1])
+            raise ChangeError(f"it would stand in the robot at ({pose[0]:.2f}, {pose[1]:.2f})")
+        self._changes = changes
+        self._crowd.block(self._shapes)
+        self._build(pose, self._physics.time_s, self._physics.collisions)
+        if self._view is not None:
+            self._view.change(self.world, (self._parts, self._lights))

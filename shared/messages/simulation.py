@@ -1,11 +1,14 @@
 """Simulation only: the true pose for evaluation and the debug view, and the hand of the experimenter."""
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
 from shared.messages.base import Message, Name, Part
 from shared.messages.sensors import Frame
+
+Item = Annotated[str, Field(min_length=1, max_length=80)]
+"""Name of a piece of furniture, or of a kind of it, as world files have them."""
 
 
 class Pose(Part):
@@ -32,13 +35,34 @@ class Truth(Message):
 
 
 class SimulationRequest(Message):
-    """reset: start pose, noise from seed; place_robot; place_hider and look: reply with a picture."""
+    """What the experimenter's hand does in the world.
+
+    Attributes:
+        action: reset puts the robot at the start pose and draws noise from seed; place_robot; place_hider and
+            look reply with a picture; set_item takes the furniture `item` away, puts it back or moves it;
+            place_obstacle adds furniture of a `kind` at `pose`, with `item` as its name.
+        item: name of a piece of furniture: its own, or kind and number as in "chair-2".
+        kind: of the furniture catalogue.
+        present: false takes the item away, true puts it back where the world file has it.
+    """
 
     SCHEMA: ClassVar[str] = "simulation_request.v1"
 
-    action: Literal["reset", "place_robot", "place_hider", "remove_hider", "look", "truth"]
+    action: Literal[
+        "reset",
+        "place_robot",
+        "place_hider",
+        "remove_hider",
+        "look",
+        "truth",
+        "set_item",
+        "place_obstacle",
+    ]
     pose: Pose | None = None
     seed: int | None = Field(default=None, ge=0)
+    item: Item | None = None
+    kind: Item | None = None
+    present: bool | None = None
 
 
 class SimulationReply(Message):

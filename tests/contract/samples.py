@@ -270,7 +270,15 @@ def samples() -> dict[type[Message], Message]:
         mission(),
         MissionRecordRequest(**at, action="save", record=mission()),
         truth(),
-        SimulationRequest(**at, action="look", pose=Pose(x_m=1.0, y_m=2.0, yaw_rad=0.5), seed=3),
+        SimulationRequest(
+            **at,
+            action="place_obstacle",
+            pose=Pose(x_m=1.0, y_m=2.0, yaw_rad=0.5),
+            seed=3,
+            item="box-1",
+            kind="basket",
+            present=True,
+        ),
         SimulationReply(**at, truth=truth(), frame=frame()),
     )
     return {type(example): example for example in examples}

@@ -1,5 +1,7 @@
 #version 450
 // Texture times light. Both are gamma-encoded, so the product is what a gamma-correct renderer would show.
+// Then fog by distance. SAPIEN has no uniform for it: the scene's ambient light, which nothing else uses here,
+// carries the extinction per metre (red) and the fog's own light (green), see simulator/disturbances/fog.py.
 
 layout(set = 0, binding = 0) uniform CameraBuffer {
   mat4 viewMatrix;
@@ -40,7 +42,7 @@ layout(set = 2, binding = 3) uniform sampler2D normalTexture;
 layout(set = 2, binding = 4) uniform sampler2D metallicTexture;
 layout(set = 2, binding = 5) uniform sampler2D emissionTexture;
 
-// Unused, but SAPIEN looks these blocks up by name.
+// All but ambientLight unused, but SAPIEN looks these blocks up by name.
 struct PointLight {
   vec4 position;
   vec4 emission;
@@ -67,9 +69,15 @@ layout(set = 3, binding = 0) uniform SceneBuffer {
 
 layout(location = 0) in vec2 inUV;
 layout(location = 1) in vec3 inLight;
+layout(location = 2) in vec3 inView;
 
 layout(location = 0) out vec4 outColor;
 
 void main() {
-  outColor = vec4(texture(colorTexture, inUV).rgb * inLight, 1);
+  vec3 colour = texture(colorTexture, inUV).rgb * inLight;
+  if (sceneBuffer.ambientLight.r > 0.0) {
+    float clear = exp(-sceneBuffer.ambientLight.r * length(inView));
+    colour = mix(vec3(sceneBuffer.ambientLight.g), min(colour, vec3(1)), clear);
+  }
+  outColor = vec4(colour, 1);
 }

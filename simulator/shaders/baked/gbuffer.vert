@@ -28,10 +28,13 @@ layout(location = 4) in vec3 bitangent;
 
 layout(location = 0) out vec2 outUV;
 layout(location = 1) out vec3 outLight;
+layout(location = 2) out vec3 outView; // metres from the camera
 
 void main() {
   outUV = uv;
   // SAPIEN turns normals that disagree with the winding; light is never negative.
   outLight = abs(normal);
-  gl_Position = cameraBuffer.projectionMatrix * (cameraBuffer.viewMatrix * (objectTransformBuffer.modelMatrix * vec4(position, 1)));
+  vec4 view = cameraBuffer.viewMatrix * (objectTransformBuffer.modelMatrix * vec4(position, 1));
+  outView = view.xyz;
+  gl_Position = cameraBuffer.projectionMatrix * view;
 }

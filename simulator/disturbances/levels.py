@@ -1,0 +1,74 @@
+"""How strongly each disturbance acts: one level each, 0 (off) to 1, and the text form that sets them."""
+
+from typing import Any, Self
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+HOW = 'write them as "fog=0.5,noise=0.3"'
+
+
+class Disturbances(BaseModel):
+    """Levels from 0, nothing at all, to 1.
+
+    Attributes:
+        illumination: time of day, from noon (0) over dusk (0.5) to lamps only (1).
+        fog: haze that takes contrast with distance.
+        rain: falling streaks, drops on the lens and a little haze.
+        noise: shot and read noise of the camera.
+        blur: exposure time while the robot moves.
+        exposure: slow swings of brightness with clipping.
+        people: walkers and carts on closed paths.
+        furniture: share of movable furniture that was moved or taken away.
+        tilt: inclination of the camera, constant and swaying, up to 5 degrees.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    illumination: float = Field(default=0.0, ge=0.0, le=1.0)
+    fog: float = Field(default=0.0, ge=0.0, le=1.0)
+    rain: float = Field(default=0.0, ge=0.0, le=1.0)
+    noise: float = Field(default=0.0, ge=0.0, le=1.0)
+    blur: float = Field(default=0.0, ge=0.0, le=1.0)
+    exposure: float = Field(default=0.0, ge=0.0, le=1.0)
+    people: float = Field(default=0.0, ge=0.0, le=1.0)
+    furniture: float = Field(default=0.0, ge=0.0, le=1.0)
+    tilt: float = Field(default=0.0, ge=0.0, le=1.0)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_text(cls, value: Any) -> Any:
+        return _levels(value) if isinstance(value, str) else value
+
+    @classmethod
+    def parse(cls, text: str) -> Self:
+        """Read "fog=0.5,noise=0.3"; an empty text is no disturbance.
+
+        Raises:
+            ValueError: an unknown name, a name given twice, or a level that is no number from 0 to 1.
+        """
+        try:
+            return cls.model_validate(text)
+        except ValidationError as error:
+            faults = (f"{'.'.join(map(str, e['loc'])) or 'disturbance'}: {e['msg']}" for e in error.errors())
+            raise ValueError("; ".join(faults)) from error
+
+    def text(self) -> str:
+        """The text form; levels of 0 are left out."""
+        return ",".join(f"{name}={level:g}" for name, level in self if level)
+
+
+def _levels(text: str) -> dict[str, float]:
+    levels: dict[str, float] = {}
+    for entry in filter(None, (part.strip() for part in text.split(","))):
+        name, _, number = (part.strip() for part in entry.partition("="))
+        if name not in Disturbances.model_fields:
+            raise ValueError(f"no disturbance {name!r}: choose from {', '.join(Disturbances.model_fields)}")
+        if name in levels:
+            raise ValueError(f"{name} is given twice; give each disturbance once")
+        try:
+            levels[name] = float(number)
+        except ValueError:
+            raise ValueError(f"{name} needs a level from 0 to 1, got {number!r}; {HOW}") from None
+        if not 0.0 <= levels[name] <= 1.0:
+            raise ValueError(f"{name} must be a level from 0 to 1, got {number}; {HOW}")
+    return levels
