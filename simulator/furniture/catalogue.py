@@ -82,7 +82,8 @@ class Kind:
         for name, value in options.items():
             check_value(f"{self.name} options: {name}", value)
         try:
-            piece = self.build(options, 0)
+            with np.errstate(divide="raise", invalid="raise"):
+                piece = self.build(options, 0)
         except ValidationError as error:
             faults = "; ".join(
                 f"{e['loc'][0]}: {e['msg']}, got {short(e['input'])}" for e in error.errors() if e["loc"]
