@@ -1,5 +1,6 @@
 """Floor outlines of solid parts, and distances to them. Pure; distance sensors and free space build on it."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -64,6 +65,40 @@ def clearance_m(points_m: FloatArray, shapes: Footprints) -> FloatArray:
     for corners in shapes.polygons_m:
         np.minimum(best, _polygon_distance_m(points_m, corners), out=best)
     return best
+
+
+def clearance_grid_m(xs_m: FloatArray, ys_m: FloatArray, shapes: Footprints, far_m: float) -> FloatArray:
+    """Distance from each point of a grid to the nearest outline, at most far_m; (len(ys), len(xs)) metres.
+
+    Each outline is compared with the points near it only, so that large worlds take seconds.
+    """
+    best = np.full((len(ys_m), len(xs_m)), far_m)
+    for low, high, one in _each(shapes):
+        columns = slice(*np.searchsorted(xs_m, (low[0] - far_m, high[0] + far_m)))
+        rows = slice(*np.searchsorted(ys_m, (low[1] - far_m, high[1] + far_m)))
+        window = best[rows, columns]
+        if window.size:
+            points = np.stack(np.meshgrid(xs_m[columns], ys_m[rows]), axis=-1).reshape(-1, 2)
+            np.minimum(window, clearance_m(points, one).reshape(window.shape), out=window)
+    return best
+
+
+def _each(shapes: Footprints) -> Iterator[tuple[FloatArray, FloatArray, Footprints]]:
+    """Every outline on its own, with the corners of a box round it."""
+    none2, none1 = np.zeros((0, 2)), np.zeros(0)
+    for centre, half, yaw in zip(shapes.centres_m, shapes.halves_m, shapes.yaws_rad, strict=True):
+        reach = np.hypot(*half)
+        yield (
+            centre - reach,
+            centre + reach,
+            Footprints(centre[None], half[None], np.array([yaw]), none2, none1),
+        )
+    for centre, radius in zip(shapes.disc_centres_m, shapes.disc_radii_m, strict=True):
+        disc = Footprints(none2, none2, none1, centre[None], np.array([radius]))
+        yield centre - radius, centre + radius, disc
+    for corners in shapes.polygons_m:
+        hull = Footprints(none2, none2, none1, none2, none1, corners[None])
+        yield corners.min(axis=0), corners.max(axis=0), hull
 
 
 def cast_rays(origin_m: FloatArray, angles_rad: FloatArray, shapes: Footprints, max_m: float) -> FloatArray:

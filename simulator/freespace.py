@@ -4,10 +4,11 @@ import math
 from dataclasses import dataclass
 from itertools import pairwise
 
+import cv2
 import numpy as np
 import numpy.typing as npt
 
-from simulator.footprints import clearance_m, footprints
+from simulator.footprints import clearance_grid_m, footprints
 from simulator.grid_search import shortest_cells
 from simulator.parts import Part, rotation_of
 from simulator.scene_parts import expand
@@ -16,6 +17,10 @@ from simulator.world_file import WorldFile
 FloatArray = npt.NDArray[np.float64]
 Point = tuple[float, float]
 BODY_BAND_M = (0.02, 0.79)
+FINE_M, COARSE_M = 0.05, 0.1
+SMALL_WORLD_M = 30.0
+FAR_M = 3.0
+"""Clearances beyond this are of no interest and not computed."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +29,7 @@ class FreeSpace:
 
     Attributes:
         free: (rows, columns) of bool; row along y, column along x.
-        clearance_m: (rows, columns) distance to the nearest obstacle outline, metres.
+        clearance_m: (rows, columns) distance to the nearest obstacle outline, at most FAR_M metres.
         origin_m: centre of cell (0, 0), world frame.
         resolution_m: side of a cell.
     """
@@ -117,29 +122,32 @@ class FreeSpace:
         )
 
 
-def free_space(world: WorldFile, robot_radius_m: float = 0.26, resolution_m: float = 0.05) -> FreeSpace:
-    """Grid of the floor where a disc of the robot's radius fits, connected to the world's start."""
+def free_space(
+    world: WorldFile, robot_radius_m: float = 0.26, resolution_m: float | None = None
+) -> FreeSpace:
+    """Grid of the floor where a disc of the robot's radius fits, connected to the world's start.
+
+    Args:
+        world: the world.
+        robot_radius_m: of the disc.
+        resolution_m: side of a cell; None takes a finer one for small worlds.
+    """
     parts, _ = expand(world)
     rects = world.rectangles()
     x0, y0 = min(r[0][0] for r in rects), min(r[1][0] for r in rects)
     x1, y1 = max(r[0][1] for r in rects), max(r[1][1] for r in rects)
+    if resolution_m is None:
+        resolution_m = FINE_M if max(x1 - x0, y1 - y0) <= SMALL_WORLD_M else COARSE_M
     xs = np.arange(x0, x1 + resolution_m / 2, resolution_m)
     ys = np.arange(y0, y1 + resolution_m / 2, resolution_m)
-    grid = np.stack(np.meshgrid(xs, ys), axis=-1).reshape(-1, 2)
-    inside = np.zeros(len(grid), bool)
+    inside = np.zeros((len(ys), len(xs)), bool)
     for rx, ry in rects:
-        inside |= (
-            (grid[:, 0] >= rx[0]) & (grid[:, 0] <= rx[1]) & (grid[:, 1] >= ry[0]) & (grid[:, 1] <= ry[1])
-        )
-    distances = np.zeros(len(grid))
-    distances[inside] = clearance_m(grid[inside], footprints(parts, *BODY_BAND_M))
-    clearance = distances.reshape(len(ys), len(xs))
-    whole = FreeSpace(
-        clearance >= robot_radius_m, clearance, (float(x0), float(y0)), resolution_m, robot_radius_m, parts
-    )
-    start = whole.cell((world.start.x_m, world.start.y_m))
-    reached = _flood(whole.free, start)
-    return FreeSpace(reached, clearance, whole.origin_m, resolution_m, robot_radius_m, parts)
+        inside |= ((xs >= rx[0]) & (xs <= rx[1]))[None, :] & ((ys >= ry[0]) & (ys <= ry[1]))[:, None]
+    clearance = np.where(inside, clearance_grid_m(xs, ys, footprints(parts, *BODY_BAND_M), FAR_M), 0.0)
+    origin = (float(x0), float(y0))
+    whole = FreeSpace(clearance >= robot_radius_m, clearance, origin, resolution_m, robot_radius_m, parts)
+    reached = _flood(whole.free, whole.cell((world.start.x_m, world.start.y_m)))
+    return FreeSpace(reached, clearance, origin, resolution_m, robot_radius_m, parts)
 
 
 def _flood(free: npt.NDArray[np.bool_], start: tuple[int, int]) -> npt.NDArray[np.bool_]:
@@ -148,18 +156,8 @@ def _flood(free: npt.NDArray[np.bool_], start: tuple[int, int]) -> npt.NDArray[n
         raise ValueError(
             "the world's start is not on free floor: move it at least a robot radius away from everything"
         )
-    reached = np.zeros_like(free)
-    reached[start] = True
-    while True:
-        grown = reached.copy()
-        grown[1:] |= reached[:-1]
-        grown[:-1] |= reached[1:]
-        grown[:, 1:] |= reached[:, :-1]
-        grown[:, :-1] |= reached[:, 1:]
-        grown &= free
-        if (grown == reached).all():
-            return reached
-        reached = grown
+    _, labels = cv2.connectedComponents(free.astype(np.uint8), connectivity=4)
+    return np.asarray(labels == labels[start])
 
 
 def _blocked(parts: tuple[Part, ...], a: tuple[float, float, float], b: tuple[float, float, float]) -> bool:

@@ -5,6 +5,8 @@ fraction of what lights and shadow maps cost, and look the same from everywhere.
 marched through a grid of filled cells, whose cost does not grow with the number of things in a room.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
 
@@ -21,11 +23,21 @@ REACH_M = 0.9
 SKIP_M = 0.07  # a surface does not shade itself
 CLEAR_SHARE = 0.006
 GAMMA = 1 / 2.2
+MOST_CELLS = 700  # along the longest side of a world: larger worlds get larger cells
+
+
+@dataclass(frozen=True)
+class Sunlight:
+    """Parallel light: unit vector towards the sun, and its power (linear RGB)."""
+
+    towards: tuple[float, float, float]
+    power: tuple[float, float, float]
 
 
 def bake(
     vertices: FloatArray, normals: FloatArray, parts: tuple[Part, ...], lights: tuple[Light, ...],
     ambient: tuple[float, float, float], occlusion: float, rng: np.random.Generator,
+    sun: Sunlight | None = None,
 ) -> FloatArray:  # fmt: skip
     """Light at each vertex as a factor for gamma-encoded texture values.
 
@@ -40,6 +52,7 @@ def bake(
         ambient: even light, linear RGB.
         occlusion: 0 to 1.
         rng: places the light samples.
+        sun: parallel light with hard shadows.
 
     Returns:
         (n, 3) factors, about 0.2 to 1.3.
@@ -53,12 +66,25 @@ def bake(
         offsets = rng.uniform(-0.45, 0.45, (SAMPLES, 3)) * np.array(light.size_m)
         for point in np.array(light.centre_m) + offsets:
             total += _direct(start, facing, grid, light, point.astype(np.float32)) / SAMPLES
+    if sun is not None:
+        total += _sunlit(start, facing, grid, sun)
     total += (
         np.array(ambient, np.float32) * (1.0 - occlusion * (1.0 - _openness(start, facing, grid)))[:, None]
     )
     # Soft shoulder: bright spots under lamps keep their texture.
     factors = (1.25 * (1.0 - np.exp(-total / 0.8))) ** GAMMA
     return np.asarray(factors[back.reshape(-1)], np.float32)
+
+
+def _sunlit(start: FloatArray, normals: FloatArray, grid: "_FilledGrid", sun: Sunlight) -> FloatArray:
+    """Parallel light: where nothing stands between a vertex and the sun."""
+    towards = np.array(sun.towards, np.float32)
+    cosine = np.maximum(normals @ towards, 0.0)
+    lit = np.flatnonzero(cosine > 0.0)
+    visible = np.zeros(len(start), np.float32)
+    begin = start[lit] + 0.02 * normals[lit]
+    visible[lit] = ~grid.hit(begin, begin + towards * grid.way_out_m(begin, towards)[:, None])
+    return np.asarray((cosine * visible)[:, None] * np.array(sun.power, np.float32), np.float32)
 
 
 def _direct(
@@ -101,9 +127,11 @@ class _FilledGrid:
     """Cells of the world that parts fill."""
 
     def __init__(self, parts: tuple[Part, ...], vertices: FloatArray) -> None:
-        margin = REACH_M + 2 * CELL_M  # rays may leave the building a little
-        self._low = vertices.min(axis=0) - margin
-        shape = np.ceil((vertices.max(axis=0) + margin - self._low) / CELL_M).astype(int) + 1
+        low, high = vertices.min(axis=0), vertices.max(axis=0)
+        self._cell_m = max(CELL_M, float((high - low).max()) / MOST_CELLS)
+        margin = REACH_M + 2 * self._cell_m  # rays may leave the building a little
+        self._low, self._high = low - margin, high + margin
+        shape = np.ceil((high + margin - self._low) / self._cell_m).astype(int) + 1
         self._filled = np.zeros(shape, bool)
         shrink = {"ellipsoid": 0.8, "cylinder": 0.9, "cushion": 0.96}
         for part in parts:
@@ -112,27 +140,37 @@ class _FilledGrid:
 
     def _fill(self, part: Part, half: npt.NDArray[np.float64]) -> None:
         """Fill every cell that holds a sample point of the part; samples are denser than cells."""
-        axes = [np.linspace(-h, h, max(2, int(np.ceil(2 * h / (0.7 * CELL_M))) + 1)) for h in half]
+        axes = [np.linspace(-h, h, max(2, int(np.ceil(2 * h / (0.7 * self._cell_m))) + 1)) for h in half]
         local = (
             np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
             if part.geometry is None
-            else surface_points(part.geometry.mesh, 0.7 * CELL_M)
+            else surface_points(part.geometry.mesh, 0.7 * self._cell_m)
         )
         points = local @ rotation_of(part).T + np.array(part.centre_m)
-        i, j, k = np.clip(((points - self._low) / CELL_M).astype(int), 0, np.array(self._filled.shape) - 1).T
+        i, j, k = np.clip(
+            ((points - self._low) / self._cell_m).astype(int), 0, np.array(self._filled.shape) - 1
+        ).T
         self._filled[i, j, k] = True
+
+    def way_out_m(self, start: FloatArray, unit: FloatArray) -> FloatArray:
+        """Distance along one direction until the grid ends, from each of (n, 3) points inside; (n,)."""
+        ends = np.where(unit > 0.0, self._high, self._low) - start
+        steps = np.where(np.abs(unit) > 1e-6, ends / np.where(np.abs(unit) > 1e-6, unit, 1.0), np.inf)
+        return np.asarray(np.maximum(steps.min(axis=1) - self._cell_m, 0.0), np.float32)
 
     def hit(self, start: FloatArray, end: FloatArray) -> npt.NDArray[np.bool_]:
         """Whether each segment from start (n, 3) to end meets a filled cell beyond its first SKIP_M; (n,)."""
         delta = end - start
         length = np.linalg.norm(delta, axis=1)
         order = np.argsort(length)
-        unit = delta / np.maximum(length, 1e-6)[:, None] / CELL_M
-        base = (start - self._low) / CELL_M
+        cell_m = self._cell_m
+        unit = delta / np.maximum(length, 1e-6)[:, None] / cell_m
+        base = (start - self._low) / cell_m
         blocked = np.zeros(len(start), bool)
-        for step in np.arange(SKIP_M, float(length.max(initial=0.0)) - CELL_M, CELL_M):
+        skip_m = max(SKIP_M, 1.1 * cell_m)
+        for step in np.arange(skip_m, float(length.max(initial=0.0)) - cell_m, cell_m):
             # Rays sorted by length: those that have ended are at the front.
-            live = order[np.searchsorted(length[order], step + CELL_M) :]
+            live = order[np.searchsorted(length[order], step + cell_m) :]
             live = live[~blocked[live]]
             cells = (base[live] + unit[live] * np.float32(step)).astype(np.int32)
             blocked[live] = self._filled[cells[:, 0], cells[:, 1], cells[:, 2]]

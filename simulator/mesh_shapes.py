@@ -11,6 +11,7 @@ from simulator.parts import Part, rotation_of
 AnyFloat = npt.NDArray[np.floating[Any]]
 GRAIN_M = 0.36  # longest edge of large faces: light is stored at the vertices
 GROUND_GRAIN_M = 0.2  # floors and rugs carry the shadows of everything that stands on them
+YARD_M, YARD_GRAIN_M = 12.0, 0.45  # grounds larger than this, where few things are looked at closely
 THIN_GRAIN_M = 0.9  # the same on narrow faces, along which light hardly changes
 SIDES = 16
 
@@ -58,6 +59,8 @@ def _grid(rows: int, columns: int) -> IntArray:
 
 def _steps(length: float, across: float = 1.0, ground: bool = False) -> int:
     """Vertices along an edge of a face that is `across` wide."""
+    if ground and max(length, across) > YARD_M:
+        return max(2, int(np.ceil(length / YARD_GRAIN_M)) + 1)
     grain = GROUND_GRAIN_M if ground else GRAIN_M if across > 0.15 else THIN_GRAIN_M
     return max(2, int(np.ceil(length / grain)) + 1)
 

@@ -11,11 +11,13 @@ import sapien
 from sapien import render
 
 from simulator.disk_cache import DiskCache
+from simulator.mesh_shapes import mesh_of
 from simulator.meshes import Mesh
 from simulator.painter import Look, Painter, look_of
 from simulator.panorama import BORDER_PX, CubeToEquirect, Image, face_fov_rad, face_rotations
 from simulator.parts import Light, Material, Part
 from simulator.settings import CameraSettings
+from simulator.sky import RADIUS_M, backdrop, sunlight
 from simulator.static_scene import by_material, lit_meshes
 from simulator.world_file import WorldFile
 
@@ -35,6 +37,13 @@ def set_up_renderer() -> None:
 def flat_pose(x_m: float, y_m: float, yaw_rad: float, z_m: float = 0.0) -> sapien.Pose:
     """Pose from position and heading."""
     return sapien.Pose([x_m, y_m, z_m], [math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2)])
+
+
+def _leaning(pitch_rad: float, roll_rad: float) -> sapien.Pose:
+    """Rotation about the horizontal axis (roll, pitch, 0) by their root sum of squares."""
+    angle = math.hypot(pitch_rad, roll_rad)
+    share = math.sin(angle / 2) / angle
+    return sapien.Pose([0.0, 0.0, 0.0], [math.cos(angle / 2), roll_rad * share, pitch_rad * share, 0.0])
 
 
 class RenderScene:
@@ -62,12 +71,30 @@ class RenderScene:
         self._painter = painter
         self._scene = sapien.Scene([render.RenderSystem()])
         self._looks: dict[Look, render.RenderMaterial] = {}
-        self._add_static(world, *contents, cache)
+        self._beyond = backdrop(world)
+        self._static = self._add_static(world, *contents, cache)
         self._mount, self._cameras = self._add_cameras()
         self._warp = CubeToEquirect(camera.width_px, self._cameras[0].width)
         self._faces = np.empty((6 * self._cameras[0].width, self._cameras[0].width, 4), np.uint8)
 
-    def add_body(self, parts: tuple[Part, ...]) -> sapien.Entity:
+    def change_static(
+        self,
+        world: WorldFile,
+        contents: tuple[tuple[Part, ...], tuple[Light, ...]],
+        painter: Painter,
+        cache: DiskCache,
+    ) -> None:
+        """Show another state of the world; its light is computed anew unless the cache has it."""
+        self._painter = painter
+        self._scene.remove_entity(self._static)
+        self._static = self._add_static(world, *contents, cache)
+
+    def set_fog(self, extinction: float, grey: float) -> None:
+        """Fog for all pictures from now on: extinction per metre (0 is none) and its own light, 0 to 1."""
+        # The shader reads both from the ambient light, which nothing else uses.
+        self._scene.set_ambient_light([extinction, grey, 0.0])
+
+    def add_body(self, parts: tuple[Part, ...], brightness: float = 1.0) -> sapien.Entity:
         """Add something that moves: parts in the body's frame, lit evenly from above."""
         entity = sapien.Entity()
         body = render.RenderBodyComponent()
@@ -75,6 +102,7 @@ class RenderScene:
             shade = (0.62 + 0.3 * mesh.normals[:, 2:] + 0.08 * mesh.normals[:, :1]) * np.array(
                 [[1.0, 0.98, 0.95]]
             )
+            shade = shade if brightness == 1.0 else shade * brightness
             body.attach(self._shape(mesh, shade.astype(np.float32), material))
         entity.add_component(body)
         self._scene.add_entity(entity)
@@ -88,9 +116,15 @@ class RenderScene:
         """Put a body on the floor at (x, y, yaw), or out of sight."""
         self.move(entity, None if pose is None else flat_pose(*pose))
 
-    def panorama(self, pose: Pose2) -> Image:
-        """Picture from a pose (x, y, yaw); (width / 2, width, 3) BGR bytes."""
-        self._mount.set_pose(flat_pose(*pose, z_m=self._settings.height_m))
+    def panorama(self, pose: Pose2, tilt: tuple[float, float] = (0.0, 0.0)) -> Image:
+        """Picture from a pose (x, y, yaw); (width / 2, width, 3) BGR bytes.
+
+        Args:
+            pose: position on the floor and heading.
+            tilt: pitch (nose down) and roll (left up) of the camera, radians.
+        """
+        upright = flat_pose(*pose, z_m=self._settings.height_m)
+        self._mount.set_pose(upright * _leaning(*tilt) if any(tilt) else upright)
         self._scene.update_render()
         for camera in self._cameras:
             camera.take_picture()
@@ -101,17 +135,21 @@ class RenderScene:
 
     def _add_static(
         self, world: WorldFile, parts: tuple[Part, ...], lights: tuple[Light, ...], cache: DiskCache
-    ) -> None:
+    ) -> sapien.Entity:
         self._painter.order(part.material for part in parts)  # drawn while the light is computed
         entity = sapien.Entity()
         body = render.RenderBodyComponent()
         eyes = _eyes(world, self._settings.height_m)
-        for lit in lit_meshes(parts, lights, world.lighting, eyes, cache):
+        for lit in lit_meshes(parts, lights, world.lighting, eyes, cache, sunlight(world)):
             glow = lit.material.glow
             shade = np.full_like(lit.light, glow) if glow else lit.light
             body.attach(self._shape(lit.mesh, shade, lit.material))
+        for part in self._beyond:
+            mesh = mesh_of(part)
+            body.attach(self._shape(mesh, np.full_like(mesh.vertices, part.material.glow), part.material))
         entity.add_component(body)
         self._scene.add_entity(entity)
+        return entity
 
     def _shape(
         self, mesh: Mesh, shade: npt.NDArray[np.float32], material: Material
@@ -137,7 +175,8 @@ class RenderScene:
         for rotation in face_rotations():
             camera = render.RenderCameraComponent(size, size)
             camera.set_fovy(face_fov_rad(size), compute_x=True)
-            camera.near, camera.far = self._settings.near_m, self._settings.far_m
+            camera.near = self._settings.near_m
+            camera.far = 2.0 * RADIUS_M if self._beyond else self._settings.far_m
             matrix = np.eye(4)
             matrix[:3, :3] = rotation
             mount.add_component(camera)

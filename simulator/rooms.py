@@ -17,7 +17,7 @@ def room_parts(world: WorldFile) -> list[Part]:
     parts: list[Part] = []
     for room in world.rooms:
         height = room.height_m or world.wall_height_m
-        parts.append(_floor((room.x_m, room.y_m), room.floor))
+        parts.append(floor_part((room.x_m, room.y_m), room.floor))
         parts.append(
             box(
                 room.x_m,
@@ -32,7 +32,7 @@ def room_parts(world: WorldFile) -> list[Part]:
         for side in range(4):
             parts.extend(_side(world, room, side, height))
     for opening in world.openings:
-        parts.append(_floor((opening.x_m, opening.y_m), opening.floor))
+        parts.append(floor_part((opening.x_m, opening.y_m), opening.floor))
     return parts
 
 
@@ -40,7 +40,8 @@ def _material(surface: Surface) -> Material:
     return Material(surface.texture, surface.colour, surface.seed)
 
 
-def _floor(rect: Rect, surface: Surface) -> Part:
+def floor_part(rect: Rect, surface: Surface) -> Part:
+    """The slab under a piece of floor; its top is at height 0."""
     return box(
         *rect,
         (-FLOOR_DEPTH_M, 0.0),

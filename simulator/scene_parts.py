@@ -3,14 +3,15 @@
 import math
 
 from simulator.furniture.catalogue import FURNITURE
+from simulator.grounds import ground_parts
 from simulator.parts import Light, Part, moved
 from simulator.rooms import room_parts
 from simulator.world_file import WorldFile
 
 
 def expand(world: WorldFile) -> tuple[tuple[Part, ...], tuple[Light, ...]]:
-    """All parts (building first, then furniture in file order) and all lights."""
-    parts: list[Part] = room_parts(world)
+    """All parts (building and grounds first, then furniture in file order) and all lights."""
+    parts: list[Part] = [*room_parts(world), *ground_parts(world)]
     lights: list[Light] = []
     for item in world.furniture:
         piece = FURNITURE[item.kind].build(item.options, item.seed)

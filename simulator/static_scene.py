@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from simulator.disk_cache import DiskCache
 from simulator.fingerprint import code_fingerprint, fingerprint
-from simulator.lighting import bake
+from simulator.lighting import Sunlight, bake
 from simulator.mesh_shapes import mesh_of
 from simulator.meshes import FloatArray, Mesh, facing_any, joined
 from simulator.parts import Light, Material, Part
@@ -36,7 +36,12 @@ def by_material(parts: tuple[Part, ...]) -> dict[Material, Mesh]:
 
 
 def lit_meshes(
-    parts: tuple[Part, ...], lights: tuple[Light, ...], even: Lighting, eyes: FloatArray, cache: DiskCache
+    parts: tuple[Part, ...],
+    lights: tuple[Light, ...],
+    even: Lighting,
+    eyes: FloatArray,
+    cache: DiskCache,
+    sun: Sunlight | None = None,
 ) -> list[LitMesh]:
     """Meshes of all parts, without what no eye can see, and their light.
 
@@ -46,23 +51,28 @@ def lit_meshes(
         even: even light of the world.
         eyes: (k, 3) positions between which the camera always is.
         cache: keeps the result, as it takes seconds.
+        sun: of worlds with open ground.
     """
     here = Path(__file__)
     code = code_fingerprint([here, *(here.with_name(name) for name in CODE)])
-    key = fingerprint("lit meshes", code, parts, lights, even, eyes.tolist())
+    key = fingerprint("lit meshes", code, parts, lights, even, eyes.tolist(), sun)
     materials = list(dict.fromkeys(part.material for part in parts))
-    packed = cache.fetch(key, lambda: _packed(_lit(parts, lights, even, eyes), materials))
+    packed = cache.fetch(key, lambda: _packed(_lit(parts, lights, even, eyes, sun), materials))
     return _unpacked(packed, materials)
 
 
 def _lit(
-    parts: tuple[Part, ...], lights: tuple[Light, ...], even: Lighting, eyes: FloatArray
+    parts: tuple[Part, ...],
+    lights: tuple[Light, ...],
+    even: Lighting,
+    eyes: FloatArray,
+    sun: Sunlight | None,
 ) -> list[LitMesh]:
     culled = {material: facing_any(mesh, eyes) for material, mesh in by_material(parts).items()}
     groups = {material: mesh for material, mesh in culled.items() if len(mesh.triangles)}
     whole = joined(list(groups.values()))
     rng = np.random.default_rng(0)
-    factors = bake(whole.vertices, whole.normals, parts, lights, even.ambient, even.occlusion, rng)
+    factors = bake(whole.vertices, whole.normals, parts, lights, even.ambient, even.occlusion, rng, sun)
     ends = np.cumsum([len(mesh.vertices) for mesh in groups.values()])
     return [
         LitMesh(material, mesh, light)

@@ -86,9 +86,41 @@ class Opening(Rectangle):
     floor: Surface
 
 
-class Item(_Model):
-    """A piece of furniture: kind, position, heading of its front, height, seed, and options of that kind."""
+Border = Literal["none", "fence", "barrier", "sidewalk", "wall"]
 
+
+class Ground(Rectangle):
+    """A rectangle of floor under the open sky; `border` runs along the edges that touch no other floor."""
+
+    name: Name
+    floor: Surface
+    border: Border = "none"
+
+
+class Sky(_Model):
+    """Colours of the sky (RGB) above and at the horizon, and how much of it clouds cover (0 to 1)."""
+
+    zenith: tuple[Channel, Channel, Channel] = (96, 142, 206)
+    horizon: tuple[Channel, Channel, Channel] = (206, 220, 232)
+    clouds: float = Field(default=0.4, ge=0.0, le=1.0)
+    seed: Seed = 0
+
+
+class Sun(_Model):
+    """Where the sun stands (azimuth counter-clockwise from x) and how much light it gives (linear RGB)."""
+
+    azimuth_deg: Degrees = 130.0
+    elevation_deg: float = Field(default=48.0, ge=5.0, le=90.0)
+    power: tuple[float, float, float] = (0.95, 0.9, 0.8)
+
+
+class Item(_Model):
+    """A piece of furniture: kind, position, heading of its front, height, seed, and options of that kind.
+
+    Items with a `name` can be removed or moved while the world runs.
+    """
+
+    name: Name | None = None
     kind: str
     at_m: tuple[Metres, Metres]
     yaw_deg: Degrees = 0.0
@@ -128,26 +160,45 @@ class Lighting(_Model):
 
 
 class WorldFile(_Model):
-    """A whole world."""
+    """A whole world.
+
+    Attributes:
+        environment: which speeds, sensor ranges and thresholds suit it; no service reads it from here.
+        sky, sun: of worlds with grounds; a sky is there whenever there is open ground.
+    """
 
     format: Literal["topnav-world/1"]
     name: Name
+    environment: Literal["indoor", "outdoor"] = "indoor"
+    sky: Sky | None = None
+    sun: Sun | None = None
     wall_height_m: Height = 2.6
     wall_thickness_m: float = Field(default=0.075, ge=0.01, le=5.0)
     lighting: Lighting = Lighting()
-    rooms: tuple[Room, ...] = Field(min_length=1, max_length=200)
+    rooms: tuple[Room, ...] = Field(default=(), max_length=200)
+    grounds: tuple[Ground, ...] = Field(default=(), max_length=200)
     openings: tuple[Opening, ...] = Field(default=(), max_length=400)
     furniture: tuple[Item, ...] = Field(default=(), max_length=3000)
     start: Start
 
     def rectangles(self) -> list[tuple[tuple[float, float], tuple[float, float]]]:
-        """All floor: the x and y intervals of rooms and openings."""
-        floors: list[Rectangle] = [*self.rooms, *self.openings]
+        """All floor: the x and y intervals of rooms, openings and grounds."""
+        floors: list[Rectangle] = [*self.rooms, *self.openings, *self.grounds]
         return [(floor.x_m, floor.y_m) for floor in floors]
 
     def holds(self, x_m: float, y_m: float) -> bool:
-        """Whether a point lies inside a room or opening."""
+        """Whether a point lies inside a room, an opening or a ground."""
         return any(x[0] < x_m < x[1] and y[0] < y_m < y[1] for x, y in self.rectangles())
+
+    @model_validator(mode="after")
+    def _has_floor(self) -> Self:
+        if not (self.rooms or self.grounds):
+            raise ValueError("the world needs at least one room or one ground, got neither")
+        names = [item.name for item in self.furniture if item.name is not None]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise ValueError(f"names of furniture must be unique; twice: {', '.join(twice)}")
+        return self
 
     @model_validator(mode="after")
     def _not_vast(self) -> Self:
@@ -163,7 +214,8 @@ class WorldFile(_Model):
         s = self.start
         if not self.holds(s.x_m, s.y_m):
             raise ValueError(
-                f"start ({s.x_m}, {s.y_m}) must lie inside one of the rooms {[r.name for r in self.rooms]}"
+                f"start ({s.x_m}, {s.y_m}) must lie inside one of the rooms or grounds "
+                f"{[r.name for r in self.rooms] + [g.name for g in self.grounds]}"
             )
         return self
 

@@ -21,6 +21,7 @@ from simulator.furniture import (
     console,
     curtained_window,
     door,
+    house,
     lamps,
     mesh,
     paintings,
@@ -31,8 +32,11 @@ from simulator.furniture import (
     seating,
     shoe_cabinet,
     sideboard,
+    street,
     table,
     television,
+    trees,
+    vehicles,
 )
 from simulator.option_limits import MOST_PARTS, MOST_SIZE_M, check_value, short
 from simulator.parts import Piece
@@ -140,5 +144,16 @@ FURNITURE: dict[str, Kind] = {
         panels.mirror,
         clock.clock,
         basket.basket,
+        house.house,
+        trees.tree,
+        trees.hedge,
+        trees.flower_bed,
+        street.street_light,
+        street.bus_stop,
+        street.park_bench,
+        street.litter_bin,
+        street.mailbox,
+        street.fountain,
+        vehicles.car,
     )
 } | {"mesh": Kind("mesh", mesh.mesh, {"file": "model", "texture": "picture"})}

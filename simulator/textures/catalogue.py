@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from simulator.textures import materials, objects, pictures, rugs, surfaces
+from simulator.textures import materials, objects, outdoors, pictures, rugs, surfaces
 from simulator.textures.noise import Image, Rgb
 
 KINDS: dict[str, Callable[[np.random.Generator, Rgb], Image]] = {
@@ -29,6 +29,15 @@ KINDS: dict[str, Callable[[np.random.Generator, Rgb], Image]] = {
         pictures.still_life,
         pictures.street,
         pictures.poster,
+        outdoors.asphalt,
+        outdoors.grass,
+        outdoors.paving,
+        outdoors.bricks,
+        outdoors.roof_tiles,
+        outdoors.concrete,
+        outdoors.planks,
+        outdoors.bark,
+        outdoors.foliage,
         rugs.persian,
         rugs.kilim,
         rugs.modern,
