@@ -3,7 +3,8 @@
 import math
 import reprlib
 
-MOST_NUMBER = 1000.0  # counts, percentages, channels: nothing in a room is larger
+MOST_NUMBER = 1000.0
+MOST_COUNT = 200  # shelves, doors, leaves
 MOST_LENGTH_M = 100.0
 MOST_VALUES = 100
 MOST_TEXT = 200
@@ -16,6 +17,8 @@ def check_value(name: str, value: object, depth: int = 0) -> None:
     if isinstance(value, int | float) and not isinstance(value, bool):
         if not (math.isfinite(value) and abs(value) <= MOST_NUMBER):
             raise ValueError(f"{name}: must be a number within +-{MOST_NUMBER:g}, got {short(value)}")
+        if depth == 0 and isinstance(value, int) and abs(value) > MOST_COUNT:
+            raise ValueError(f"{name}: must be at most {MOST_COUNT}, got {short(value)}")
         if name.endswith("_m") and not 0 <= value <= MOST_LENGTH_M:
             raise ValueError(f"{name}: must be a length of 0 to {MOST_LENGTH_M:g} m, got {short(value)}")
     elif isinstance(value, str):

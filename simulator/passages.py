@@ -28,8 +28,8 @@ class Passage:
 def narrow_passages(space: FreeSpace) -> list[Passage]:
     """Passages up to WIDEST_M wide, narrowest first.
 
-    The clearance needed grows step by step; wherever floor of at least LEAST_AREA_M2 comes apart, the last
-    cell that joined it was a passage, twice its clearance wide.
+    The clearance needed grows step by step; where floor of at least LEAST_AREA_M2 comes apart, there was a
+    passage, as wide as twice the clearance between this step and the last.
     """
     cell_m2 = space.resolution_m**2
     found: list[Passage] = []
@@ -39,7 +39,7 @@ def narrow_passages(space: FreeSpace) -> list[Passage]:
         for floor, child, main in _come_apart(before, now, round(LEAST_AREA_M2 / cell_m2)):
             row, column = _between(floor, child, main, space.clearance_m)
             x, y = space.point((row, column))
-            width, area = 2 * float(space.clearance_m[row, column]), float(child.sum()) * cell_m2
+            width, area = 2 * float(need) - STEP_M, float(child.sum()) * cell_m2
             found.append(Passage(round(width, 2), round(x, 2), round(y, 2), round(area, 2)))
         before = now
     return sorted(found, key=lambda passage: passage.width_m)
