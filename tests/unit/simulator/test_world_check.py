@@ -14,7 +14,7 @@ def two_rooms(room_data, gap_m=(1.5, 2.5), second_x=(6.15, 10.0)):
     paint = data["rooms"][0]["floor"]
     data["rooms"].append({**data["rooms"][0], "name": "second", "x_m": list(second_x)})
     data["openings"] = [{"x_m": [6, 6.15], "y_m": list(gap_m), "floor": paint}]
-    data["furniture"].append({"kind": "ceiling_light", "at_m": [3, 2], "z_m": 2.6})
+    data["furniture"] = [{"kind": "ceiling_light", "at_m": [3, 2], "z_m": 2.6}]
     return data
 
 
