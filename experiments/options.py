@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-World = Annotated[str, typer.Option(help="A file in simulator/worlds, without .yaml.")]
+World = Annotated[str, typer.Option(help="A world that comes with topnav, or a .yaml file.")]
 MapName = Annotated[str, typer.Option("--map", help="Name of the map.")]
 Seed = Annotated[int, typer.Option(min=0, help="Of every random draw.")]
 JsonFile = Annotated[Path | None, typer.Option("--json", help="Write the figures to this file.")]

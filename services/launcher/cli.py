@@ -27,7 +27,9 @@ COMPOSE_FILE = Path(__file__).resolve().parents[2] / "docker-compose.yml"
 
 @app.command()
 def up(
-    world: Annotated[str | None, typer.Option(help="A file in simulator/worlds, without .yaml.")] = None,
+    world: Annotated[
+        str | None, typer.Option(help="A world that comes with topnav, or a .yaml file.")
+    ] = None,
     lockstep: Annotated[
         bool | None, typer.Option(help="As fast as the machine allows; same seed, same path.")
     ] = None,

@@ -38,7 +38,7 @@ class StackSettings:
 
     Attributes:
         data_dir: maps, models, logs and state live here.
-        world: world of the simulator; None leaves the Compose file's default, as for the three below.
+        world: world of the simulator, a name or the path of a file; None leaves the Compose file's default, as for the three below.
         lockstep: run as fast as the machine allows, same seed, same path.
         seed: of every random draw.
         profile: rules of planner and drive, "default" or "thesis".
@@ -63,7 +63,7 @@ class StackSettings:
         """Return what the Compose file interpolates: the choices on top of `base` (the environment)."""
         base = dict(os.environ if base is None else base)
         chosen = {
-            "TOPNAV_WORLD": self.world,
+            "TOPNAV_WORLD": located(self.world),
             "TOPNAV_LOCKSTEP": None if self.lockstep is None else str(self.lockstep).lower(),
             "TOPNAV_SEED": None if self.seed is None else str(self.seed),
             "TOPNAV_PROFILE": self.profile,
@@ -80,4 +80,11 @@ class StackSettings:
         return base | {name: value for name, value in chosen.items() if value is not None}
 
 
-__all__ = ["HOST", "Ports", "StackSettings"]
+def located(world: str | None) -> str | None:
+    """A world's name as it is, a world file's path made absolute: the services run in another folder."""
+    if world is None or Path(world).suffix not in {".yaml", ".yml"}:
+        return world
+    return str(Path(world).absolute())
+
+
+__all__ = ["HOST", "Ports", "StackSettings", "located"]

@@ -16,7 +16,7 @@ from rich.console import Console
 
 from services.launcher.compose_file import COMPOSE_FILE
 from services.launcher.display import Changes, status_table
-from services.launcher.stack_settings import Ports, StackSettings
+from services.launcher.stack_settings import Ports, StackSettings, located
 from services.launcher.state import AlreadyRunningError, ServiceStatus, StackState, StateFolder
 from services.launcher.supervisor import Launcher
 from services.launcher.wait import LaunchError
@@ -122,7 +122,7 @@ def _arguments(settings: StackSettings, compose_file: Path, timeout_s: float) ->
     arguments = ["up", "--foreground", "--data-dir", str(settings.data_dir), "--timeout-s", str(timeout_s)]
     arguments += ["--file", str(compose_file)]
     for name in ("world", "seed", "profile"):
-        value = getattr(settings, name)
+        value = located(settings.world) if name == "world" else getattr(settings, name)
         arguments += [f"--{name}", str(value)] if value is not None else []
     if settings.lockstep is not None:
         arguments.append("--lockstep" if settings.lockstep else "--no-lockstep")

@@ -36,3 +36,11 @@ def test_free_ports_differ_and_named_ones_are_read():
     )
     with pytest.raises(ValueError, match="invalid literal"):
         Ports.from_variables({"TOPNAV_GATEWAY_PORT": "web"})
+
+
+def test_world_file_is_found_from_any_folder_and_a_name_stays_a_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert StackSettings(Path("/d"), world="my/w.yaml").variables({})["TOPNAV_WORLD"] == str(
+        tmp_path / "my/w.yaml"
+    )
+    assert StackSettings(Path("/d"), world="village").variables({})["TOPNAV_WORLD"] == "village"
