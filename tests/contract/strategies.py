@@ -76,7 +76,8 @@ def _scalar(kind: Any, metadata: tuple[Any, ...]) -> st.SearchStrategy[Any]:
         pattern = next((p for entry in metadata if (p := getattr(entry, "pattern", None))), None)
         if pattern:
             return st.from_regex(pattern, fullmatch=True)
-        return st.text(max_size=min(20, _limit(metadata, limits.MaxLen, "max_length", 20)))
+        least = _limit(metadata, limits.MinLen, "min_length", 0)
+        return st.text(min_size=least, max_size=min(20, _limit(metadata, limits.MaxLen, "max_length", 20)))
     if kind is bytes:
         return st.binary(max_size=50)
     assert kind is type(None), f"no strategy for {kind}"
