@@ -38,7 +38,8 @@ class StackSettings:
 
     Attributes:
         data_dir: maps, models, logs and state live here.
-        world: world of the simulator, a name or the path of a file; None leaves the Compose file's default, as for the three below.
+        world: world of the simulator, a name or the path of a file; None leaves the Compose file's default,
+            as for the three below.
         lockstep: run as fast as the machine allows, same seed, same path.
         seed: of every random draw.
         profile: rules of planner and drive, "default" or "thesis".
