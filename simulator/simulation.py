@@ -120,9 +120,12 @@ class Simulation:
         robot = self._physics.robot
         return self._picture(robot.pose(), robot.motion())
 
-    def panorama_at(self, x_m: float, y_m: float, yaw_rad: float) -> Image:
-        """What a camera at any pose sees, with both robots where they are; (height, width, 3) BGR."""
-        return self._picture((x_m, y_m, yaw_rad), (0.0, 0.0, 0.0))
+    def panorama_at(self, x_m: float, y_m: float, yaw_rad: float, motion: Pose2 = (0.0, 0.0, 0.0)) -> Image:
+        """What a camera at any pose sees, with both robots where they are; (height, width, 3) BGR.
+
+        `motion` is that of the camera, world frame, m/s and rad/s: it blurs where that is on.
+        """
+        return self._picture((x_m, y_m, yaw_rad), motion)
 
     def ranges(self) -> npt.NDArray[np.float64]:
         """Distances of the twelve sensors, metres; every call is a new reading with its own noise."""

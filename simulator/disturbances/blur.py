@@ -4,8 +4,8 @@ import numpy as np
 
 from simulator.panorama import Image
 
-EXPOSURE_S = 0.12  # at level 1
-PICTURES = 4
+EXPOSURE_S = 0.2  # at level 1
+PICTURES = 5
 STILL_MPS = 0.02
 STILL_RADPS = 0.02
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from simulator.panorama import Image
 
 GAMMA = 2.2
-FEW_ELECTRONS = 120.0  # full pixel at level 1; level 0.5 has four times as many
+FEW_ELECTRONS = 50.0  # full pixel at level 1; level 0.5 has four times as many
 READ_ELECTRONS = 2.5
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from simulator.disturbances.blur import mean_picture, poses_of
+from simulator.disturbances.blur import EXPOSURE_S, mean_picture, poses_of
 from simulator.disturbances.camera import Moment, degraded
 from simulator.disturbances.exposure import exposed, stops
 from simulator.disturbances.fog import VISIBILITY_M, fog_of
@@ -86,7 +86,7 @@ def test_blur_looks_back_along_the_motion_and_not_at_rest():
     assert poses_of((1.0, 2.0, 0.3), (0.001, 0.0, 0.0), 1.0) == [(1.0, 2.0, 0.3)]
     poses = poses_of((1.0, 2.0, 0.3), (0.4, 0.0, 0.5), 1.0)
     assert poses[0] == (1.0, 2.0, 0.3)
-    assert poses[-1] == pytest.approx((1.0 - 0.4 * 0.12, 2.0, 0.3 - 0.5 * 0.12))
+    assert poses[-1] == pytest.approx((1.0 - 0.4 * EXPOSURE_S, 2.0, 0.3 - 0.5 * EXPOSURE_S))
     assert (mean_picture([np.full((1, 2, 3), v, np.uint8) for v in (10, 20, 30, 41)]) == 25).all()
 
 
