@@ -10,6 +10,7 @@ from pydantic import (
     Field,
     ValidationError,
     ValidationInfo,
+    field_serializer,
     field_validator,
     model_validator,
 )
@@ -133,6 +134,10 @@ class Item(_Model):
     def _files_opened(cls, options: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
         kind = FURNITURE.get(info.data.get("kind", ""))
         return kind.opened(options, info.context) if kind else options
+
+    @field_serializer("options", when_used="json")
+    def _files_by_content(self, options: dict[str, Any]) -> dict[str, Any]:
+        return {name: getattr(value, "digest", value) for name, value in options.items()}
 
     @model_validator(mode="after")
     def _known(self) -> Self:

@@ -1,5 +1,6 @@
 """A model read from a file: patches of triangles, each with its picture."""
 
+from collections.abc import Hashable
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -7,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simulator.meshes import Mesh
-from simulator.parts import Picture
+from simulator.parts import Picture, Piece
 
 FloatArray = npt.NDArray[np.floating]
 UpAxis = Literal["y", "z"]
@@ -36,11 +37,15 @@ class Patch:
 
 @dataclass(frozen=True)
 class Model:
-    """All patches of a file. The digest, of the content and of the files it names, is the identity."""
+    """All patches of a file. The digest, of the content and of the files it names, is the identity.
+
+    `kept` holds what was made of it, by options: a world is expanded several times.
+    """
 
     digest: str
     name: str
     patches: tuple[Patch, ...] = field(compare=False, repr=False)
+    kept: dict[Hashable, Piece] = field(default_factory=dict, compare=False, repr=False)
 
     def vertices(self) -> FloatArray:
         """All vertices, (n, 3), in the axes of the file."""

@@ -51,19 +51,22 @@ def mesh(
         glow: above 0 it shines evenly and needs no light.
     """
     del rng
+    key = (scale, size_m, up, centred, solid, collision, texture, two_sided, glow)
+    if key in file.kept:
+        return file.kept[key]
     if texture is not None and not all(patch.mapped for patch in file.patches):
         raise AssetError(f"{file.name} has no texture coordinates for a texture; unwrap it and export again")
     place = _placement(file, scale, size_m, up, centred)
-    material = [Material("mesh", picture=texture or patch.picture, glow=glow) for patch in file.patches]
     shapes = [_placed(patch, *place, two_sided) for patch in file.patches]
-    key = (file.digest, scale, size_m, up, centred, two_sided)
+    looks = [Material("mesh", picture=texture or patch.picture, glow=glow) for patch in file.patches]
+    name = repr((file.digest, scale, size_m, up, centred, two_sided))
     parts = [
-        _visible(shape, look, hashlib.sha256(repr((key, k)).encode()).hexdigest()[:32])
-        for k, (shape, look) in enumerate(zip(shapes, material, strict=True))
+        _visible(shape, look, hashlib.sha256(f"{name} {k}".encode()).hexdigest()[:32])
+        for k, (shape, look) in enumerate(zip(shapes, looks, strict=True))
     ]
     if solid and collision != "none":
-        parts += [_felt(prism, material[0]) for prism in _prisms(joined(shapes), collision)]
-    return Piece(tuple(parts))
+        parts += [_felt(prism, looks[0]) for prism in _prisms(joined(shapes), collision)]
+    return file.kept.setdefault(key, Piece(tuple(parts)))
 
 
 def _placement(

@@ -203,3 +203,12 @@ def test_a_file_needs_a_world_file_beside_it(room_data):
     data = {**room_data, "furniture": [{"kind": "mesh", "at_m": [1, 1], "options": {"file": "a.obj"}}]}
     with pytest.raises(ValueError, match="use load_world"):
         WorldFile.model_validate(data)
+
+
+def test_world_with_models_can_be_written_as_json_by_content(show, box_obj, checks, write_gltf):
+    world = show(file=write_gltf(gltf_box()), texture=checks)
+    options = world.furniture[0].options
+    text = world.model_dump_json()
+    assert options["file"].digest in text
+    assert options["texture"].digest in text
+    assert show(file=box_obj).model_dump_json() != text
