@@ -43,6 +43,16 @@ class Hand:
         """Take the hidden robot away."""
         self._ask(SimulationRequest(action="remove_hider"))
 
+    def set_item(self, name: str, present: bool | None = None, pose: Pose | None = None) -> Truth:
+        """Take a piece of furniture away, put it back, or move it."""
+        request = SimulationRequest(action="set_item", item=name, present=present, pose=pose)
+        return self._ask(request).truth
+
+    def place_obstacle(self, kind: str, pose: Pose, name: str | None = None) -> Truth:
+        """Add furniture that the world file does not have; `set_item` takes it away again by its name."""
+        request = SimulationRequest(action="place_obstacle", kind=kind, pose=pose, item=name)
+        return self._ask(request).truth
+
     def look(self, pose: Pose) -> Frame:
         """Take a picture from any pose."""
         return _picture(self._ask(SimulationRequest(action="look", pose=pose)), "look")

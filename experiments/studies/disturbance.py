@@ -1,6 +1,6 @@
 """`topnav study disturbance`: hide and seek on a clean map while camera and world are disturbed."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,7 +12,7 @@ from experiments.failure import ExperimentError, one_line_errors
 from experiments.map_client import require_map
 from experiments.plots.curves import draw_curves
 from experiments.progress import mission_progress
-from experiments.rounds import Game
+from experiments.rounds import Game, hiding_place
 from experiments.stack import StackChoice, open_stack
 from experiments.studies.disturbance_results import CLEAN, ResultsFile, Row, settings_to_run, summary
 from experiments.tables import print_rows, wide_console
@@ -97,15 +97,21 @@ def run_level(study: Study, disturbance: str, level: float) -> Row:
         lockstep=True,
         environment={"SIMULATOR_DISTURBANCE": levels.text()},
     )
-    world = true_world(load_world(study.world), levels, study.seed)
+    clean = load_world(study.world)
+    space, mapped = free_space(true_world(clean, levels, study.seed)), free_space(clean)
+    # Where furniture stood while the map was made, no place of the map need be near.
+    hideouts = replace(space, free=space.free & mapped.free)
+    rng = np.random.default_rng(study.seed)
     played: list[dict[str, Any]] = []
     with open_stack(choice) as stack:
         require_map(stack, study.map_name)
-        game = Game(stack, free_space(world), study.map_name, np.random.default_rng(study.seed))
+        game = Game(stack, space, study.map_name, rng)
         game.begin(study.seed)
         for number in range(1, study.rounds + 1):
             with mission_progress(console, f"{disturbance} {level:g}: {number}/{study.rounds}") as watch:
-                one = game.play(study.seed + number, study.max_steps, watch)
+                start = game.hand.settled_truth().pose
+                hider = hiding_place(hideouts, start, rng)
+                one = game.seek(start, hider, study.seed + number, study.max_steps, watch)
             played.append(one.figures())
             end = "found" if one.success else one.figures()["failure"]
             console.print(f"{disturbance} {level:g} round {number}: {end}, {one.distance_m:.2f} m left")
