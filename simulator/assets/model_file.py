@@ -45,22 +45,31 @@ def read_model(path: Path, data: bytes, neighbours: Neighbours) -> Model:
     pictures = sum(getattr(look, "baseColorTexture", None) is not None for look in looks)
     if pictures < textured_primitives(header):
         raise AssetError(f"{name}: a picture in it must be a PNG, JPEG or WebP file; export it again")
-    patches: list[Patch] = []
-    for node in scene.graph.nodes_geometry:
-        transform, key = scene.graph[node]
-        shape = scene.geometry[key]
-        if hasattr(shape, "faces") and len(shape.faces):
-            patches.append(_patch(shape, np.asarray(transform, float), suffix != "obj", name))
-            total = sum(len(patch.mesh.triangles) for patch in patches)
-            if total > MOST_TRIANGLES:
-                raise AssetError(
-                    f"{name} must have at most {MOST_TRIANGLES} triangles, got {total}; reduce the mesh"
-                )
-    patches = [patch for patch in patches if len(patch.mesh.triangles)]
+    try:
+        patches = _patches(scene, suffix != "obj", name)
+    except AssetError:
+        raise
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        raise AssetError(f"{name} is damaged: {error!r:.120}; export it again") from error
     if not patches:
         raise AssetError(f"{name} must hold triangles, got none; export the mesh, not points or lines")
     digest = hashlib.sha256(name.encode() + b"\0" + data + neighbours.digest()).hexdigest()[:32]
     return Model(digest, name, tuple(patches))
+
+
+def _patches(scene: Any, linear: bool, name: str) -> list[Patch]:
+    patches: list[Patch] = []
+    total = 0
+    for node in scene.graph.nodes_geometry:
+        transform, key = scene.graph[node]
+        shape = scene.geometry[key]
+        if not hasattr(shape, "faces") or not len(shape.faces):
+            continue
+        total += len(shape.faces)
+        if total > MOST_TRIANGLES:
+            raise AssetError(f"{name} must have at most {MOST_TRIANGLES} triangles, got {total}; reduce it")
+        patches.append(_patch(shape, np.asarray(transform, float), linear, name))
+    return [patch for patch in patches if len(patch.mesh.triangles)]
 
 
 def _parsed(data: bytes, suffix: str, name: str, neighbours: Neighbours) -> Any:
@@ -102,6 +111,7 @@ def _parsed(data: bytes, suffix: str, name: str, neighbours: Neighbours) -> Any:
 def _patch(shape: Any, transform: npt.NDArray[np.float64], linear: bool, name: str) -> Patch:
     """One geometry of the file; `linear` says that its colours are not gamma-encoded."""
     triangles = np.asarray(shape.faces, np.int64)
+    _check_arrays(np.asarray(shape.vertices, float), triangles, name)
     vertices = np.asarray(shape.vertices, float) @ transform[:3, :3].T + transform[:3, 3]
     _check_arrays(vertices, triangles, name)
     if np.linalg.det(transform[:3, :3]) < 0:

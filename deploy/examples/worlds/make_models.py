@@ -88,7 +88,7 @@ def armchair(path: Path) -> None:
 
 
 def cart(path: Path) -> None:
-    """Hand cart: textured tray on legs, wheels of plain colour."""
+    """Market cart: a wooden tray on legs with baskets in it, two textures."""
     tray = [
         ((-0.75, 0.75), (0.5, 0.56), (-0.45, 0.45)),
         ((-0.75, 0.75), (0.56, 0.8), (-0.45, -0.4)),
