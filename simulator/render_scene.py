@@ -56,6 +56,7 @@ class RenderScene:
         camera: CameraSettings,
         painter: Painter,
         cache: DiskCache,
+        sky_brightness: float = 1.0,
     ) -> None:
         """Build meshes, textures, light and cameras.
 
@@ -65,13 +66,14 @@ class RenderScene:
             camera: picture size and place of the camera.
             painter: draws textures, for this and for every body added later.
             cache: keeps meshes and their light.
+            sky_brightness: factor for what lies beyond the world.
         """
         set_up_renderer()
         self._settings = camera
         self._painter = painter
         self._scene = sapien.Scene([render.RenderSystem()])
         self._looks: dict[Look, render.RenderMaterial] = {}
-        self._beyond = backdrop(world)
+        self._beyond, self._sky_brightness = backdrop(world), sky_brightness
         self._static = self._add_static(world, *contents, cache)
         self._mount, self._cameras = self._add_cameras()
         self._warp = CubeToEquirect(camera.width_px, self._cameras[0].width)
@@ -146,7 +148,8 @@ class RenderScene:
             body.attach(self._shape(lit.mesh, shade, lit.material))
         for part in self._beyond:
             mesh = mesh_of(part)
-            body.attach(self._shape(mesh, np.full_like(mesh.vertices, part.material.glow), part.material))
+            glow = part.material.glow * self._sky_brightness
+            body.attach(self._shape(mesh, np.full_like(mesh.vertices, glow), part.material))
         entity.add_component(body)
         self._scene.add_entity(entity)
         return entity

@@ -7,7 +7,7 @@ from simulator.disk_cache import DiskCache
 from simulator.disturbances.blur import Motion, mean_picture, poses_of
 from simulator.disturbances.camera import Moment, degraded
 from simulator.disturbances.fog import fog_of
-from simulator.disturbances.illumination import Contents, body_brightness, illuminated
+from simulator.disturbances.illumination import Contents, body_brightness, illuminated, view_brightness
 from simulator.disturbances.people import Figure
 from simulator.disturbances.tilt import tilt_of
 from simulator.painter import Painter
@@ -40,7 +40,8 @@ class View:
         shown, lit = illuminated(world, contents, level)
         shade = body_brightness(level)
         with Painter(self._cache) as painter:
-            self._scene = RenderScene(shown, lit, settings.camera, painter, self._cache)
+            sky = view_brightness(level)
+            self._scene = RenderScene(shown, lit, settings.camera, painter, self._cache, sky)
             self._links = {"chassis": self._scene.add_body(chassis_parts(robot, SEEKER), shade)}
             for k in range(4):
                 self._links[f"leg{k}"] = self._scene.add_body(leg_parts(robot), shade)

@@ -15,7 +15,7 @@ Contents = tuple[tuple[Part, ...], tuple[Light, ...]]
 Rgb = tuple[float, float, float]
 LAMP_SHARE = 0.3  # of the even light
 DARKEST_VIEW = 0.05
-DAYLIT = frozenset({"view", "sky"})  # textures of what shines by daylight
+DAYLIT = frozenset({"view"})  # textures of what shines by daylight
 LOW_SUN: Rgb = (1.0, 0.8, 0.6)
 
 
@@ -36,13 +36,19 @@ def illuminated(world: WorldFile, contents: Contents, level: float) -> tuple[Wor
     changes: dict[str, Any] = {"lighting": world.lighting.model_copy(update={"ambient": even})}
     if world.sun is not None:
         changes["sun"] = world.sun.model_copy(update={"power": _times(world.sun.power, left)})
-    dimmed = tuple(replace(part, material=_dimmed(part.material, left)) for part in parts)
+    view = view_brightness(level)
+    dimmed = tuple(replace(part, material=_dimmed(part.material, view)) for part in parts)
     return world.model_copy(update=changes), (dimmed, tuple(_relit(light, left) for light in lights))
 
 
 def body_brightness(level: float) -> float:
     """How bright things that move are, as a factor for gamma-encoded colours."""
     return 1.0 if level == 0.0 else (LAMP_SHARE + (1.0 - LAMP_SHARE) * daylight(level)[1]) ** (1 / 2.2)
+
+
+def view_brightness(level: float) -> float:
+    """How bright the sky, and what windows show, is: a factor for gamma-encoded colours."""
+    return 1.0 if level == 0.0 else max(DARKEST_VIEW, daylight(level)[1]) ** (1 / 2.2)
 
 
 def _relit(light: Light, left: Rgb) -> Light:
@@ -52,10 +58,10 @@ def _relit(light: Light, left: Rgb) -> Light:
     return replace(light, power=_times(light.power, left))
 
 
-def _dimmed(material: Material, left: Rgb) -> Material:
+def _dimmed(material: Material, brightness: float) -> Material:
     if material.kind not in DAYLIT or not material.glow:
         return material
-    return replace(material, glow=material.glow * max(DARKEST_VIEW, left[1]) ** (1 / 2.2))
+    return replace(material, glow=material.glow * brightness)
 
 
 def _times(colour: Rgb, factors: tuple[float, ...]) -> Rgb:
