@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from experiments.environments import environment_of
 from experiments.hand import Hand
 from experiments.map_client import require_map
 from experiments.measures.components import components
@@ -62,7 +63,8 @@ def explore(
 def figures(result: Exploration, space: FreeSpace, map_name: str, seed: int) -> dict[str, object]:
     """The figures of `topnav explore --json`; the keys up to wall_s are fixed."""
     poses, run = result.truth.poses, result.run
-    checks = check_edges(result.graph.edges, poses, space.line_of_sight)
+    place = environment_of(result.truth.world)
+    checks = check_edges(result.graph.edges, poses, space.line_of_sight, place.blind_m)
     positions = np.array([(p.x_m, p.y_m) for p in poses.values()], dtype=np.float64).reshape(-1, 2)
     return {
         "world": result.truth.world,
@@ -70,7 +72,7 @@ def figures(result: Exploration, space: FreeSpace, map_name: str, seed: int) -> 
         "seed": seed,
         "nodes": len(poses),
         "edges": len(result.graph.edges),
-        "coverage": rounded(coverage(space.centres_m(), positions)),
+        "coverage": rounded(coverage(space.centres_m(), positions, place.covered_m)),
         "components": components(poses, [(e.a, e.b) for e in result.graph.edges]),
         "manual_moves": max(result.hand_moves, manual_moves(run.truths)),
         "collisions": collisions(run.truths),

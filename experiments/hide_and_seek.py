@@ -10,6 +10,7 @@ import typer
 
 from experiments import options
 from experiments.drawings import draw_round
+from experiments.environments import environment_of
 from experiments.failure import ExperimentError, one_line_errors
 from experiments.map_client import require_map
 from experiments.output import new_run_folder, rounded, write_json
@@ -76,7 +77,8 @@ def play_rounds(
     """Play one round after the other; the seeker stays where the last one ended."""
     console = wide_console(stderr=True)
     graph = require_map(stack, scene.map_name)
-    game = Game(stack, free_space(scene.world), scene.map_name, np.random.default_rng(seed))
+    arrived_m = environment_of(scene.world).arrived_m
+    game = Game(stack, free_space(scene.world), scene.map_name, np.random.default_rng(seed), arrived_m)
     game.begin(seed)
     poses = scene.truth.poses if scene.truth is not None else {}
     for number in range(1, rounds + 1):

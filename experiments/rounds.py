@@ -35,6 +35,7 @@ class Round:
         final: where the seeker really ended.
         goal: the picture it was given.
         shortest_m: length of the shortest collision-free way.
+        arrived_m: how near the hider counts as found.
     """
 
     start: Pose
@@ -44,6 +45,7 @@ class Round:
     run: MissionRun
     shortest_m: float
     hand_moves: int
+    arrived_m: float = ARRIVED_M
 
     @property
     def distance_m(self) -> float:
@@ -53,7 +55,7 @@ class Round:
     @property
     def success(self) -> bool:
         """The planner says that it arrived, and it is right."""
-        return self.run.succeeded and self.distance_m <= ARRIVED_M
+        return self.run.succeeded and self.distance_m <= self.arrived_m
 
     @property
     def spl(self) -> float:
@@ -99,8 +101,16 @@ def hiding_place(space: FreeSpace, seeker: Pose, rng: np.random.Generator) -> Po
 class Game:
     """Rounds in one stack; the seeker stays where the last one ended."""
 
-    def __init__(self, stack: Stack, space: FreeSpace, map_name: str, rng: np.random.Generator) -> None:
+    def __init__(
+        self,
+        stack: Stack,
+        space: FreeSpace,
+        map_name: str,
+        rng: np.random.Generator,
+        arrived_m: float = ARRIVED_M,
+    ) -> None:
         self._stack, self._space, self._map, self._rng = stack, space, map_name, rng
+        self._arrived_m = arrived_m
         self.client, self.hand = MissionClient(stack.bus, stack.robot), Hand(stack.bus, stack.robot)
 
     def begin(self, seed: int) -> Truth:
@@ -146,7 +156,7 @@ class Game:
         final = self.hand.settled_truth(run.last_seq).pose
         self.client.collect()
         shortest_m = self._space.shortest_path_m((start.x_m, start.y_m), (hider.x_m, hider.y_m))
-        return Round(start, hider, final, goal, run, shortest_m, hand_moves)
+        return Round(start, hider, final, goal, run, shortest_m, hand_moves, self._arrived_m)
 
 
 def _plain(pose: Pose) -> dict[str, float]:

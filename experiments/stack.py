@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from experiments.environments import environment_of
 from experiments.failure import ExperimentError
 from services.launcher.stack_settings import Ports
 from services.launcher.state import StateFolder
@@ -83,15 +84,17 @@ def open_stack(choice: StackChoice) -> Iterator[Stack]:
 
 
 def _launcher(choice: StackChoice) -> Launcher:
-    environment = dict(choice.environment)
-    if choice.pipeline is not None:
-        environment["FEATURES_PIPELINE"] = choice.pipeline
+    place = environment_of(choice.world)
+    environment = {**place.variables, **choice.environment}
+    pipeline = choice.pipeline or place.pipeline
+    if pipeline is not None:
+        environment.setdefault("FEATURES_PIPELINE", pipeline)
     return Launcher(
         data_dir=choice.data_dir,
         world=choice.world,
         lockstep=True if choice.lockstep is None else choice.lockstep,
         seed=choice.seed,
-        profile=choice.profile,
+        profile=place.profile(choice.profile),
         ports=choice.ports,
         environment=environment,
     )

@@ -19,7 +19,7 @@ class EdgeCheck:
 
     Attributes:
         errors_rad: errors of the stored bearings (a to b, b to a), those there are.
-        hidden: the ends are further apart than MAX_BLIND_M and cannot see each other.
+        hidden: the ends are further apart than allowed and cannot see each other.
     """
 
     a: int
@@ -34,9 +34,11 @@ class EdgeCheck:
         return self.hidden or any(error > MAX_ERROR_RAD for error in self.errors_rad)
 
 
-def check_edges(edges: Iterable[Edge], poses: Mapping[int, Pose], sight: LineOfSight) -> list[EdgeCheck]:
-    """Check all edges."""
-    return [_check(edge, poses[edge.a], poses[edge.b], sight) for edge in edges]
+def check_edges(
+    edges: Iterable[Edge], poses: Mapping[int, Pose], sight: LineOfSight, blind_m: float = MAX_BLIND_M
+) -> list[EdgeCheck]:
+    """Check all edges; longer than `blind_m` their ends must see each other."""
+    return [_check(edge, poses[edge.a], poses[edge.b], sight, blind_m) for edge in edges]
 
 
 def true_bearing_rad(origin: Pose, target: Pose) -> float:
@@ -45,9 +47,9 @@ def true_bearing_rad(origin: Pose, target: Pose) -> float:
     return math.remainder(absolute - origin.yaw_rad, math.tau)
 
 
-def _check(edge: Edge, a: Pose, b: Pose, sight: LineOfSight) -> EdgeCheck:
+def _check(edge: Edge, a: Pose, b: Pose, sight: LineOfSight, blind_m: float) -> EdgeCheck:
     distance_m = math.hypot(b.x_m - a.x_m, b.y_m - a.y_m)
     stored = ((edge.heading_ab_rad, true_bearing_rad(a, b)), (edge.heading_ba_rad, true_bearing_rad(b, a)))
     errors = tuple(abs(math.remainder(s - true, math.tau)) for s, true in stored if s is not None)
-    hidden = distance_m > MAX_BLIND_M and not sight((a.x_m, a.y_m), (b.x_m, b.y_m))
+    hidden = distance_m > blind_m and not sight((a.x_m, a.y_m), (b.x_m, b.y_m))
     return EdgeCheck(edge.a, edge.b, distance_m, errors, hidden)

@@ -30,7 +30,6 @@ from shared.messages.maps import Node, UpdateNode
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
 
-EDGE_CANDIDATES = 12
 NEAR_NODES = 5
 KNOWN_STEPS = 1
 CORNER_STEPS = 2
@@ -262,7 +261,7 @@ class FrontierExploration:
         """Places that may get an edge: the most similar ones, or the newest (thesis section 6.1.1)."""
         newest = self._profile.edge_window
         if not newest:
-            return self._matcher.match([], EDGE_CANDIDATES)
+            return self._matcher.match([], self._profile.edge_candidates)
         return self._matcher.match(sorted(self._maps.graph.nodes)[-newest:], 0)
 
     def _near(self, node_id: int) -> list[int]:

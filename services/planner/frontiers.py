@@ -3,12 +3,11 @@
 import math
 
 from services.planner.graph import MapGraph
+from services.planner.profiles import Profile
 from shared.messages.base import SECTORS
 from shared.messages.maps import Node
 
 SECTOR_RAD = math.tau / SECTORS
-EXPLORED_HALF_RAD = math.radians(28.0)
-NEAR_HALF_RAD = math.radians(36.0)
 NEARER = 1.5
 """A place this much more similar is so near that it covers the directions beside it, too."""
 
@@ -18,20 +17,22 @@ def sector_rad(sector: int) -> float:
     return math.remainder(sector * SECTOR_RAD, math.tau)
 
 
-def with_explored(node: Node, graph: MapGraph, s_explored: int) -> Node:
+def with_explored(node: Node, graph: MapGraph, profile: Profile) -> Node:
     """The node with the sectors explored that edges to near places cover.
 
     Args:
         node: the place.
         graph: the map around it.
-        s_explored: similarity an edge needs; to a less similar place there is unexplored ground in between.
+        profile: the similarity an edge needs (to a less similar place there is unexplored ground in between),
+            and how wide a direction it covers.
     """
     explored = list(node.explored)
     for neighbour in graph.neighbours(node.node_id):
         edge, heading = graph.edge(node.node_id, neighbour), graph.heading(node.node_id, neighbour)
-        if edge is None or heading is None or edge.inliers < s_explored:
+        if edge is None or heading is None or edge.inliers < profile.s_explored:
             continue
-        half_rad = NEAR_HALF_RAD if edge.inliers > NEARER * s_explored else EXPLORED_HALF_RAD
+        near = edge.inliers > NEARER * profile.s_explored
+        half_rad = profile.near_half_rad if near else profile.explored_half_rad
         for sector in range(SECTORS):
             if abs(math.remainder(sector_rad(sector) - heading, math.tau)) < half_rad:
                 explored[sector] = True

@@ -62,9 +62,9 @@ def add_place(
         open=openings(observation.ranges, profile),
     )
     grown = MapGraph([*maps.graph.nodes.values(), node], [*maps.graph.edges.values(), *edges])
-    node = with_explored(node, grown, profile.s_explored)
+    node = with_explored(node, grown, profile)
     others = [maps.graph.nodes[e.b if e.a == node_id else e.a] for e in edges]
-    known = [with_explored(other, grown, profile.s_explored) for other in others]
+    known = [with_explored(other, grown, profile) for other in others]
     changed = [UpdateNode(node=n) for n in known if n != maps.graph.nodes[n.node_id]]
     operations: list[Operation] = [AddNode(node=node, features=features)]
     operations += [PutEdge(edge=edge) for edge in edges]

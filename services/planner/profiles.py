@@ -27,6 +27,9 @@ class Profile(BaseModel):
         suspend_after: bad frames in a row before an edge is given up; delete_edges: for good (equation 6.4).
         opening_m: free way that makes a direction worth exploring; blocked_m: too little to go on.
         doorway_m: free way beyond which an opening beside the way is a doorway, worth a place of its own.
+        edge_candidates: most places compared for edges of a new one.
+        explored_half_rad: directions this near to that of an edge are explored; near_half_rad: for a place
+            half as similar again.
         departure_steps: steps in an unexplored direction after which nothing new is to be expected there.
         disparity_rad_per_m: how fast bearings change with distance in this kind of place.
         arrival_rad: angular disparity at which a place is reached; 0 uses s_final.
@@ -39,6 +42,9 @@ class Profile(BaseModel):
     s_edge_min: PositiveInt = 30
     s_node_max: PositiveInt = 90
     edge_window: NonNegativeInt = 0
+    edge_candidates: PositiveInt = 12
+    explored_half_rad: PositiveFloat = math.radians(28.0)
+    near_half_rad: PositiveFloat = math.radians(36.0)
     s_explored: PositiveInt = 45
     s_via_min: PositiveInt = 22
     s_via_max: PositiveInt = 100
@@ -90,19 +96,32 @@ THESIS = Profile(
 OUTDOOR = DEFAULT.model_copy(
     update={
         "name": "outdoor",
+        "s_edge_min": 25,
+        "s_node_max": 44,
+        "s_explored": 28,
+        "s_via_min": 16,
+        "s_via_max": 120,
+        "edge_candidates": 30,
+        "explored_half_rad": math.radians(60.0),
+        "near_half_rad": math.radians(75.0),
         "arrival_rad": math.radians(0.6),
         "travel_arrival_rad": math.radians(2.5),
         "near_rad": math.radians(2.0),
-        "opening_m": 2.0,
+        "opening_m": 2.5,
         "blocked_m": 0.4,
-        "doorway_m": 3.0,
+        "doorway_m": 50.0,
         "departure_steps": 40,
         "robot_radius_m": 0.35,
         "robot_slim_m": 0.3,
-        "disparity_rad_per_m": math.radians(3.0),
+        "disparity_rad_per_m": math.radians(2.2),
     }
 )
-"""Streets and yards: things are further away, so bearings change less with each metre."""
+"""Streets and yards, with 500 keypoints: places are 4 m apart, and one edge covers a wide sector.
+
+From 120 pairs of village frames: 144 verified matches at 1 to 2 m, 78 at 2 to 3, 48 at 3 to 4, 40 at 4 to 6,
+30 at 6 to 10; 3 degrees of disparity per metre within 2 m, half of that at 4; no bearing with more than 22 of
+them was wrong.
+"""
 
 THESIS_OUTDOOR = THESIS.model_copy(
     update={

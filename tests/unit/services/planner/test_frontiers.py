@@ -28,21 +28,21 @@ def test_opening_is_a_way_the_robot_fits_through():
 def test_edge_to_a_near_place_explores_its_direction_only():
     near = Edge(a=0, b=1, heading_ab_rad=math.pi / 2, heading_ba_rad=-math.pi / 2, inliers=50)
     nodes = [Node(node_id=0, open=ALL_OPEN), Node(node_id=1, open=ALL_OPEN)]
-    node = with_explored(nodes[0], MapGraph(nodes, [near]), 45)
+    node = with_explored(nodes[0], MapGraph(nodes, [near]), DEFAULT)
     assert [s for s in range(12) if node.explored[s]] == [3]
 
 
 def test_edge_to_a_very_near_place_explores_the_directions_beside_it():
     near = Edge(a=0, b=1, heading_ab_rad=math.pi / 2, heading_ba_rad=-math.pi / 2, inliers=80)
     nodes = [Node(node_id=0, open=ALL_OPEN), Node(node_id=1, open=ALL_OPEN)]
-    node = with_explored(nodes[0], MapGraph(nodes, [near]), 45)
+    node = with_explored(nodes[0], MapGraph(nodes, [near]), DEFAULT)
     assert [s for s in range(12) if node.explored[s]] == [2, 3, 4]
 
 
 def test_edge_to_a_far_place_leaves_the_ground_between_unexplored():
     far = Edge(a=0, b=1, heading_ab_rad=0.0, heading_ba_rad=math.pi, inliers=35)
     nodes = [Node(node_id=0, open=ALL_OPEN), Node(node_id=1)]
-    assert not any(with_explored(nodes[0], MapGraph(nodes, [far]), 45).explored)
+    assert not any(with_explored(nodes[0], MapGraph(nodes, [far]), DEFAULT).explored)
 
 
 def test_best_sector_is_nearest_to_the_wished_direction():
