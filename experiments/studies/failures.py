@@ -13,24 +13,17 @@ from experiments.studies.failure_pictures import long_edges, wrong_headings
 from experiments.tables import print_rows
 from services.planner.profiles import OUTDOOR
 
-KINDS = ("oscillation", "corner", "door", "truck", "long-edges")
+KINDS = ("oscillation", "corner", "door", "long-edges")
 DOOR_M, DOOR_RADIUS_M = (1.65, -0.1), 0.9
-TRUCK_RADIUS_M = 6.0
 LONG_M = 15.0
 
 
 def main(
-    only: Annotated[
-        str, typer.Option(help=f"One of {', '.join(KINDS)}; default: all but those without a map.")
-    ] = "",
+    only: Annotated[str, typer.Option(help=f"One of {', '.join(KINDS)}; default: all.")] = "",
     map_name: Annotated[
         str, typer.Option("--map", help="Explored map of the apartment (oscillation).")
     ] = "flat",
     village_map: Annotated[str, typer.Option(help="Explored map of the village (long-edges).")] = "village",
-    truck_m: Annotated[tuple[float, float], typer.Option(help="Where the factory's truck stands.")] = (
-        30.0,
-        8.0,
-    ),
     rounds: Annotated[int, typer.Option(min=1, help="Rounds of the oscillation study.")] = 8,
     pairs: Annotated[int, typer.Option(min=10, help="Frame pairs of the heading studies.")] = 120,
     seed: options.Seed = 1,
@@ -43,9 +36,6 @@ def main(
         "corner": lambda: corner("apartment", seed),
         "door": lambda: wrong_headings(
             data_dir, "apartment", "faulty headings at a door", DOOR_M, DOOR_RADIUS_M, pairs
-        ),
-        "truck": lambda: wrong_headings(
-            data_dir, "factory", "false motion at the truck", truck_m, TRUCK_RADIUS_M, pairs
         ),
         "long-edges": lambda: long_edges(data_dir, village_map, OUTDOOR, LONG_M),
     }
