@@ -177,7 +177,8 @@ class Goto:
         if state != "stuck":
             self._lost += 1
             if self._lost > MAX_LOST:
-                return self._end("failed", "lost", decision.why, notes)
+                kind: FailureKind = "blocked" if self._experience.banned else "lost"
+                return self._end("failed", kind, decision.why, notes)
         return Decision("hold", why=f"planning again: {decision.why}", notes=notes)
 
     def _blame_last_leg(self, last: int) -> None:
