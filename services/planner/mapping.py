@@ -37,7 +37,8 @@ def add_place(
         The new node's id, and a note for each edge that was refused for want of a witness.
     """
     node_id = maps.graph.next_id()
-    admitted = {n: m for n, m in matches.items() if n in maps.graph.nodes and _admitted(m, profile)}
+    similar = {n: m for n, m in matches.items() if n in maps.graph.nodes and _admitted(m, profile)}
+    admitted = {n: m for n, m in similar.items() if n == driven_from or _enough_agree(m, profile)}
     refused = _refused(maps.graph, admitted, profile, driven_from)
     edges = [
         _edge(
@@ -85,6 +86,12 @@ def _admitted(match: NodeMatch, profile: Profile) -> bool:
     if similarity(match, profile) <= profile.s_edge_min:
         return False
     return profile.similarity == "raw" or (trusted(match, profile) and match.heading_rad is not None)
+
+
+def _enough_agree(match: NodeMatch, profile: Profile) -> bool:
+    """Whether so many of the raw matches are verified that a look-alike place is no explanation."""
+    sure = similarity(match, profile) >= profile.s_sure
+    return sure or match.inliers >= profile.share_min * match.raw_matches
 
 
 def _edge(node_id: int, other: int, match: NodeMatch, profile: Profile, *, clear: bool, driven: bool) -> Edge:

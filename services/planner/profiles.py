@@ -17,6 +17,8 @@ class Profile(BaseModel):
     Attributes:
         similarity: S counts verified matches (inliers) or raw ones (thesis).
         s_edge_min, s_node_max: map thresholds of equations 4.1 and 4.2.
+        share_min: share of the raw matches that must be verified for an edge with S below s_sure; look-alike
+            places agree in less. The edge to the place the robot came from needs no more than s_edge_min.
         edge_window: so many of the newest places may get an edge to a new one; 0: the most similar of all.
         s_explored: an edge this similar leaves nothing unexplored in its direction.
         s_via_min, s_via_max: thresholds of equation 4.3; s_final ends a mission by count alone.
@@ -41,6 +43,8 @@ class Profile(BaseModel):
     similarity: Literal["verified", "raw"] = "verified"
     s_edge_min: PositiveInt = 30
     s_node_max: PositiveInt = 90
+    share_min: float = Field(default=0.0, ge=0.0, le=1.0)
+    s_sure: PositiveInt = 45
     edge_window: NonNegativeInt = 0
     edge_candidates: PositiveInt = 12
     explored_half_rad: PositiveFloat = math.radians(28.0)
@@ -101,6 +105,7 @@ OUTDOOR = DEFAULT.model_copy(
         "s_explored": 28,
         "s_via_min": 16,
         "s_via_max": 120,
+        "share_min": 0.5,
         "edge_candidates": 30,
         "explored_half_rad": math.radians(60.0),
         "near_half_rad": math.radians(75.0),

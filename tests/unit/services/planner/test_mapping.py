@@ -1,0 +1,64 @@
+"""Which matches become edges of a new place."""
+
+import numpy as np
+import pytest
+
+from services.planner.graph import MapGraph
+from services.planner.mapping import add_place
+from services.planner.ports import Observation
+from services.planner.profiles import DEFAULT, OUTDOOR
+from shared.messages.features import Features
+from shared.messages.maps import Node
+from shared.messages.matching import NodeMatch
+from shared.messages.sensors import Ranges
+
+
+class Memory:
+    def __init__(self):
+        self.graph = MapGraph([Node(node_id=n) for n in range(3)])
+
+    def commit(self, operations):
+        self.graph.apply(operations)
+
+
+def observation():
+    words = np.zeros((1, 2), np.float32), np.zeros(1, np.float32), np.zeros((1, 4), np.float32)
+    features = Features(pipeline="p", lonlat_rad=words[0], scores=words[1], descriptors=words[2])
+    ranges = Ranges(
+        robot="r1", angles_rad=tuple(np.arange(12) * 0.5), distances_m=(4.0,) * 12, max_range_m=4.0
+    )
+    return Observation(features, ranges)
+
+
+def match(node_id, inliers, raw):
+    return NodeMatch(
+        node_id=node_id,
+        raw_matches=raw,
+        inliers=inliers,
+        status="ok",
+        heading_rad=0.3,
+        heading_std_rad=0.01,
+        yaw_rad=0.0,
+        disparity_rad=0.1,
+        confidence=0.8,
+    )
+
+
+def edges_of(profile, *matches, driven_from=None):
+    maps = Memory()
+    node, _ = add_place(maps, observation(), {m.node_id: m for m in matches}, profile, driven_from)
+    return maps.graph.neighbours(node)
+
+
+@pytest.mark.parametrize(("raw", "expected"), [(60, [0]), (80, [])])
+def test_outdoors_most_of_a_weak_edges_matches_must_agree(raw, expected):
+    assert edges_of(OUTDOOR, match(0, 35, raw)) == expected
+    assert edges_of(DEFAULT, match(0, 35, raw)) == [0]
+
+
+def test_a_strong_edge_needs_no_share():
+    assert edges_of(OUTDOOR, match(0, 60, 150)) == [0]
+
+
+def test_the_edge_the_robot_drove_is_kept():
+    assert edges_of(OUTDOOR, match(0, 35, 80), match(1, 30, 90), driven_from=0) == [0]
