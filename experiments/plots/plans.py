@@ -67,7 +67,7 @@ def draw_way(
     named = (("start", START), ("via points", VIA), ("target", TARGET))
     handles = [Line2D([], [], color=c, marker="o", linestyle="", label=name) for name, c in named]
     handles.append(Line2D([], [], color=PATH, label="way driven"))
-    axes.legend(handles=handles, loc="lower right", fontsize=8)
+    axes.legend(handles=handles, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, fontsize=8)
     _save(figure, path)
 
 
