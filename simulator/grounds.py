@@ -7,7 +7,7 @@ import numpy as np
 
 from simulator.parts import Material, Part, box
 from simulator.rooms import floor_part
-from simulator.world_file import Ground, WorldFile
+from simulator.world_file import Ground, Room, WorldFile
 
 CONTACT_M = 1e-6
 POST_EVERY_M = 2.0
@@ -36,8 +36,9 @@ def ground_parts(world: WorldFile) -> list[Part]:
 
 
 def _outer_edges(world: WorldFile, ground: Ground) -> list[tuple[Edge, Span]]:
-    """The pieces of the four edges that touch no other floor."""
+    """The pieces of the four edges that touch neither another floor nor the wall of a room."""
     others = [r for r in world.rectangles() if r != (ground.x_m, ground.y_m)]
+    others += [_with_walls(room, world.wall_thickness_m) for room in world.rooms]
     found: list[tuple[Edge, Span]] = []
     spans = (ground.x_m, ground.y_m)
     for axis in (0, 1):
@@ -48,6 +49,11 @@ def _outer_edges(world: WorldFile, ground: Ground) -> list[tuple[Edge, Span]]:
             ]
             found += [((axis, line, outward), piece) for piece in _without(along, touching)]
     return found
+
+
+def _with_walls(room: Room, wall_m: float) -> tuple[Span, Span]:
+    (west, east), (south, north) = room.x_m, room.y_m
+    return (west - wall_m, east + wall_m), (south - wall_m, north + wall_m)
 
 
 def _without(along: Span, cuts: list[Span]) -> list[Span]:

@@ -26,7 +26,7 @@ def room_parts(world: WorldFile) -> list[Part]:
                 _material(room.ceiling),
                 solid=False,
                 tile_m=room.ceiling.tile_m,
-                casts_shadow=False,
+                casts_shadow=bool(world.grounds),
             )
         )
         for side in range(4):
