@@ -1,17 +1,20 @@
 """Grounds of a world file -> floors and the borders that nobody crosses. Pure."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
+from simulator.panels import cut, variant
 from simulator.parts import Material, Part, box
-from simulator.rooms import floor_part
+from simulator.rooms import floor_parts
 from simulator.world_file import Ground, Room, WorldFile
 
 CONTACT_M = 1e-6
 POST_EVERY_M = 2.0
 PICKET_EVERY_M = 0.32
+PANEL_M, PANELS = 3.2, 6
 Span = tuple[float, float]
 Edge = tuple[int, float, float]
 """Axis of the normal, place of the edge on it, and +1 or -1 towards the outside."""
@@ -27,7 +30,7 @@ def ground_parts(world: WorldFile) -> list[Part]:
     """Floors of all grounds and their borders, world frame."""
     parts: list[Part] = []
     for ground in world.grounds:
-        parts.append(floor_part((ground.x_m, ground.y_m), ground.floor))
+        parts.extend(floor_parts((ground.x_m, ground.y_m), ground.floor))
         if ground.border != "none":
             build = BORDERS[ground.border]
             for edge, span in _outer_edges(world, ground):
@@ -75,6 +78,15 @@ def _bar(edge: Edge, span: Span, depth: Span, z: Span, material: Material, solid
     return box((x[0], x[1]), (y[0], y[1]), z, material, solid=solid, tile_m=1.6)
 
 
+def _panelled(edge: Edge, span: Span, depth: Span, z: Span, material: Material) -> list[Part]:
+    """A long bar in panels that differ."""
+    parts = []
+    for piece in cut(span, PANEL_M):
+        look = replace(material, seed=material.seed + variant(PANELS, edge[0], edge[1], piece[0]))
+        parts.append(_bar(edge, piece, depth, z, look))
+    return parts
+
+
 def _fence(edge: Edge, span: Span) -> list[Part]:
     """Pickets on two rails between posts; one solid rail at the bottom keeps the robot in."""
     length = span[1] - span[0]
@@ -98,23 +110,24 @@ def _barrier(edge: Edge, span: Span) -> list[Part]:
     parts = []
     for low, high in pairwise(ends):
         piece = (float(low) + 0.02, float(high) - 0.02)
-        parts.append(_bar(edge, (float(low), float(high)), (0.0, 0.5), (0.0, 0.3), CONCRETE))
-        parts.append(_bar(edge, piece, (0.12, 0.38), (0.3, 0.82), CONCRETE))
+        look = replace(CONCRETE, seed=CONCRETE.seed + variant(PANELS, edge[0], edge[1], low))
+        parts.append(_bar(edge, (float(low), float(high)), (0.0, 0.5), (0.0, 0.3), look))
+        parts.append(_bar(edge, piece, (0.12, 0.38), (0.3, 0.82), look))
     return parts
 
 
 def _sidewalk(edge: Edge, span: Span) -> list[Part]:
     """A kerb too high for the robot, and the pavement behind it."""
     return [
-        _bar(edge, span, (0.0, 0.18), (0.0, 0.14), KERB),
-        _bar(edge, span, (0.18, 2.2), (0.0, 0.13), PAVING),
+        *_panelled(edge, span, (0.0, 0.18), (0.0, 0.14), KERB),
+        *_panelled(edge, span, (0.18, 2.2), (0.0, 0.13), PAVING),
     ]
 
 
 def _wall(edge: Edge, span: Span) -> list[Part]:
     """Bricks under a coping of stone."""
     return [
-        _bar(edge, span, (0.0, 0.24), (0.0, 2.1), BRICK),
+        *_panelled(edge, span, (0.0, 0.24), (0.0, 2.1), BRICK),
         _bar(edge, span, (-0.03, 0.27), (2.1, 2.2), CONCRETE, solid=False),
     ]
 

@@ -1,5 +1,8 @@
 """Rooms and openings of a world file -> floors, ceilings, walls, lintels and skirting boards. Pure."""
 
+from dataclasses import replace
+
+from simulator.panels import cut, variant
 from simulator.parts import Material, Part, box
 from simulator.world_file import Opening, Room, Surface, WorldFile
 
@@ -17,7 +20,7 @@ def room_parts(world: WorldFile) -> list[Part]:
     parts: list[Part] = []
     for room in world.rooms:
         height = room.height_m or world.wall_height_m
-        parts.append(floor_part((room.x_m, room.y_m), room.floor))
+        parts.extend(floor_parts((room.x_m, room.y_m), room.floor))
         parts.append(
             box(
                 room.x_m,
@@ -32,7 +35,7 @@ def room_parts(world: WorldFile) -> list[Part]:
         for side in range(4):
             parts.extend(_side(world, room, side, height))
     for opening in world.openings:
-        parts.append(floor_part((opening.x_m, opening.y_m), opening.floor))
+        parts.extend(floor_parts((opening.x_m, opening.y_m), opening.floor))
     return parts
 
 
@@ -40,16 +43,26 @@ def _material(surface: Surface) -> Material:
     return Material(surface.texture, surface.colour, surface.seed)
 
 
-def floor_part(rect: Rect, surface: Surface) -> Part:
-    """The slab under a piece of floor; its top is at height 0."""
-    return box(
-        *rect,
-        (-FLOOR_DEPTH_M, 0.0),
-        _material(surface),
-        solid=False,
-        tile_m=surface.tile_m,
-        casts_shadow=False,
-    )
+def floor_parts(rect: Rect, surface: Surface) -> list[Part]:
+    """The slabs under a piece of floor; their top is at height 0."""
+    whole = surface.variants == 1
+    return [
+        box(
+            x,
+            y,
+            (-FLOOR_DEPTH_M, 0.0),
+            _panel_material(_material(surface), surface, x[0], y[0]),
+            solid=False,
+            tile_m=surface.tile_m,
+            casts_shadow=False,
+        )
+        for x in ([rect[0]] if whole else cut(rect[0], surface.tile_m))
+        for y in ([rect[1]] if whole else cut(rect[1], surface.tile_m))
+    ]
+
+
+def _panel_material(material: Material, surface: Surface, *where: float) -> Material:
+    return replace(material, seed=material.seed + variant(surface.variants, *where))
 
 
 def _side(world: WorldFile, room: Room, side: int, height: float) -> list[Part]:
@@ -70,7 +83,9 @@ def _side(world: WorldFile, room: Room, side: int, height: float) -> list[Part]:
     for span in _remaining(
         along, [c for c, _ in cuts], _reach(world, normal_axis, (line + outer) / 2, along)
     ):
-        parts.append(_slab(normal_axis, (line, outer), span, (0.0, height), material, tile))
+        for piece in [span] if room.walls.variants == 1 else cut(span, tile):
+            look = _panel_material(material, room.walls, side, line, piece[0])
+            parts.append(_slab(normal_axis, (line, outer), piece, (0.0, height), look, tile))
         inner = line - outward * SKIRTING_DEPTH_M
         clipped = (max(span[0], along[0]), min(span[1], along[1]))
         if clipped[0] < clipped[1]:

@@ -55,12 +55,16 @@ class _Model(BaseModel):
 
 
 class Surface(_Model):
-    """Texture, colour (RGB) and seed of a floor, wall or ceiling; `tile_m` is the side of one repeat."""
+    """Texture, colour (RGB) and seed of a floor, wall or ceiling; `tile_m` is the side of one repeat.
+
+    With `variants` above 1 repeats differ: each tile shows one of so many textures, from `seed` on.
+    """
 
     texture: Annotated[str, AfterValidator(_texture)]
     colour: tuple[Channel, Channel, Channel]
     seed: Seed = 0
     tile_m: float = Field(default=4.0, ge=0.05, le=MOST_M)
+    variants: int = Field(default=1, ge=1, le=16)
 
 
 class Rectangle(_Model):

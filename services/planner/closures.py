@@ -1,4 +1,4 @@
-"""Loop closures: an edge to a far part of the map needs a witness there. Pure.
+"""Edges of a new place that the map bears out: far ones need a witness, none may be outvoted. Pure.
 
 Two streets of equal houses give matches that fit one motion of the camera. A neighbour of the place that is
 claimed must then fit as well: the turn and the direction it is seen at follow from the edge between the two.
@@ -42,6 +42,48 @@ def unsupported_closures(
             continue
         refused[place] = f"{len(witnesses)} neighbours of node {place} seen, none agrees"
     return refused
+
+
+def contradicted(graph: MapGraph, matches: Mapping[int, NodeMatch]) -> dict[int, str]:
+    """Places that their neighbours in the map outvote, weakest case first.
+
+    A wall whose pattern repeats gives a clear motion in a wrong direction; places seen beside it tell. Every
+    pair of matched places with an edge between them agrees or not; the votes weigh as many matches as the
+    voter has verified.
+
+    Returns:
+        Place and reason.
+    """
+    votes = _votes(graph, matches)
+    refused: dict[int, str] = {}
+    while True:
+        balance = {
+            place: sum(vote for witness, vote in seen.items() if witness not in refused)
+            for place, seen in votes.items()
+            if place not in refused
+        }
+        worst = min(balance, key=lambda place: (balance[place], place), default=None)
+        if worst is None or balance[worst] >= 0:
+            return refused
+        refused[worst] = f"{-balance[worst]} more matches of its neighbours speak against node {worst}"
+
+
+def _votes(graph: MapGraph, matches: Mapping[int, NodeMatch]) -> dict[int, dict[int, int]]:
+    """For each place the neighbours that can judge it: their verified matches, negative against it."""
+    votes: dict[int, dict[int, int]] = {}
+    for place in sorted(matches):
+        votes[place] = {
+            witness: matches[witness].inliers * (1 if agrees(graph, matches, place, witness) else -1)
+            for witness in graph.neighbours(place)
+            if witness in matches and _can_judge(graph, matches, place, witness)
+        }
+    return votes
+
+
+def _can_judge(graph: MapGraph, matches: Mapping[int, NodeMatch], place: int, witness: int) -> bool:
+    edge = graph.edge(place, witness)
+    turns = (edge.yaw_ab_rad if edge else None, matches[place].yaw_rad, matches[witness].yaw_rad)
+    return all(turn is not None for turn in turns)
 
 
 def agrees(graph: MapGraph, matches: Mapping[int, NodeMatch], place: int, witness: int) -> bool:

@@ -5,10 +5,10 @@ strategies, so that the map stops growing only when nothing open is left.
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
+from services.planner.departure import Departure
 from services.planner.experience import Experience, Leg
 from services.planner.following import PathFollower, Target
 from services.planner.frontiers import (
@@ -19,7 +19,7 @@ from services.planner.frontiers import (
     sector_rad,
 )
 from services.planner.graph import MapGraph
-from services.planner.mapping import add_place, is_new_place
+from services.planner.mapping import Edges, add_place, is_new_place, judge_edges
 from services.planner.ports import Decision, MapAccess, Matcher, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.routing import plan_path, visible
@@ -36,19 +36,6 @@ CORNER_STEPS = 2
 DOORWAY_NODES = 3
 MAX_TRAVEL_FAILURES = 2
 SEARCH_STEPS = 120
-
-
-@dataclass
-class Departure:
-    """Leaving `node_id` through `sector`, straight on in the direction `heading_rad` (robot frame)."""
-
-    node_id: int
-    sector: int
-    heading_rad: float
-    steps: int = 0
-    known_steps: int = 0
-    unseen_steps: int = 0
-    retreating: bool = False
 
 
 class FrontierExploration:
@@ -78,7 +65,7 @@ class FrontierExploration:
 
     def _first(self, observation: Observation) -> Decision:
         """The only node: random heading (thesis section 4.2)."""
-        node_id, _ = add_place(self._maps, observation, {}, self._profile, None)
+        node_id, _ = add_place(self._maps, observation, Edges({}, {}), self._profile, None)
         self._last_heading_rad = float(self._rng.uniform(-math.pi, math.pi))
         return self._leave(node_id, 0.0, (Note("node_added", "first place of the map", {"node": node_id}),))
 
@@ -106,6 +93,8 @@ class FrontierExploration:
             departure.heading_rad = math.remainder(sector_rad(departure.sector) + origin.yaw_rad, math.tau)
         if s_best <= self._profile.s_edge_min:
             return self._out_of_sight(departure, s_best)
+        if self._profile.similarity == "verified" and not departure.follows(origin):
+            return self._lost_track(departure)
         if departure.retreating:
             everything = {**self._candidates(), **matches}
             return self._new_place(observation, departure, everything)
@@ -125,6 +114,16 @@ class FrontierExploration:
         heading_rad = through_gap_rad(observation.ranges, departure.heading_rad, self._profile)
         why = f"leaving node {departure.node_id}, S {s_best}"
         return Decision("go", heading_rad, 0, 1.0, "frontier", why)
+
+    def _lost_track(self, departure: Departure) -> Decision:
+        """The place left seems to lie elsewhere all at once: go back to where it did not."""
+        departure.unseen_steps += 1
+        if departure.unseen_steps > self._profile.saturation_steps:
+            return self._close_departure(departure, "the view back looks like another", lost=True)
+        departure.retreating = True
+        back = departure.heading_rad + math.pi
+        why = f"the direction back to node {departure.node_id} jumped"
+        return Decision("go", math.remainder(back, math.tau), 0, 1.0, "frontier", why)
 
     def _doorway(self, ranges: Ranges, matches: dict[int, NodeMatch]) -> bool:
         """Whether a way out shows beside the way that the places around do not know."""
@@ -155,8 +154,11 @@ class FrontierExploration:
     def _new_place(
         self, observation: Observation, departure: Departure, matches: dict[int, NodeMatch]
     ) -> Decision:
+        edges_of = judge_edges(self._maps.graph, matches, self._profile, departure.node_id)
+        if not edges_of.admitted:
+            return self._close_departure(departure, "no view back to be sure of", lost=True)
         self._explored(departure)
-        node_id, refused = add_place(self._maps, observation, matches, self._profile, departure.node_id)
+        node_id, refused = add_place(self._maps, observation, edges_of, self._profile, departure.node_id)
         self._departure, self._search = None, None
         self._last_heading_rad = departure.heading_rad
         edges = len(self._maps.graph.neighbours(node_id))

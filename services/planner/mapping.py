@@ -1,6 +1,9 @@
 """Making a place and its edges from the current frame (thesis equations 4.1 and 4.2)."""
 
-from services.planner.closures import unsupported_closures
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from services.planner.closures import contradicted, unsupported_closures
 from services.planner.frontiers import with_explored
 from services.planner.graph import MapGraph, edge_between
 from services.planner.ports import MapAccess, Note, Observation
@@ -10,6 +13,9 @@ from services.planner.surroundings import is_clear, is_clear_from, openings
 from shared.messages.maps import AddNode, Edge, Node, Operation, PutEdge, UpdateNode
 from shared.messages.matching import NodeMatch
 
+CONFIDENCE_MIN = 0.3
+"""Of the two-view geometry of an edge: below it its two directions are too alike to tell."""
+
 
 def is_new_place(matches: dict[int, NodeMatch], profile: Profile) -> bool:
     """Node rule 4.2: the nearest place is similar, but not too similar."""
@@ -17,29 +23,58 @@ def is_new_place(matches: dict[int, NodeMatch], profile: Profile) -> bool:
     return bool(best) and profile.s_node_max > similarity(best[0][1], profile) > profile.s_edge_min
 
 
-def add_place(
-    maps: MapAccess,
-    observation: Observation,
+@dataclass(frozen=True)
+class Edges:
+    """The places that a new frame resembles: those that get an edge, and why the others do not."""
+
+    admitted: dict[int, NodeMatch]
+    refused: dict[int, str]
+
+
+def judge_edges(
+    graph: MapGraph,
     matches: dict[int, NodeMatch],
     profile: Profile,
     driven_from: int | None,
+    refused: Mapping[int, str] | None = None,
+) -> Edges:
+    """Which edges a new place gets.
+
+    Args:
+        graph: the map without the new place.
+        matches: the frame against the places of the map.
+        profile: thresholds.
+        driven_from: node the robot came from.
+        refused: places already found out, and why.
+    """
+    known = dict(refused or {})
+    similar = {n: m for n, m in matches.items() if n in graph.nodes and _admitted(m, profile)}
+    enough = {n: m for n, m in similar.items() if n == driven_from or _enough_agree(m, profile)}
+    left = {n: m for n, m in enough.items() if n not in known}
+    known |= _refused(graph, left, profile, driven_from)
+    return Edges({n: m for n, m in left.items() if n not in known}, known)
+
+
+def add_place(
+    maps: MapAccess,
+    observation: Observation,
+    edges_of: Edges,
+    profile: Profile,
+    driven_from: int | None,
 ) -> tuple[int, tuple[Note, ...]]:
-    """Write the frame as a node with all edges that rule 4.1 admits, in one transaction.
+    """Write the frame as a node with its edges, in one transaction.
 
     Args:
         maps: where to write.
         observation: the frame and the distances around.
-        matches: the frame against the places of the map.
+        edges_of: the edges it gets.
         profile: thresholds.
         driven_from: node the robot came from; its edge counts as driven.
 
     Returns:
-        The new node's id, and a note for each edge that was refused for want of a witness.
+        The new node's id, and a note for each edge that was refused.
     """
     node_id = maps.graph.next_id()
-    similar = {n: m for n, m in matches.items() if n in maps.graph.nodes and _admitted(m, profile)}
-    admitted = {n: m for n, m in similar.items() if n == driven_from or _enough_agree(m, profile)}
-    refused = _refused(maps.graph, admitted, profile, driven_from)
     edges = [
         _edge(
             node_id,
@@ -50,8 +85,7 @@ def add_place(
             or is_clear_from(maps.graph.nodes[other], match, profile),
             driven=other == driven_from,
         )
-        for other, match in admitted.items()
-        if other not in refused
+        for other, match in edges_of.admitted.items()
     ]
     features = observation.features
     node = Node(
@@ -71,21 +105,28 @@ def add_place(
     operations += [PutEdge(edge=edge) for edge in edges]
     operations += changed
     maps.commit(operations)
-    return node_id, tuple(Note("closure_refused", f"node {node_id}: {why}") for why in refused.values())
+    return node_id, tuple(
+        Note("closure_refused", f"node {node_id}: {why}") for why in edges_of.refused.values()
+    )
 
 
 def _refused(
     graph: MapGraph, admitted: dict[int, NodeMatch], profile: Profile, driven_from: int | None
 ) -> dict[int, str]:
-    """Edges without a witness; raw similarity asks for none, as in the thesis."""
-    return {} if profile.similarity == "raw" else unsupported_closures(graph, admitted, driven_from)
+    """Edges without a witness or outvoted; raw similarity asks for neither, as in the thesis."""
+    if profile.similarity == "raw":
+        return {}
+    refused = unsupported_closures(graph, admitted, driven_from)
+    return refused | contradicted(graph, {n: m for n, m in admitted.items() if n not in refused})
 
 
 def _admitted(match: NodeMatch, profile: Profile) -> bool:
-    """Edge rule 4.1; verified similarity also asks for trusted geometry."""
+    """Edge rule 4.1; verified similarity also asks for trusted geometry that is sure of its direction."""
     if similarity(match, profile) <= profile.s_edge_min:
         return False
-    return profile.similarity == "raw" or (trusted(match, profile) and match.heading_rad is not None)
+    if profile.similarity == "raw":
+        return True
+    return trusted(match, profile) and match.heading_rad is not None and match.confidence >= CONFIDENCE_MIN
 
 
 def _enough_agree(match: NodeMatch, profile: Profile) -> bool:

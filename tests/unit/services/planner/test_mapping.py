@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from services.planner.graph import MapGraph
-from services.planner.mapping import add_place
+from services.planner.mapping import add_place, judge_edges
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT, OUTDOOR
 from shared.messages.features import Features
@@ -46,7 +46,8 @@ def match(node_id, inliers, raw):
 
 def edges_of(profile, *matches, driven_from=None):
     maps = Memory()
-    node, _ = add_place(maps, observation(), {m.node_id: m for m in matches}, profile, driven_from)
+    edges = judge_edges(maps.graph, {m.node_id: m for m in matches}, profile, driven_from)
+    node, _ = add_place(maps, observation(), edges, profile, driven_from)
     return maps.graph.neighbours(node)
 
 

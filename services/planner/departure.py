@@ -1,0 +1,34 @@
+"""Leaving a place in an unexplored direction. Pure."""
+
+import math
+from dataclasses import dataclass
+
+from services.planner.mapping import CONFIDENCE_MIN
+from shared.messages.matching import NodeMatch
+
+JUMP_RAD = math.radians(90.0)
+"""The direction back turns slowly while the robot drives away; it never jumps so far between two frames."""
+
+
+@dataclass
+class Departure:
+    """Leaving `node_id` through `sector`, straight on in the direction `heading_rad` (robot frame)."""
+
+    node_id: int
+    sector: int
+    heading_rad: float
+    steps: int = 0
+    known_steps: int = 0
+    unseen_steps: int = 0
+    retreating: bool = False
+    back_rad: float | None = None
+
+    def follows(self, origin: NodeMatch | None) -> bool:
+        """Whether the direction back turned smoothly since the last frame; a jump means a look-alike view."""
+        if origin is None or origin.heading_rad is None or origin.confidence < CONFIDENCE_MIN:
+            return True
+        expected = self.heading_rad + math.pi if self.back_rad is None else self.back_rad
+        if abs(math.remainder(origin.heading_rad - expected, math.tau)) > JUMP_RAD:
+            return False
+        self.back_rad = origin.heading_rad
+        return True
