@@ -16,8 +16,9 @@ PERIOD_S = 0.2
 class Listener:
     """Listens on a session and a thread of its own; `arrivals` is complete after the `with` block."""
 
-    def __init__(self, endpoint: str, robot: str) -> None:
-        self._endpoint, self._robot = endpoint, robot
+    def __init__(self, endpoint: str, robot: str, most: int | None = None) -> None:
+        """Listen to a robot; after `most` messages stop keeping them."""
+        self._endpoint, self._robot, self._most = endpoint, robot, most
         self._stop, self._ready = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._listen, name="bench-listener")
         self.arrivals: list[Arrival] = []
@@ -43,7 +44,9 @@ class Listener:
                 if bus.wait(PERIOD_S):
                     now_s = time.perf_counter()  # before decoding: that would delay the stamp
                     for name, inbox in inboxes.items():
-                        self.arrivals.extend(Arrival(name, now_s, message) for message in inbox.take_all())
+                        news = [Arrival(name, now_s, message) for message in inbox.take_all()]
+                        if self._most is None or len(self.arrivals) < self._most:
+                            self.arrivals.extend(news)
 
 
 def _subscribe(bus: Bus, topic: Any, robot: str) -> Any:

@@ -1,12 +1,13 @@
 """One round of hide and seek: a robot hides, the other gets its picture and looks for it."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from experiments.failure import ExperimentError
 from experiments.hand import Hand
+from experiments.map_client import read_map
 from experiments.measures.spl import spl
 from experiments.mission import MissionClient, MissionRun, Watch
 from experiments.output import rounded
@@ -36,6 +37,7 @@ class Round:
         goal: the picture it was given.
         shortest_m: length of the shortest collision-free way.
         arrived_m: how near the hider counts as found.
+        edges_suspended: edges of the map that experience of this round put aside.
     """
 
     start: Pose
@@ -46,6 +48,7 @@ class Round:
     shortest_m: float
     hand_moves: int
     arrived_m: float = ARRIVED_M
+    edges_suspended: int = 0
 
     @property
     def distance_m(self) -> float:
@@ -77,6 +80,8 @@ class Round:
             "manual_moves": max(self.hand_moves, manual_moves(self.run.truths)),
             "shortest_m": rounded(self.shortest_m, 3),
             "driven_m": rounded(driven_m(self.run.truths), 3),
+            "path_ratio": rounded(driven_m(self.run.truths) / self.shortest_m, 3),
+            "edges_suspended": self.edges_suspended,
             "wall_s": rounded(self.run.wall_s, 2),
             "start": _plain(self.start),
             "hider": _plain(self.hider),
@@ -136,12 +141,17 @@ class Game:
 
     def seek(self, start: Pose, hider: Pose, seed: int, max_steps: int, watch: Watch | None = None) -> Round:
         """Hide, extract the picture's features, go there."""
-        picture = self.hide(hider)
+        picture, usable = self.hide(hider), self._usable_edges()
         goal = self._stack.bus.ask(EXTRACT, ExtractRequest(frame=picture), EXTRACT_TIMEOUT_S)
         moved = self.hand.moves
         request = MissionRequest(action="goto", map=self._map, goal=goal, seed=seed, max_steps=max_steps)
         run = self.client.run(request, watch)
-        return self.finish(start, hider, picture, run, self.hand.moves - moved)
+        played = self.finish(start, hider, picture, run, self.hand.moves - moved)
+        return replace(played, edges_suspended=max(0, usable - self._usable_edges()))
+
+    def _usable_edges(self) -> int:
+        found = read_map(self._stack, self._map)
+        return sum(not edge.suspended for edge in found.edges) if found is not None else 0
 
     def view(self) -> Frame:
         """What the seeker sees now."""

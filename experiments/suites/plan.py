@@ -1,0 +1,81 @@
+"""Which rounds a suite plays, and where. Pure."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+THESIS_ROUNDS = {"village": 5, "apartment": 3, "break_room": 3, "factory": 3}
+"""Rounds of the thesis's section 6, by world."""
+
+SUITES = ("thesis", "random")
+MAP_SEED = 1
+
+
+@dataclass(frozen=True)
+class RunPlan:
+    """Rounds in one world under one profile, one after the other; the seeker stays where it ended.
+
+    Attributes:
+        world: name, or path of a YAML file.
+        profile: rules of planner and drive as a command names them.
+        max_steps: a round is given up after so many frames.
+        draw: draw the plan and the final frames of every round.
+    """
+
+    world: str
+    profile: str
+    rounds: int
+    seed: int
+    max_steps: int
+    draw: bool = True
+
+    @property
+    def name(self) -> str:
+        """Folder name: short and unique within a suite."""
+        return f"{world_label(self.world)}-{self.profile}-{self.seed}"
+
+
+def world_label(world: str) -> str:
+    """A world's name as a folder or a table shows it."""
+    return world.rsplit("/", 1)[-1].removesuffix(".yaml").removesuffix(".yml")
+
+
+def plan_suite(
+    suite: str,
+    seed: int,
+    *,
+    rounds: int,
+    worlds: Sequence[str] = (),
+    profiles: Sequence[str] = ("default",),
+    max_steps: int,
+    draw: bool = True,
+) -> list[RunPlan]:
+    """All runs of a suite.
+
+    Args:
+        suite: 'thesis' (its fourteen rounds) or 'random' (`rounds` in each world).
+        seed: of the hiding places.
+        rounds: per world, of the random suite.
+        worlds: only these; empty for all four.
+        profiles: each world is played under each.
+        max_steps: bound of a round.
+        draw: draw every round.
+
+    Raises:
+        ValueError: an unknown suite, or a world that the thesis has no rounds in.
+    """
+    if suite not in SUITES:
+        raise ValueError(f"suite must be one of {', '.join(SUITES)}, got {suite!r}")
+    chosen = list(worlds) or list(THESIS_ROUNDS)
+    if suite == "thesis":
+        strange = [world for world in chosen if world not in THESIS_ROUNDS]
+        if strange:
+            raise ValueError(
+                f"the thesis has rounds in {', '.join(THESIS_ROUNDS)}, got {', '.join(strange)}: "
+                "use --suite random"
+            )
+    counts = THESIS_ROUNDS if suite == "thesis" else dict.fromkeys(chosen, rounds)
+    return [
+        RunPlan(world, profile, counts[world], seed, max_steps, draw)
+        for profile in dict.fromkeys(profiles)
+        for world in chosen
+    ]
