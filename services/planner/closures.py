@@ -12,7 +12,7 @@ import networkx as nx
 from services.planner.graph import MapGraph
 from shared.messages.matching import NodeMatch
 
-NEAR_HOPS = 3
+NEAR_HOPS = 1
 """Within so many edges of the place the robot came from an edge closes no loop."""
 
 YAW_RAD = math.radians(8.0)

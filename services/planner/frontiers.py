@@ -33,6 +33,8 @@ def with_explored(node: Node, graph: MapGraph, profile: Profile) -> Node:
             continue
         near = edge.inliers > NEARER * profile.s_explored
         half_rad = profile.near_half_rad if near else profile.explored_half_rad
+        if not edge.clear:
+            half_rad = min(half_rad, profile.blind_half_rad)
         for sector in range(SECTORS):
             if abs(math.remainder(sector_rad(sector) - heading, math.tau)) < half_rad:
                 explored[sector] = True

@@ -32,6 +32,7 @@ class Profile(BaseModel):
         edge_candidates: most places compared for edges of a new one.
         explored_half_rad: directions this near to that of an edge are explored; near_half_rad: for a place
             half as similar again.
+        blind_half_rad: the same for an edge along which the sensors did not see free ground all the way.
         departure_steps: steps in an unexplored direction after which nothing new is to be expected there.
         disparity_rad_per_m: how fast bearings change with distance in this kind of place.
         arrival_rad: angular disparity at which a place is reached; 0 uses s_final.
@@ -50,6 +51,7 @@ class Profile(BaseModel):
     explored_half_rad: PositiveFloat = math.radians(28.0)
     near_half_rad: PositiveFloat = math.radians(36.0)
     s_explored: PositiveInt = 45
+    blind_half_rad: PositiveFloat = math.radians(36.0)
     s_via_min: PositiveInt = 22
     s_via_max: PositiveInt = 100
     s_final: PositiveInt = 1_000_000
@@ -109,6 +111,7 @@ OUTDOOR = DEFAULT.model_copy(
         "edge_candidates": 30,
         "explored_half_rad": math.radians(60.0),
         "near_half_rad": math.radians(75.0),
+        "blind_half_rad": math.radians(40.0),
         "arrival_rad": math.radians(0.6),
         "travel_arrival_rad": math.radians(2.5),
         "near_rad": math.radians(2.0),
