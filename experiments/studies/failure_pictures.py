@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from experiments.environments import environment_of
 from experiments.map_client import require_map
 from experiments.output import rounded
 from experiments.stack import StackChoice, open_stack
@@ -15,12 +16,10 @@ from experiments.studies.pair_features import cache_folder, features_of_pairs
 from experiments.studies.pair_headings import PairResult, judge_pair
 from experiments.studies.pairs import PosePair, draw_pair
 from experiments.truth_file import load_truth, truth_path
-from services.features.interfaces import FeatureSet
 from services.features.pipeline import Pipeline
 from services.features.pipelines import find_profile
 from services.features.verification import feature_set
 from services.planner.profiles import Profile
-from shared.geometry.two_view import two_view
 from shared.messages import MapRequest
 from shared.messages.simulation import Pose
 from shared.topics import MAP
@@ -41,7 +40,7 @@ def wrong_headings(
     The thesis's choice (methods 1 and 4 by the histogram, raw matches) is method 4 here, its best one.
     """
     world = load_world(world_name)
-    pipeline = Pipeline(find_profile("sift"))
+    pipeline = Pipeline(find_profile(environment_of(world).pipeline or "sift"))
     space = free_space(world)
     drawn = _near(space, centre_m, radius_m, pairs, np.random.default_rng(1))
     folder = cache_folder(data_dir / "cache", world, pipeline, 1).with_suffix(f".{what.replace(' ', '-')}")
@@ -60,45 +59,35 @@ def wrong_headings(
 
 
 def long_edges(data_dir: Path, map_name: str, profile: Profile, longest_m: float) -> Row:
-    """Edges of one map's places without and with verification; a long one joins places far apart or hidden.
+    """Long edges between the places of a map: by matches alone, as in the thesis, and in the map itself.
 
     Args:
         data_dir: where the map and the true poses of its nodes are.
-        map_name: an explored map.
-        profile: thresholds: s_edge_min counts raw matches without verification, verified ones with it.
+        map_name: an explored map of the village.
+        profile: its threshold s_edge_min counts raw matches here, verified ones in the map.
         longest_m: further apart than this a pair of places is no neighbourhood.
     """
     truth = load_truth(truth_path(data_dir, map_name))
     poses = truth.poses if truth is not None else {}
-    pipeline = Pipeline(find_profile("sift"))
-    with open_stack(StackChoice(data_dir, lockstep=True)) as stack:
-        require_map(stack, map_name)
+    place = environment_of("village")
+    pipeline = Pipeline(find_profile(place.pipeline or "sift"))
+    with open_stack(StackChoice(data_dir, "village", lockstep=True)) as stack:
+        graph = require_map(stack, map_name)
         reply = stack.bus.ask(MAP, MapRequest(action="read_features"), READ_TIMEOUT_S, map=map_name)
     places = {f.node_id: feature_set(f.features) for f in reply.features if f.node_id in poses}
-    raw, verified = _edges(places, pipeline, profile.s_edge_min)
+    raw = [
+        (a, b)
+        for a, b in combinations(sorted(places), 2)
+        if len(pipeline.matcher.match(places[a], [places[b]])[0]) > profile.s_edge_min
+    ]
+    ours = [(edge.a, edge.b) for edge in graph.edges]
     return {
         "failure": "long edges between look-alike places",
         "map": map_name,
         "places": len(places),
         "thesis": {"edges": len(raw), "long": sum(_apart_m(poses, e) > longest_m for e in raw)},
-        "ours": {"edges": len(verified), "long": sum(_apart_m(poses, e) > longest_m for e in verified)},
+        "ours": {"edges": len(ours), "long": sum(_apart_m(poses, e) > longest_m for e in ours)},
     }
-
-
-def _edges(
-    places: dict[int, FeatureSet], pipeline: Pipeline, s_min: int
-) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
-    raw, verified = [], []
-    for number, (a, b) in enumerate(combinations(sorted(places), 2)):
-        (rows,) = pipeline.matcher.match(places[a], [places[b]])
-        if len(rows) <= s_min:
-            continue
-        raw.append((a, b))
-        current, target = places[a].lonlat_rad[rows[:, 0]], places[b].lonlat_rad[rows[:, 1]]
-        result = two_view(current, target, np.random.default_rng(number), pipeline.verification)
-        if result.inliers > s_min:
-            verified.append((a, b))
-    return raw, verified
 
 
 def _near(

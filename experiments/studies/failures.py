@@ -13,8 +13,11 @@ from experiments.studies.failure_pictures import long_edges, wrong_headings
 from experiments.tables import print_rows
 from services.planner.profiles import OUTDOOR
 
-KINDS = ("oscillation", "corner", "door", "long-edges")
+KINDS = ("oscillation", "corner", "door", "truck", "long-edges")
 DOOR_M, DOOR_RADIUS_M = (1.65, -0.1), 0.9
+TRUCK_M, TRUCK_RADIUS_M = (29.0, 11.2), 3.0
+"""The middle of the way along the lorry's plain side."""
+
 LONG_M = 15.0
 
 
@@ -36,6 +39,9 @@ def main(
         "corner": lambda: corner("apartment", seed),
         "door": lambda: wrong_headings(
             data_dir, "apartment", "faulty headings at a door", DOOR_M, DOOR_RADIUS_M, pairs
+        ),
+        "truck": lambda: wrong_headings(
+            data_dir, "factory", "false motion at the truck", TRUCK_M, TRUCK_RADIUS_M, pairs
         ),
         "long-edges": lambda: long_edges(data_dir, village_map, OUTDOOR, LONG_M),
     }

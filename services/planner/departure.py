@@ -4,10 +4,15 @@ import math
 from dataclasses import dataclass
 
 from services.planner.mapping import CONFIDENCE_MIN
+from services.planner.profiles import Profile
+from services.planner.similarity import similarity
 from shared.messages.matching import NodeMatch
 
 JUMP_RAD = math.radians(90.0)
 """The direction back turns slowly while the robot drives away; it never jumps so far between two frames."""
+
+CLOSE = 2.0
+"""A view that resembles the place by more than so many times rule 4.2's bound is too close to judge."""
 
 
 @dataclass
@@ -23,9 +28,14 @@ class Departure:
     retreating: bool = False
     back_rad: float | None = None
 
-    def follows(self, origin: NodeMatch | None) -> bool:
-        """Whether the direction back turned smoothly since the last frame; a jump means a look-alike view."""
+    def follows(self, origin: NodeMatch | None, profile: Profile) -> bool:
+        """Whether the direction back turned smoothly since the last frame; a jump means a look-alike view.
+
+        Close to the place the direction may turn by anything: the robot passes it on its way out.
+        """
         if origin is None or origin.heading_rad is None or origin.confidence < CONFIDENCE_MIN:
+            return True
+        if similarity(origin, profile) > CLOSE * profile.s_node_max:
             return True
         expected = self.heading_rad + math.pi if self.back_rad is None else self.back_rad
         if abs(math.remainder(origin.heading_rad - expected, math.tau)) > JUMP_RAD:

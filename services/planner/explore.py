@@ -93,7 +93,7 @@ class FrontierExploration:
             departure.heading_rad = math.remainder(sector_rad(departure.sector) + origin.yaw_rad, math.tau)
         if s_best <= self._profile.s_edge_min:
             return self._out_of_sight(departure, s_best)
-        if self._profile.similarity == "verified" and not departure.follows(origin):
+        if self._profile.similarity == "verified" and not departure.follows(origin, self._profile):
             return self._lost_track(departure)
         if departure.retreating:
             everything = {**self._candidates(), **matches}

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from services.planner.closures import agrees, unsupported_closures
+from services.planner.closures import agrees, contradicted, unsupported_closures
 from services.planner.graph import MapGraph, edge_between
 from shared.messages.maps import Edge, Node
 from shared.messages.matching import NodeMatch
@@ -41,7 +41,7 @@ def graph():
 
 
 def test_places_near_where_the_robot_came_from_need_no_witness(graph):
-    assert unsupported_closures(graph, {0: match(0), 3: match(3)}, driven_from=0) == {}
+    assert unsupported_closures(graph, {0: match(0), 1: match(1)}, driven_from=0) == {}
 
 
 def test_a_far_place_needs_a_neighbour_that_fits(graph):
@@ -73,3 +73,22 @@ def test_directions_that_cannot_close_disagree(graph):
 def test_where_the_frame_stands_at_the_place_only_the_turn_counts(graph):
     here = match(7).model_copy(update={"status": "no_baseline", "heading_rad": None})
     assert agrees(graph, {7: here, 8: match(8)}, 7, 8)
+
+
+def test_true_places_are_not_outvoted(graph):
+    assert contradicted(graph, {n: match(n) for n in range(9)}) == {}
+
+
+@pytest.mark.parametrize("place", [0, 3, 7])
+def test_a_place_seen_the_wrong_way_round_is_outvoted(graph, place):
+    seen = {n: match(n) for n in range(9)} | {place: match(place, aside_rad=math.pi)}
+    assert set(contradicted(graph, seen)) == {place}
+
+
+def test_of_two_that_disagree_the_better_verified_stays(graph):
+    weak = match(6, aside_rad=math.pi).model_copy(update={"inliers": 40})
+    assert set(contradicted(graph, {6: weak, 7: match(7)})) == {6}
+
+
+def test_a_place_without_neighbours_in_view_is_not_judged(graph):
+    assert contradicted(graph, {0: match(0, aside_rad=math.pi), 7: match(7)}) == {}
