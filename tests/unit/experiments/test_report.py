@@ -46,7 +46,8 @@ def test_the_markdown_names_what_was_not_found():
     }
     explored = {
         "world": "a/attic.yaml", "nodes": 10, "edges": 20, "coverage": 0.97, "components": 1,
-        "false_edges": 0, "collisions": 0, "manual_moves": 0, "steps": 500, "wall_s": 100.0, "bytes_per_node": 90_000,
+        "false_edges": 0, "collisions": 0, "manual_moves": 0, "steps": 500, "wall_s": 100.0,
+        "bytes_per_node": 90_000,
     }  # fmt: skip
     text = suite_markdown("random", [explored], [run])
     assert "| attic | default | 1/2 |" in text
