@@ -10,25 +10,26 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from experiments.environments import Spans
+from experiments.output import rounded
 from experiments.studies.pair_headings import PairResult
 
 WRONG_RAD = math.radians(20.0)
 SAFETY = 1.333
 """The thesis's safety factor of the map thresholds over those of driving (section 6.1: 60 becomes 80)."""
 
-PLACE_M = (0.5, 0.9)
-NEAR_M = 0.5
 MIN_VIA = 15
 
 
-def propose(results: Sequence[PairResult]) -> dict[str, int]:
+def propose(results: Sequence[PairResult], spans: Spans) -> dict[str, float]:
     """Thresholds for `services.planner.profiles`, in verified matches.
 
     Returns:
         s_via_min: no bearing of a pair with more was wrong by 20 degrees, at least MIN_VIA.
         s_edge_min: the same times the thesis's safety factor.
         s_node_max: median between frames as far apart as places should be.
-        s_via_max: median between frames nearer than that.
+        s_via_max: median between frames nearer than a reached via point.
+        disparity_rad_per_m: median of disparity over distance where places should be.
 
     Raises:
         ValueError: no pair at those distances; measure more.
@@ -38,8 +39,9 @@ def propose(results: Sequence[PairResult]) -> dict[str, int]:
     return {
         "s_via_min": s_via_min,
         "s_edge_min": math.ceil(SAFETY * s_via_min),
-        "s_node_max": _median(results, *PLACE_M),
-        "s_via_max": _median(results, 0.0, NEAR_M),
+        "s_node_max": _median(results, *spans.place_m),
+        "s_via_max": _median(results, 0.0, spans.near_m),
+        "disparity_rad_per_m": _disparity_rad_per_m(results, *spans.place_m),
     }
 
 
@@ -53,3 +55,12 @@ def _median(results: Sequence[PairResult], low_m: float, high_m: float) -> int:
     if not inside:
         raise ValueError(f"no pair between {low_m} and {high_m} m: measure more pairs (--pairs)")
     return round(float(np.median(inside)))
+
+
+def _disparity_rad_per_m(results: Sequence[PairResult], low_m: float, high_m: float) -> float:
+    ratios = [
+        r.disparity_rad / r.distance_m
+        for r in results
+        if low_m <= r.distance_m < high_m and r.disparity_rad is not None
+    ]
+    return rounded(np.median(ratios)) if ratios else 0.0

@@ -10,6 +10,21 @@ from simulator.world_file import WorldFile, load_world
 
 
 @dataclass(frozen=True)
+class Spans:
+    """Distances between places that calibration asks about, metres.
+
+    Attributes:
+        pair_m: of the pairs of frames measured.
+        place_m: how far apart places should be.
+        near_m: nearer than this a via point is reached.
+    """
+
+    pair_m: tuple[float, float] = (0.3, 3.0)
+    place_m: tuple[float, float] = (0.5, 0.9)
+    near_m: float = 0.5
+
+
+@dataclass(frozen=True)
 class Environment:
     """Settings and bounds of one kind of place.
 
@@ -20,6 +35,7 @@ class Environment:
         arrived_m: a round succeeds within this distance of the hider.
         covered_m: a place covers the floor within this distance.
         blind_m: an edge may be this long between places with something in between.
+        spans: distances that calibration measures.
     """
 
     profiles: dict[str, str] = field(default_factory=dict)
@@ -28,6 +44,7 @@ class Environment:
     arrived_m: float = 0.5
     covered_m: float = 1.0
     blind_m: float = 3.0
+    spans: Spans = Spans()
 
     def profile(self, asked: str | None) -> str | None:
         """The profile that `asked` means here; None leaves the stack's default."""
@@ -42,6 +59,7 @@ OUTDOOR = Environment(
     arrived_m=1.0,
     covered_m=4.0,
     blind_m=12.0,
+    spans=Spans(pair_m=(0.5, 12.0), place_m=(2.5, 4.5), near_m=2.0),
 )
 ENVIRONMENTS = {"indoor": INDOOR, "outdoor": OUTDOOR}
 

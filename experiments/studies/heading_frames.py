@@ -12,7 +12,7 @@ from experiments.output import write_json
 from experiments.studies.pair_features import cache_folder, features_of_pairs
 from experiments.studies.pair_headings import PairResult, judge_pair
 from experiments.studies.pair_tables import distance_table, method_table, status_counts
-from experiments.studies.pairs import draw_pairs
+from experiments.studies.pairs import APART_M, draw_pairs
 from experiments.tables import print_rows, wide_console
 from services.features.pipeline import Pipeline
 from services.features.pipelines import find_profile
@@ -54,12 +54,19 @@ def main(
     print_rows("by distance, epipolar", by_distance)
 
 
-def measure(world_name: str, count: int, seed: int, pipeline_name: str, data_dir: Path) -> list[PairResult]:
+def measure(
+    world_name: str,
+    count: int,
+    seed: int,
+    pipeline_name: str,
+    data_dir: Path,
+    apart_m: tuple[float, float] = APART_M,
+) -> list[PairResult]:
     """Draw the pairs, render what is not kept yet, and judge every method."""
     world = load_world(world_name)
     pipeline = Pipeline(find_profile(pipeline_name))
-    pairs = draw_pairs(free_space(world), count, np.random.default_rng(seed))
-    folder = cache_folder(data_dir / "cache", world, pipeline, seed)
+    pairs = draw_pairs(free_space(world), count, np.random.default_rng(seed), apart_m)
+    folder = cache_folder(data_dir / "cache", world, pipeline, seed, apart_m)
     console = wide_console(stderr=True)
     with console.status("") as status:
         done = iter(range(1, count + 1))

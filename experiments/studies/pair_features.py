@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from experiments.studies.pairs import PosePair
+from experiments.studies.pairs import APART_M, PosePair
 from services.features.interfaces import FeatureSet
 from services.features.pipeline import Pipeline
 from services.features.verification import feature_set
@@ -29,10 +29,17 @@ def camera_settings() -> SimulationSettings:
     return SimulationSettings(camera=CameraSettings(width_px=WIDTH_PX))
 
 
-def cache_folder(root: Path, world: WorldFile, pipeline: Pipeline, seed: int) -> Path:
+def cache_folder(
+    root: Path,
+    world: WorldFile,
+    pipeline: Pipeline,
+    seed: int,
+    apart_m: tuple[float, float] = APART_M,
+) -> Path:
     """Folder of one kind of pairs: another world, camera, pipeline or seed is another folder."""
     settings = camera_settings()
     text = f"{world.model_dump_json()}|{settings.camera.model_dump_json()}|{asdict(pipeline.profile)}|{seed}"
+    text += "" if apart_m == APART_M else f"|{apart_m}"
     return root / f"pairs-{world.name}-{pipeline.identity}-{hashlib.sha256(text.encode()).hexdigest()[:12]}"
 
 

@@ -8,8 +8,7 @@ import numpy as np
 from shared.messages.simulation import Pose
 from simulator.freespace import FreeSpace
 
-MIN_M = 0.3
-MAX_M = 3.0
+APART_M = (0.3, 3.0)
 MAX_DRAWS = 10_000
 
 
@@ -37,18 +36,20 @@ class PosePair:
         return math.remainder(self.target.yaw_rad - self.current.yaw_rad, math.tau)
 
 
-def draw_pairs(space: FreeSpace, count: int, rng: np.random.Generator) -> list[PosePair]:
-    """Pairs whose distance is even in [MIN_M, MAX_M], both ends on free floor, nothing between them."""
-    return [draw_pair(space, rng) for _ in range(count)]
+def draw_pairs(
+    space: FreeSpace, count: int, rng: np.random.Generator, apart_m: tuple[float, float] = APART_M
+) -> list[PosePair]:
+    """Pairs whose distance is even in `apart_m`, both ends on free floor, nothing between them."""
+    return [draw_pair(space, rng, apart_m) for _ in range(count)]
 
 
-def draw_pair(space: FreeSpace, rng: np.random.Generator) -> PosePair:
+def draw_pair(space: FreeSpace, rng: np.random.Generator, apart_m: tuple[float, float] = APART_M) -> PosePair:
     """One pair.
 
     Raises:
         ValueError: the free floor has no room for any.
     """
-    distance_m = float(rng.uniform(MIN_M, MAX_M))
+    distance_m = float(rng.uniform(*apart_m))
     for _ in range(MAX_DRAWS):
         x_m, y_m, yaw_rad = space.random_pose(rng)
         bearing, other_yaw_rad = (float(angle) for angle in rng.uniform(-math.pi, math.pi, 2))

@@ -1,5 +1,6 @@
 """What a caller chooses about a stack, and the variables of the Compose file that this becomes."""
 
+import json
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -42,7 +43,7 @@ class StackSettings:
             as for the three below.
         lockstep: run as fast as the machine allows, same seed, same path.
         seed: of every random draw.
-        profile: rules of planner and drive, "default" or "thesis".
+        profile: rules of planner and drive, "default" or "thesis", or a file of `topnav calibrate --write`.
         ports: where the services listen.
         environment: set in every service last of all, for example {"FEATURES_KEYPOINTS": "300"}.
     """
@@ -67,7 +68,7 @@ class StackSettings:
             "TOPNAV_WORLD": located(self.world),
             "TOPNAV_LOCKSTEP": None if self.lockstep is None else str(self.lockstep).lower(),
             "TOPNAV_SEED": None if self.seed is None else str(self.seed),
-            "TOPNAV_PROFILE": self.profile,
+            **profile_variables(self.profile),
             "TOPNAV_BIND": HOST,
             "TOPNAV_TOKEN": base.get("TOPNAV_TOKEN", ""),  # nobody else reaches loopback: no secret needed
             "TOPNAV_ROUTER_PORT": str(self.ports.router),
@@ -79,6 +80,23 @@ class StackSettings:
             or str(Path("~/.cache/topnav").expanduser()),
         }
         return base | {name: value for name, value in chosen.items() if value is not None}
+
+
+def profile_variables(profile: str | None) -> dict[str, str | None]:
+    """A profile's name for planner and drive; of a profile file its base, and the file for the planner.
+
+    Raises:
+        ValueError: the file cannot be read.
+    """
+    if profile is None or Path(profile).suffix != ".json":
+        return {"TOPNAV_PROFILE": profile}
+    try:
+        base = json.loads(Path(profile).read_text(encoding="utf-8"))["base"]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise ValueError(
+            f"--profile {profile}: not a file of 'topnav calibrate --write': {error or type(error).__name__}"
+        ) from error
+    return {"TOPNAV_PROFILE": str(base), "TOPNAV_PROFILE_FILE": str(Path(profile).absolute())}
 
 
 def located(world: str | None) -> str | None:

@@ -1,9 +1,12 @@
 """Settings of the planner service, from PLANNER_* variables."""
 
+from pathlib import Path
+
 from pydantic import NonNegativeInt, PositiveFloat, PositiveInt, field_validator
 from pydantic_settings import SettingsConfigDict
 
 from services.planner.heading.registry import MethodName
+from services.planner.profile_file import profile_of_file
 from services.planner.profiles import Profile, profile_named
 from shared.settings import ServiceSettings
 
@@ -13,6 +16,7 @@ class PlannerSettings(ServiceSettings):
 
     Attributes:
         profile: name of the thresholds and rules.
+        profile_file: takes the place of `profile`: a file of `topnav calibrate --write`.
         heading_method: replaces the profile's: epipolar, histogram or 1 to 6.
         edge_window: replaces the profile's: how many of the newest places may get an edge to a new one.
         heading_ttl_ms: how long the drive service may follow one heading in real time.
@@ -22,6 +26,7 @@ class PlannerSettings(ServiceSettings):
     model_config = SettingsConfigDict(env_prefix="PLANNER_")
 
     profile: str = "default"
+    profile_file: Path | None = None
     heading_method: MethodName | None = None
     edge_window: NonNegativeInt | None = None
     heading_ttl_ms: PositiveInt = 350
@@ -32,7 +37,20 @@ class PlannerSettings(ServiceSettings):
         """The profile with what these settings replace."""
         given = {"heading_method": self.heading_method, "edge_window": self.edge_window}
         update = {name: value for name, value in given.items() if value is not None}
-        return profile_named(self.profile).model_copy(update=update)
+        named = profile_of_file(self.profile_file) if self.profile_file else profile_named(self.profile)
+        return named.model_copy(update=update)
+
+    @field_validator("profile_file", mode="before")
+    @classmethod
+    def _none_when_empty(cls, value: object) -> object:
+        return value or None
+
+    @field_validator("profile_file")
+    @classmethod
+    def _readable(cls, value: Path | None) -> Path | None:
+        if value is not None:
+            profile_of_file(value)
+        return value
 
     @field_validator("profile")
     @classmethod

@@ -23,9 +23,9 @@ def test_unanswered_pairs_are_counted_apart():
 
 
 def test_bins_share_no_pair_and_the_last_one_holds_its_end():
-    rows = distance_table([result(0.5, 1.0, 90), result(0.4, 1.0, 80), result(3.0, 1.0, 10)])
+    rows = distance_table([result(0.5, 1.0, 90), result(0.4, 1.0, 80), result(12.0, 1.0, 10)])
     assert [(row["distance_m"], row["pairs"], row["verified"]) for row in rows] == [
         ("0.3-0.5", 1, 80),
         ("0.5-1", 1, 90),
-        ("2.5-3", 1, 10),
+        ("8-12", 1, 10),
     ]

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from experiments.studies.pairs import MAX_M, MIN_M, PosePair, draw_pairs
+from experiments.studies.pairs import APART_M, PosePair, draw_pairs
 from shared.messages.simulation import Pose
 from simulator.freespace import free_space
 from simulator.world_file import load_world
@@ -15,7 +15,7 @@ def test_pairs_are_near_enough_and_see_each_other():
     space = free_space(load_world("apartment"))
     for pair in draw_pairs(space, 15, np.random.default_rng(1)):
         ends = [(p.x_m, p.y_m) for p in (pair.current, pair.target)]
-        assert MIN_M <= pair.distance_m <= MAX_M
+        assert APART_M[0] <= pair.distance_m <= APART_M[1]
         assert all(space.is_free(end) for end in ends)
         assert space.line_of_sight(*ends)
 

@@ -1,0 +1,59 @@
+"""A profile from a file is a named one with other thresholds; what is wrong in it is told by name."""
+
+import json
+
+import pytest
+from pydantic import ValidationError
+
+from services.launcher.stack_settings import profile_variables
+from services.planner.profiles import OUTDOOR
+from services.planner.settings import PlannerSettings
+
+
+@pytest.fixture
+def write(tmp_path):
+    def make(content):
+        path = tmp_path / "mine.json"
+        path.write_text(content if isinstance(content, str) else json.dumps(content))
+        return path
+
+    return make
+
+
+def test_thresholds_of_the_file_replace_those_of_its_base(write):
+    path = write({"base": "outdoor", "thresholds": {"s_edge_min": 33, "disparity_rad_per_m": 0.05}})
+    rules = PlannerSettings(profile_file=path).rules()
+    assert rules == OUTDOOR.model_copy(update={"s_edge_min": 33, "disparity_rad_per_m": 0.05})
+
+
+def test_no_file_leaves_the_named_profile():
+    assert PlannerSettings(profile="outdoor", profile_file="").rules() == OUTDOOR
+
+
+def test_the_launcher_gives_the_base_to_everybody_and_the_file_to_the_planner(write):
+    path = write({"base": "outdoor", "thresholds": {"s_edge_min": 33}})
+    assert profile_variables(str(path)) == {
+        "TOPNAV_PROFILE": "outdoor",
+        "TOPNAV_PROFILE_FILE": str(path),
+    }
+    assert profile_variables("thesis") == {"TOPNAV_PROFILE": "thesis"}
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("{", "not one of"),
+        ({"thresholds": {}}, "base"),
+        ({"base": "moon", "thresholds": {}}, "must be one of"),
+        ({"base": "outdoor", "thresholds": {"s_edge_mim": 3}}, "s_edge_mim"),
+        ({"base": "outdoor", "thresholds": {"s_edge_min": -3}}, "s_edge_min"),
+    ],
+)
+def test_what_does_not_fit_is_told_by_name(write, content, words):
+    with pytest.raises(ValidationError, match=words):
+        PlannerSettings(profile_file=write(content))
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(ValidationError, match=r"nowhere\.json"):
+        PlannerSettings(profile_file=tmp_path / "nowhere.json")
