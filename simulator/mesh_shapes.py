@@ -11,7 +11,6 @@ from simulator.parts import Part, rotation_of
 AnyFloat = npt.NDArray[np.floating[Any]]
 GRAIN_M = 0.36  # longest edge of large faces: light is stored at the vertices
 GROUND_GRAIN_M = 0.2  # floors and rugs carry the shadows of everything that stands on them
-YARD_M, YARD_GRAIN_M = 12.0, 0.45  # grounds larger than this, where few things are looked at closely
 THIN_GRAIN_M = 0.9  # the same on narrow faces, along which light hardly changes
 SIDES = 16
 
@@ -57,11 +56,10 @@ def _grid(rows: int, columns: int) -> IntArray:
     return np.concatenate([np.stack([a, b, c], -1).reshape(-1, 3), np.stack([a, c, d], -1).reshape(-1, 3)])
 
 
-def _steps(length: float, across: float = 1.0, ground: bool = False) -> int:
+def _steps(length: float, across: float = 1.0, ground: bool = False, grain: float | None = None) -> int:
     """Vertices along an edge of a face that is `across` wide."""
-    if ground and max(length, across) > YARD_M:
-        return max(2, int(np.ceil(length / YARD_GRAIN_M)) + 1)
-    grain = GROUND_GRAIN_M if ground else GRAIN_M if across > 0.15 else THIN_GRAIN_M
+    if grain is None:
+        grain = GROUND_GRAIN_M if ground else GRAIN_M if across > 0.15 else THIN_GRAIN_M
     return max(2, int(np.ceil(length / grain)) + 1)
 
 
@@ -90,8 +88,8 @@ def _box(part: Part) -> Mesh:
             lift = np.eye(3, dtype=np.float32)[up]
             side = np.cross(lift, normal).astype(np.float32)
             ground = axis == 2 and part.centre_m[2] + half[2] < 0.02
-            n_u = _steps(2 * half[right], 2 * half[up], ground)
-            n_v = _steps(2 * half[up], 2 * half[right], ground)
+            n_u = _steps(2 * half[right], 2 * half[up], ground, part.grain_m)
+            n_v = _steps(2 * half[up], 2 * half[right], ground, part.grain_m)
             s, t = np.meshgrid(
                 np.linspace(-1, 1, n_u, dtype=np.float32), np.linspace(1, -1, n_v, dtype=np.float32)
             )

@@ -60,6 +60,7 @@ class Part:
         uv: part of the texture used when stretched: u0, v0, u1, v1 with v = 0 at the top.
         geometry: triangles of a mesh, around its centre.
         outline_m: corners of a hull around its centre, convex, counter-clockwise from above.
+        grain_m: how densely a box carries light; None leaves it to its size.
     """
 
     shape: Shape
@@ -76,6 +77,7 @@ class Part:
     casts_shadow: bool = True
     geometry: Geometry | None = None
     outline_m: tuple[tuple[float, float], ...] = ()
+    grain_m: float | None = None
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ SKIRTING_HEIGHT_M = 0.08
 SKIRTING_DEPTH_M = 0.012
 FLOOR_DEPTH_M = 0.1
 CONTACT_M = 1e-6
+YARD_M, YARD_GRAIN_M = 12.0, 0.45  # grounds larger than this, where few things are looked at closely
 Span = tuple[float, float]
 Rect = tuple[Span, Span]
 
@@ -46,6 +47,7 @@ def _material(surface: Surface) -> Material:
 def floor_parts(rect: Rect, surface: Surface) -> list[Part]:
     """The slabs under a piece of floor; their top is at height 0."""
     whole = surface.variants == 1
+    yard = max(high - low for low, high in rect) > YARD_M
     return [
         box(
             x,
@@ -55,6 +57,7 @@ def floor_parts(rect: Rect, surface: Surface) -> list[Part]:
             solid=False,
             tile_m=surface.tile_m,
             casts_shadow=False,
+            grain_m=YARD_GRAIN_M if yard else None,
         )
         for x in ([rect[0]] if whole else cut(rect[0], surface.tile_m))
         for y in ([rect[1]] if whole else cut(rect[1], surface.tile_m))
