@@ -8,6 +8,7 @@ from services.planner.frontiers import with_explored
 from services.planner.graph import MapGraph, edge_between
 from services.planner.ports import MapAccess, Note, Observation
 from services.planner.profiles import Profile
+from services.planner.rivals import has_rival
 from services.planner.similarity import heading_of, ranked, similarity, trusted
 from services.planner.surroundings import is_clear, is_clear_from, openings
 from shared.messages.maps import AddNode, Edge, Node, Operation, PutEdge, UpdateNode
@@ -113,10 +114,12 @@ def add_place(
 def _refused(
     graph: MapGraph, admitted: dict[int, NodeMatch], profile: Profile, driven_from: int | None
 ) -> dict[int, str]:
-    """Edges without a witness or outvoted; raw similarity asks for neither, as in the thesis."""
+    """Edges that are ambiguous, without a witness or outvoted; raw similarity asks for nothing, as in the thesis."""
     if profile.similarity == "raw":
         return {}
-    refused = unsupported_closures(graph, admitted, driven_from)
+    refused = {n: f"two motions explain the view of node {n}" for n, m in admitted.items() if has_rival(m)}
+    left = {n: m for n, m in admitted.items() if n not in refused}
+    refused |= unsupported_closures(graph, left, driven_from)
     return refused | contradicted(graph, {n: m for n, m in admitted.items() if n not in refused})
 
 

@@ -111,7 +111,7 @@ OUTDOOR = DEFAULT.model_copy(
         "edge_candidates": 30,
         "explored_half_rad": math.radians(60.0),
         "near_half_rad": math.radians(75.0),
-        "blind_half_rad": math.radians(40.0),
+        "blind_half_rad": math.radians(30.0),
         "arrival_rad": math.radians(0.6),
         "travel_arrival_rad": math.radians(2.5),
         "near_rad": math.radians(2.0),
