@@ -65,7 +65,7 @@ class FrontierExploration:
 
     def _first(self, observation: Observation) -> Decision:
         """The only node: random heading (thesis section 4.2)."""
-        node_id, _ = add_place(self._maps, observation, Edges({}, {}), self._profile, None)
+        node_id, _ = add_place(self._maps, observation, Edges(), self._profile, None)
         self._last_heading_rad = float(self._rng.uniform(-math.pi, math.pi))
         return self._leave(node_id, 0.0, (Note("node_added", "first place of the map", {"node": node_id}),))
 
@@ -154,7 +154,7 @@ class FrontierExploration:
     def _new_place(
         self, observation: Observation, departure: Departure, matches: dict[int, NodeMatch]
     ) -> Decision:
-        edges_of = judge_edges(self._maps.graph, matches, self._profile, departure.node_id)
+        edges_of = judge_edges(self._maps.graph, observation, matches, self._profile, departure.node_id)
         if not edges_of.admitted:
             return self._close_departure(departure, "no view back to be sure of", lost=True)
         self._explored(departure)

@@ -7,7 +7,7 @@ from typing import Literal
 from services.planner.experience import Experience, Leg, leg
 from services.planner.ports import GOAL, Decision, MapAccess, Matcher, Note, Observation, Progress
 from services.planner.profiles import Profile
-from services.planner.similarity import heading_of, similarity, trusted
+from services.planner.similarity import close_enough, heading_of, similarity, trusted
 from services.planner.surroundings import is_clear
 from shared.messages.features import Features
 from shared.messages.matching import NodeMatch
@@ -99,7 +99,7 @@ class PathFollower:
         return self.next_leg()
 
     def _is_at(self, match: NodeMatch | None) -> bool:
-        if match is None or match.inliers < self._profile.s_via_min:
+        if match is None or not close_enough(match, self._profile):
             return False
         near = match.disparity_rad is not None and match.disparity_rad < self._profile.travel_arrival_rad
         return match.status == "no_baseline" or near
@@ -152,6 +152,8 @@ class PathFollower:
         if s_cv > self._profile.s_final:
             return True
         if self._target.arrival_rad <= 0.0 or match.inliers < self._profile.s_edge_min:
+            return False
+        if not close_enough(match, self._profile):
             return False
         near = match.disparity_rad is not None and match.disparity_rad < self._target.arrival_rad
         return match.status == "no_baseline" or (match.status == "ok" and near)

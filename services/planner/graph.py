@@ -105,9 +105,9 @@ def fewest_nodes(edge: Edge) -> float:
     return SUSPENDED_RAD if edge.suspended else 1.0
 
 
-def least_disparity(edge: Edge) -> float:
-    """Sum of angular disparities: grows with distance, prefers edges driven or seen free."""
-    disparity = edge.disparity_rad if edge.disparity_rad is not None else 0.5
+def least_disparity(edge: Edge, least_rad: float = 0.0) -> float:
+    """Sum of angular disparities, each at least `least_rad`; prefers edges driven or seen free."""
+    disparity = max(least_rad, edge.disparity_rad if edge.disparity_rad is not None else 0.5)
     trust = 1.0 if edge.traversals or edge.clear else UNSEEN_GROUND
     return trust * disparity + 0.03 + 0.3 * edge.failures + SUSPENDED_RAD * edge.suspended
 

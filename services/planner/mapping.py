@@ -1,7 +1,6 @@
 """Making a place and its edges from the current frame (thesis equations 4.1 and 4.2)."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from services.planner.closures import contradicted, unsupported_closures
 from services.planner.frontiers import with_explored
@@ -26,34 +25,47 @@ def is_new_place(matches: dict[int, NodeMatch], profile: Profile) -> bool:
 
 @dataclass(frozen=True)
 class Edges:
-    """The places that a new frame resembles: those that get an edge, and why the others do not."""
+    """The places that a new frame resembles: those that get an edge, and why the others do not.
 
-    admitted: dict[int, NodeMatch]
-    refused: dict[int, str]
+    Attributes:
+        clear: of the admitted, those with free ground seen all the way.
+    """
+
+    admitted: dict[int, NodeMatch] = field(default_factory=dict)
+    clear: frozenset[int] = frozenset()
+    refused: dict[int, str] = field(default_factory=dict)
 
 
 def judge_edges(
     graph: MapGraph,
+    observation: Observation,
     matches: dict[int, NodeMatch],
     profile: Profile,
     driven_from: int | None,
-    refused: Mapping[int, str] | None = None,
 ) -> Edges:
     """Which edges a new place gets.
 
     Args:
         graph: the map without the new place.
+        observation: the frame and the distances around.
         matches: the frame against the places of the map.
         profile: thresholds.
         driven_from: node the robot came from.
-        refused: places already found out, and why.
     """
-    known = dict(refused or {})
     similar = {n: m for n, m in matches.items() if n in graph.nodes and _admitted(m, profile)}
-    enough = {n: m for n, m in similar.items() if n == driven_from or _enough_agree(m, profile)}
-    left = {n: m for n, m in enough.items() if n not in known}
-    known |= _refused(graph, left, profile, driven_from)
-    return Edges({n: m for n, m in left.items() if n not in known}, known)
+    clear = frozenset(
+        n
+        for n, m in similar.items()
+        if is_clear(m, observation.ranges, profile) or is_clear_from(graph.nodes[n], m, profile)
+    )
+    enough = {
+        n: m
+        for n, m in similar.items()
+        if n == driven_from
+        or (_enough_agree(m, profile) and (n in clear or similarity(m, profile) >= profile.s_blind_min))
+    }
+    refused = _refused(graph, enough, profile, driven_from)
+    return Edges({n: m for n, m in enough.items() if n not in refused}, clear, refused)
 
 
 def add_place(
@@ -82,8 +94,7 @@ def add_place(
             other,
             match,
             profile,
-            clear=is_clear(match, observation.ranges, profile)
-            or is_clear_from(maps.graph.nodes[other], match, profile),
+            clear=other in edges_of.clear,
             driven=other == driven_from,
         )
         for other, match in edges_of.admitted.items()
@@ -114,7 +125,7 @@ def add_place(
 def _refused(
     graph: MapGraph, admitted: dict[int, NodeMatch], profile: Profile, driven_from: int | None
 ) -> dict[int, str]:
-    """Edges that are ambiguous, without a witness or outvoted; raw similarity asks for nothing, as in the thesis."""
+    """Edges that are ambiguous, without a witness or outvoted; raw similarity asks for none of it."""
     if profile.similarity == "raw":
         return {}
     refused = {n: f"two motions explain the view of node {n}" for n, m in admitted.items() if has_rival(m)}

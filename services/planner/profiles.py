@@ -35,6 +35,9 @@ class Profile(BaseModel):
         blind_half_rad: the same for an edge along which the sensors did not see free ground all the way.
         departure_steps: steps in an unexplored direction after which nothing new is to be expected there.
         disparity_rad_per_m: how fast bearings change with distance in this kind of place.
+        similarity_m: a place is at least this over S away, metres: where most of what is seen is far off,
+            small disparity alone does not mean near. 0 leaves it out.
+        s_blind_min: S of an edge along which no free ground was seen.
         arrival_rad: angular disparity at which a place is reached; 0 uses s_final.
     """
 
@@ -76,6 +79,8 @@ class Profile(BaseModel):
     robot_radius_m: PositiveFloat = 0.3
     robot_slim_m: PositiveFloat = 0.27
     disparity_rad_per_m: PositiveFloat = math.radians(9.0)
+    similarity_m: float = Field(default=0.0, ge=0.0)
+    s_blind_min: NonNegativeInt = 0
 
 
 DEFAULT = Profile(name="default")
@@ -122,6 +127,8 @@ OUTDOOR = DEFAULT.model_copy(
         "robot_radius_m": 0.35,
         "robot_slim_m": 0.3,
         "disparity_rad_per_m": math.radians(2.2),
+        "similarity_m": 300.0,
+        "s_blind_min": 36,
     }
 )
 """Streets and yards, with 500 keypoints: places are 4 m apart, and one edge covers a wide sector.

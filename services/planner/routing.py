@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from services.planner.graph import UNSEEN_GROUND, EdgeCost, MapGraph, fewest_nodes, least_disparity
 from services.planner.ports import GOAL
 from services.planner.profiles import Profile
-from services.planner.similarity import ranked, similarity, trusted
+from services.planner.similarity import apart_rad, ranked, similarity, trusted
 from shared.messages.maps import Edge
 from shared.messages.matching import NodeMatch
 
@@ -17,7 +17,9 @@ DOUBT_RAD = 2.0
 
 def edge_cost(profile: Profile) -> EdgeCost:
     """The cost of the profile."""
-    return fewest_nodes if profile.path_cost == "nodes" else least_disparity
+    if profile.path_cost == "nodes":
+        return fewest_nodes
+    return lambda edge: least_disparity(edge, apart_rad(0.0, edge.inliers, profile))
 
 
 def visible(
@@ -35,7 +37,7 @@ def visible(
         best = ranked(dict(matches), profile)[:1]
         return {node: 0.0 for node, match in best if similarity(match, profile) > s_min}
     return {
-        node: _leg(match, clear=node in clear)
+        node: _leg(match, profile, clear=node in clear)
         for node, match in matches.items()
         if similarity(match, profile) > s_min and trusted(match, profile)
     }
@@ -74,6 +76,7 @@ def plan_path(
     return graph.path(min(reachable)[1], targets, cost)
 
 
-def _leg(match: NodeMatch, *, clear: bool) -> float:
+def _leg(match: NodeMatch, profile: Profile, *, clear: bool) -> float:
     disparity = match.disparity_rad if match.disparity_rad is not None else UNKNOWN_DISPARITY_RAD
-    return (1.0 if clear else UNSEEN_GROUND) * disparity + HOP_RAD
+    apart = apart_rad(disparity, match.inliers, profile)
+    return (1.0 if clear else UNSEEN_GROUND) * apart + HOP_RAD

@@ -23,6 +23,18 @@ def trusted(match: NodeMatch, profile: Profile) -> bool:
     )
 
 
+def apart_rad(disparity_rad: float, inliers: int, profile: Profile) -> float:
+    """How far apart two views are as an angle: their disparity, or more where so few matches agree."""
+    least_m = profile.similarity_m / max(inliers, 1)
+    return max(disparity_rad, least_m * profile.disparity_rad_per_m)
+
+
+def close_enough(match: NodeMatch, profile: Profile) -> bool:
+    """Whether so many matches agree that a small disparity means near."""
+    least = profile.s_node_max if profile.similarity_m else profile.s_via_min
+    return similarity(match, profile) >= least
+
+
 def ranked(matches: dict[int, NodeMatch], profile: Profile) -> list[tuple[int, NodeMatch]]:
     """Node ids and matches, most similar first, ties by id."""
     return sorted(matches.items(), key=lambda item: (-similarity(item[1], profile), item[0]))

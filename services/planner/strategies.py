@@ -31,7 +31,7 @@ class ThesisExploration:
     def decide(self, observation: Observation) -> Decision:
         """One step of figure 4.5's mapping branch."""
         if not self._maps.graph.nodes:
-            node, _ = add_place(self._maps, observation, Edges({}, {}), self._profile, None)
+            node, _ = add_place(self._maps, observation, Edges(), self._profile, None)
             return self._go(self._uniform(math.pi), "only node: random heading", (_added(node, 0),))
         matches = self._matcher.match([], COMPARED_NODES)
         best = ranked(matches, self._profile)
@@ -48,7 +48,7 @@ class ThesisExploration:
     def _place(self, observation: Observation, matches: dict[int, NodeMatch]) -> tuple[Note, ...]:
         if not is_new_place(matches, self._profile):
             return ()
-        edges_of = judge_edges(self._maps.graph, matches, self._profile, None)
+        edges_of = judge_edges(self._maps.graph, observation, matches, self._profile, None)
         node, _ = add_place(self._maps, observation, edges_of, self._profile, None)
         return (_added(node, len(self._maps.graph.neighbours(node))),)
 

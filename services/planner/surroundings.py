@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from services.planner.profiles import Profile
+from services.planner.similarity import apart_rad
 from shared.geometry.clearance import Obstacles
 from shared.messages.base import SECTORS
 from shared.messages.maps import Node
@@ -65,9 +66,10 @@ def _knows(node: Node, heading_rad: float) -> bool:
     return node.open[round(heading_rad / SECTOR_RAD) % SECTORS]
 
 
-def length_m(disparity_rad: float, profile: Profile) -> float:
+def length_m(match: NodeMatch, profile: Profile) -> float:
     """Rough length of a leg: disparity grows with distance by a factor calibrated per kind of place."""
-    return disparity_rad / profile.disparity_rad_per_m
+    disparity_rad = match.disparity_rad if match.disparity_rad is not None else 0.0
+    return apart_rad(disparity_rad, match.inliers, profile) / profile.disparity_rad_per_m
 
 
 def is_clear(match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
@@ -78,7 +80,7 @@ def is_clear(match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
         return False
     obstacles = Obstacles.from_ranges(ranges.angles_rad, ranges.distances_m, ranges.max_range_m)
     free_m = obstacles.clearance_m(np.array([match.heading_rad]), profile.robot_radius_m)[0]
-    return bool(length_m(match.disparity_rad, profile) <= free_m + profile.robot_radius_m)
+    return bool(length_m(match, profile) <= free_m + profile.robot_radius_m)
 
 
 def is_clear_from(node: Node, match: NodeMatch, profile: Profile) -> bool:
@@ -87,7 +89,4 @@ def is_clear_from(node: Node, match: NodeMatch, profile: Profile) -> bool:
         return match.status == "no_baseline"
     back_rad = match.heading_rad + math.pi - match.yaw_rad
     sector = round(back_rad / SECTOR_RAD) % SECTORS
-    return (
-        node.open[sector]
-        and length_m(match.disparity_rad, profile) <= profile.opening_m + profile.robot_radius_m
-    )
+    return node.open[sector] and length_m(match, profile) <= profile.opening_m + profile.robot_radius_m

@@ -46,7 +46,7 @@ def match(node_id, inliers, raw):
 
 def edges_of(profile, *matches, driven_from=None):
     maps = Memory()
-    edges = judge_edges(maps.graph, {m.node_id: m for m in matches}, profile, driven_from)
+    edges = judge_edges(maps.graph, observation(), {m.node_id: m for m in matches}, profile, driven_from)
     node, _ = add_place(maps, observation(), edges, profile, driven_from)
     return maps.graph.neighbours(node)
 
