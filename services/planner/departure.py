@@ -5,14 +5,11 @@ from dataclasses import dataclass
 
 from services.planner.mapping import CONFIDENCE_MIN
 from services.planner.profiles import Profile
-from services.planner.similarity import similarity
+from services.planner.similarity import CLOSE, similarity
 from shared.messages.matching import NodeMatch
 
 JUMP_RAD = math.radians(90.0)
 """The direction back turns slowly while the robot drives away; it never jumps so far between two frames."""
-
-CLOSE = 2.0
-"""A view that resembles the place by more than so many times rule 4.2's bound is too close to judge."""
 
 
 @dataclass

@@ -7,7 +7,7 @@ from typing import Literal
 from services.planner.experience import Experience, Leg, leg
 from services.planner.ports import GOAL, Decision, MapAccess, Matcher, Note, Observation, Progress
 from services.planner.profiles import Profile
-from services.planner.similarity import close_enough, heading_of, similarity, trusted
+from services.planner.similarity import apart_rad, close_enough, heading_of, similarity, trusted
 from services.planner.surroundings import is_clear
 from shared.messages.features import Features
 from shared.messages.matching import NodeMatch
@@ -162,7 +162,7 @@ class PathFollower:
         """Slow down over the last few degrees of disparity, so that a step does not overshoot the goal."""
         if not self._at_end() or match.disparity_rad is None or self._target.arrival_rad <= 0.0:
             return 1.0
-        return min(1.0, max(SLOWEST, match.disparity_rad / SLOW_RAD))
+        return min(1.0, max(SLOWEST, apart_rad(match.disparity_rad, match.inliers, self._profile) / SLOW_RAD))
 
     def _unseen(self, via: int, s_cv: int, notes: tuple[Note, ...]) -> tuple[FollowState, Decision]:
         """The via point is not seen: keep going for a few frames, then report lost."""

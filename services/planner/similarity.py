@@ -4,6 +4,9 @@ from services.planner.heading.choose import HeadingSettings, choose_heading
 from services.planner.profiles import Profile
 from shared.messages.matching import NodeMatch
 
+CLOSE = 2.0
+"""A view that resembles a place by more than so many times rule 4.2's bound is that of the place itself."""
+
 
 def similarity(match: NodeMatch, profile: Profile) -> int:
     """S of two frames: verified matches, or raw ones under the thesis's rules."""
@@ -31,7 +34,7 @@ def apart_rad(disparity_rad: float, inliers: int, profile: Profile) -> float:
 
 def close_enough(match: NodeMatch, profile: Profile) -> bool:
     """Whether so many matches agree that a small disparity means near."""
-    least = profile.s_node_max if profile.similarity_m else profile.s_via_min
+    least = CLOSE * profile.s_node_max if profile.similarity_m else profile.s_via_min
     return similarity(match, profile) >= least
 
 
