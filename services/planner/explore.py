@@ -99,11 +99,11 @@ class FrontierExploration:
             everything = {**self._candidates(), **matches}
             return self._new_place(observation, departure, everything)
         if is_new_place(matches, self._profile):
-            everything = self._candidates()
-            merged = {**everything, **matches}
-            if is_new_place(merged, self._profile):
-                return self._new_place(observation, departure, merged)
-            return self._known(departure, merged)
+            merged = {**self._candidates(), **matches}
+            credible = self._credible(observation, merged, departure.node_id)
+            if is_new_place(credible, self._profile):
+                return self._new_place(observation, departure, credible)
+            return self._known(departure, credible)
         if self._doorway(observation.ranges, matches):
             everything = {**self._candidates(), **matches}
             return self._new_place(observation, departure, everything)
@@ -124,6 +124,13 @@ class FrontierExploration:
         back = departure.heading_rad + math.pi
         why = f"the direction back to node {departure.node_id} jumped"
         return Decision("go", math.remainder(back, math.tau), 0, 1.0, "frontier", why)
+
+    def _credible(
+        self, observation: Observation, matches: dict[int, NodeMatch], origin: int
+    ) -> dict[int, NodeMatch]:
+        """Matches without those that the map speaks against: look-alikes make no place known."""
+        refused = judge_edges(self._maps.graph, observation, matches, self._profile, origin).refused
+        return {n: m for n, m in matches.items() if n not in refused or n == origin}
 
     def _doorway(self, ranges: Ranges, matches: dict[int, NodeMatch]) -> bool:
         """Whether a way out shows beside the way that the places around do not know."""
