@@ -62,7 +62,11 @@ def judge_edges(
         n: m
         for n, m in similar.items()
         if n == driven_from
-        or (_enough_agree(m, profile) and (n in clear or similarity(m, profile) >= profile.s_blind_min))
+        or (
+            _enough_agree(m, profile)
+            and not _far(m, profile)
+            and (n in clear or similarity(m, profile) >= profile.s_blind_min)
+        )
     }
     refused = _refused(graph, enough, profile, driven_from)
     return Edges({n: m for n, m in enough.items() if n not in refused}, clear, refused)
@@ -147,6 +151,12 @@ def _enough_agree(match: NodeMatch, profile: Profile) -> bool:
     """Whether so many of the raw matches are verified that a look-alike place is no explanation."""
     sure = similarity(match, profile) >= profile.s_sure
     return sure or match.inliers >= profile.share_min * match.raw_matches
+
+
+def _far(match: NodeMatch, profile: Profile) -> bool:
+    """Whether only things far away agree, so that the place may be anywhere along the way."""
+    disparity_rad = match.disparity_rad if match.disparity_rad is not None else 0.0
+    return disparity_rad < profile.far_rad and similarity(match, profile) < profile.s_node_max
 
 
 def _edge(node_id: int, other: int, match: NodeMatch, profile: Profile, *, clear: bool, driven: bool) -> Edge:

@@ -38,6 +38,8 @@ class Profile(BaseModel):
         similarity_m: a place is at least this over S away, metres: where most of what is seen is far off,
             small disparity alone does not mean near. 0 leaves it out.
         s_blind_min: S of an edge along which no free ground was seen.
+        far_rad: with less disparity than this an edge needs more than s_node_max: few matches that hardly move
+            are far away, and so may the place be.
         arrival_rad: angular disparity at which a place is reached; 0 uses s_final.
     """
 
@@ -81,6 +83,7 @@ class Profile(BaseModel):
     disparity_rad_per_m: PositiveFloat = math.radians(9.0)
     similarity_m: float = Field(default=0.0, ge=0.0)
     s_blind_min: NonNegativeInt = 0
+    far_rad: float = Field(default=0.0, ge=0.0)
 
 
 DEFAULT = Profile(name="default")
@@ -129,6 +132,7 @@ OUTDOOR = DEFAULT.model_copy(
         "disparity_rad_per_m": math.radians(2.2),
         "similarity_m": 300.0,
         "s_blind_min": 36,
+        "far_rad": math.radians(3.5),
     }
 )
 """Streets and yards, with 500 keypoints: places are 4 m apart, and one edge covers a wide sector.
