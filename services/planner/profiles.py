@@ -38,8 +38,8 @@ class Profile(BaseModel):
         similarity_m: a place is at least this over S away, metres: where most of what is seen is far off,
             small disparity alone does not mean near. 0 leaves it out.
         s_blind_min: S of an edge along which no free ground was seen.
-        far_rad: with less disparity than this an edge needs more than s_node_max: few matches that hardly move
-            are far away, and so may the place be.
+        far_rad: with less disparity than this an edge needs more than s_node_max: few matches that hardly
+            move are far away, and so may the place be.
         arrival_rad: angular disparity at which a place is reached; 0 uses s_final.
     """
 
