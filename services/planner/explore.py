@@ -36,6 +36,7 @@ CORNER_STEPS = 2
 DOORWAY_NODES = 3
 MAX_TRAVEL_FAILURES = 2
 SEARCH_STEPS = 120
+TRAVELS_IN_VAIN = 4
 
 
 class FrontierExploration:
@@ -51,6 +52,8 @@ class FrontierExploration:
         self._experience = Experience(profile, maps)
         self._search: Search | None = None
         self._cut_off = 0
+        self._bad_starts: set[int] = set()
+        self._in_vain = 0
         self.progress = Progress()
 
     def decide(self, observation: Observation) -> Decision:
@@ -204,7 +207,8 @@ class FrontierExploration:
         matches = self._matcher.match([], NEAR_NODES)
         clear = {n for n, m in matches.items() if is_clear(m, observation.ranges, self._profile)}
         starts = visible(matches, self._profile, self._profile.s_via_min, clear)
-        path = plan_path(graph, starts, frontier, self._profile, self._doubted, self._experience.banned)
+        fresh = {n: cost for n, cost in starts.items() if n not in self._bad_starts} or starts
+        path = plan_path(graph, fresh, frontier, self._profile, self._doubted, self._experience.banned)
         if not path:
             return self._no_way(frontier) if starts else self._look_for_map(matches)
         self._search, self._cut_off = None, 0
@@ -221,17 +225,27 @@ class FrontierExploration:
         failed_leg = travel.current_leg()
         self._travel = None
         if state == "arrived":
+            self._bad_starts, self._in_vain = set(), 0
             match = self._matcher.match([end]).get(end)
             yaw = match.yaw_rad if match is not None and match.yaw_rad is not None else 0.0
             return self._leave(end, yaw, decision.notes)
         if state == "unclear":
             self._doubted.add(travel.next_leg())
             return Decision("hold", why=f"planning again: {decision.why}", notes=decision.notes)
-        return self._travel_failed(end, failed_leg, decision)
+        if failed_leg is None:
+            self._bad_starts.add(travel.path[travel.index])
+        self._in_vain += 1
+        blamed = travel.path[travel.index] == end or self._in_vain > TRAVELS_IN_VAIN
+        return self._travel_failed(end, failed_leg, decision, blamed=blamed)
 
-    def _travel_failed(self, end: int, failed_leg: Leg | None, decision: Decision) -> Decision:
-        """Twice in vain: that node's directions are closed, so that exploration always ends."""
-        self._failures[end] = self._failures.get(end, 0) + 1
+    def _travel_failed(
+        self, end: int, failed_leg: Leg | None, decision: Decision, *, blamed: bool
+    ) -> Decision:
+        """Twice in vain: that node's directions are closed, so that exploration always ends.
+
+        A way that ended early blames its end only when others ended before it.
+        """
+        self._failures[end] = self._failures.get(end, 0) + blamed
         notes = (*decision.notes, Note("travel_failed", f"to node {end}: {decision.why}"))
         if failed_leg is not None:
             notes += (self._experience.failed(failed_leg, decision.why),)

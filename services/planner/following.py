@@ -8,6 +8,7 @@ from services.planner.experience import Experience, Leg, leg
 from services.planner.ports import GOAL, Decision, MapAccess, Matcher, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.similarity import apart_rad, close_enough, heading_of, similarity, trusted
+from services.planner.steadiness import SteadyHeading
 from services.planner.surroundings import is_clear
 from shared.messages.features import Features
 from shared.messages.matching import NodeMatch
@@ -53,6 +54,7 @@ class PathFollower:
         self.index = 0
         self._bad = 0
         self._heading_rad: float | None = None
+        self._steady = SteadyHeading()
         self._best_rad = float("inf")
         self._stale = 0
         self.progress = Progress(via_points=tuple(path))
@@ -73,7 +75,12 @@ class PathFollower:
         if match is None or found is None or s_cv < self._profile.s_via_min:
             return self._unseen(via, s_cv, notes)
         self._bad = 0
-        self._heading_rad, method = found
+        seen_rad, method = found
+        self._heading_rad = (
+            seen_rad
+            if self._strict
+            else self._steady.follow(via, seen_rad, close=s_cv >= self._profile.s_node_max)
+        )
         if self._no_progress(match):
             if self._near_end(match):
                 return "arrived", self._hold(f"as near to {_name(via)} as obstacles allow, S {s_cv}", notes)
