@@ -189,7 +189,7 @@ class PathFollower:
 
     def _near_end(self, match: NodeMatch) -> bool:
         near = match.disparity_rad is not None and match.disparity_rad < self._profile.near_rad
-        near = near and similarity(match, self._profile) > self._profile.s_via_max
+        near = near and similarity(match, self._profile) > self._profile.s_near
         return self._at_end() and near and self._target.arrival_rad > 0.0
 
     def _report(self, via: int, s_cv: int, match: NodeMatch | None) -> None:

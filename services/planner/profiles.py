@@ -41,6 +41,7 @@ class Profile(BaseModel):
         far_rad: with less disparity than this an edge needs more than s_node_max: few matches that hardly
             move are far away, and so may the place be.
         arrival_rad: angular disparity at which a place is reached; 0 uses s_final.
+        near_rad, s_near: with less disparity and more S the robot may stop where obstacles end its way.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -70,6 +71,7 @@ class Profile(BaseModel):
     arrival_rad: float = Field(default=math.radians(1.0), ge=0.0)
     travel_arrival_rad: PositiveFloat = math.radians(3.5)
     near_rad: PositiveFloat = math.radians(4.0)
+    s_near: PositiveInt = 100
     heading_std_max_rad: PositiveFloat = math.radians(6.0)
     saturation_steps: PositiveInt = 5
     exploration_noise_rad: float = math.radians(50.0)
@@ -123,6 +125,7 @@ OUTDOOR = DEFAULT.model_copy(
         "arrival_rad": math.radians(0.6),
         "travel_arrival_rad": math.radians(2.5),
         "near_rad": math.radians(2.0),
+        "s_near": 240,
         "opening_m": 2.5,
         "blocked_m": 0.4,
         "doorway_m": 50.0,
