@@ -20,7 +20,6 @@ class Departure:
     sector: int
     heading_rad: float
     steps: int = 0
-    known_steps: int = 0
     unseen_steps: int = 0
     retreating: bool = False
     back_rad: float | None = None
