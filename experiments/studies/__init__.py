@@ -5,10 +5,12 @@ import typer
 from experiments.studies.disturbance import main as run_disturbance
 from experiments.studies.disturbance_matches import main as disturbance_matches
 from experiments.studies.failures import main as failures
+from experiments.studies.heading import main as heading
 from experiments.studies.heading_frames import main as heading_frames
 from experiments.studies.recovery import main as recovery
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, no_args_is_help=True)
+app.command("heading")(heading)
 app.command("heading-frames")(heading_frames)
 app.command("disturbance")(run_disturbance)
 app.command("disturbance-matches")(disturbance_matches)

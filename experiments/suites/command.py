@@ -16,8 +16,8 @@ from experiments.suites.bundle import MapBundle
 from experiments.suites.jobs import make_map, play_run
 from experiments.suites.markdown import run_row, suite_markdown
 from experiments.suites.plan import RunPlan
-from experiments.suites.workers import workers
 from experiments.tables import print_rows, wide_console
+from experiments.workers import workers
 
 POLL_S = 1.0
 SHOWN = ("world", "profile", "found", "final_distance_median_m", "spl_mean", "collisions", "steps_per_s")

@@ -13,10 +13,10 @@ TOLERANCE = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class PairVotes:
-    """One row per unordered pair i < j (Q6), antipodal pairs left out (Q4).
+    """One row per unordered pair i < j (Q6), in the order of numpy.triu_indices.
 
     Attributes:
-        directions: (P, 2) signed bisectors u_ij of equation (2.6).
+        directions: (P, 2) signed bisectors u_ij of equation (2.6); zero where a pair is antipodal (Q4).
         growth_rad: (P,) change of the pair's longitude difference, equation (2.9), radians.
     """
 
@@ -44,9 +44,9 @@ def pair_votes(current: FloatArray, target: FloatArray) -> PairVotes:
     b = (sign(np.sin(delta_c) * np.sin(delta_t)) + 1.0) / 2.0  # (2.5): the cross product is its sine
     bisector = u[i] + u[j]
     length = np.hypot(bisector[:, 0], bisector[:, 1])
-    keep = length > 1e-9
-    directions = (1.0 + b * (a - 1.0))[keep, None] * bisector[keep] / length[keep, None]  # (2.6)
-    return PairVotes(directions, (np.abs(delta_t) - np.abs(delta_c))[keep])
+    scale = np.where(length > 1e-9, 1.0 / np.maximum(length, 1e-9), 0.0)
+    directions = (1.0 + b * (a - 1.0))[:, None] * bisector * scale[:, None]  # (2.6)
+    return PairVotes(directions, np.abs(delta_t) - np.abs(delta_c))
 
 
 def sign(values: FloatArray) -> FloatArray:

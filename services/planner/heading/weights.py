@@ -1,6 +1,6 @@
-"""Weight functions f of methods 2 and 4, by name (THESIS row 20; Q1: unit unstated, degrees by default).
+"""Weight functions f of methods 2 and 4, by name (THESIS rows 20, 101; Q1: unit unstated, degrees here).
 
-Each maps an angle x = gain * angle to ln f(x): sums are formed from logarithms, so no exponential overflows.
+Each maps angles and a gain to ln f: sums are formed from logarithms, so no exponential overflows.
 """
 
 from collections.abc import Callable
@@ -11,32 +11,40 @@ from pydantic import BaseModel, ConfigDict, PositiveFloat
 
 from shared.geometry.angles import FloatArray
 
-WeightName = Literal["exp", "one", "linear", "sigmoid"]
+WeightName = Literal["exp", "one", "power", "sigmoid", "rank"]
 AngleUnit = Literal["deg", "rad"]
 
 
-def _exp(x: FloatArray) -> FloatArray:
-    return x
+def _exp(angle: FloatArray, gain: float) -> FloatArray:
+    return gain * angle
 
 
-def _one(x: FloatArray) -> FloatArray:
-    return np.zeros_like(x)
+def _one(angle: FloatArray, _gain: float) -> FloatArray:
+    return np.zeros_like(angle)
 
 
-def _linear(x: FloatArray) -> FloatArray:
-    """Logarithm of max(x, 0): only what moved towards the edge of the view counts."""
-    return np.where(x > 0.0, np.log(np.where(x > 0.0, x, 1.0)), -np.inf)
+def _power(angle: FloatArray, gain: float) -> FloatArray:
+    """max(angle, 0)^gain: only what moved towards the edge of the view counts."""
+    return np.where(angle > 0.0, gain * np.log(np.where(angle > 0.0, angle, 1.0)), -np.inf)
 
 
-def _sigmoid(x: FloatArray) -> FloatArray:
-    return -np.logaddexp(0.0, -x)
+def _sigmoid(angle: FloatArray, gain: float) -> FloatArray:
+    return -np.logaddexp(0.0, -gain * angle)
 
 
-LOG_WEIGHTS: dict[str, Callable[[FloatArray], FloatArray]] = {
+def _rank(angle: FloatArray, gain: float) -> FloatArray:
+    """(place among all, as a share)^gain; equal angles share a place. Free of the angles' size."""
+    _, inverse, counts = np.unique(angle, return_inverse=True, return_counts=True)
+    place = np.cumsum(counts) - (counts - 1) / 2.0
+    return np.asarray(gain * np.log(place[inverse] / max(len(angle), 1)))
+
+
+LOG_WEIGHTS: dict[str, Callable[[FloatArray, float], FloatArray]] = {
     "exp": _exp,
     "one": _one,
-    "linear": _linear,
+    "power": _power,
     "sigmoid": _sigmoid,
+    "rank": _rank,
 }
 
 
@@ -45,7 +53,7 @@ class WeightSettings(BaseModel):
 
     Attributes:
         name: key of LOG_WEIGHTS.
-        gain: factor on the angle, per `unit`.
+        gain: factor on the angle, per `unit`; exponent of 'power' and 'rank'.
         unit: whether the angle is in degrees or radians before the gain.
     """
 
@@ -57,7 +65,7 @@ class WeightSettings(BaseModel):
     def log_weights(self, angle_rad: FloatArray) -> FloatArray:
         """Logarithm (M,) of the weights of angles (M,), radians."""
         angle = np.rad2deg(angle_rad) if self.unit == "deg" else angle_rad
-        return np.asarray(LOG_WEIGHTS[self.name](self.gain * angle), dtype=np.float64)
+        return np.asarray(LOG_WEIGHTS[self.name](angle, self.gain), dtype=np.float64)
 
 
 UNWEIGHTED = WeightSettings(name="one")

@@ -19,14 +19,20 @@ def weight(name, degrees, **options):
         ("exp", -3.0, {"gain": 0.5}, np.exp(-1.5)),
         ("exp", 90.0, {"unit": "rad"}, np.exp(np.pi / 2)),
         ("one", 55.0, {}, 1.0),
-        ("linear", 4.0, {"gain": 2.0}, 8.0),
-        ("linear", -4.0, {}, 0.0),
+        ("power", 4.0, {}, 4.0),
+        ("power", 4.0, {"gain": 2.0}, 16.0),
+        ("power", -4.0, {}, 0.0),
         ("sigmoid", 0.0, {}, 0.5),
         ("sigmoid", 1.0, {}, 1.0 / (1.0 + np.exp(-1.0))),
     ],
 )
 def test_weight_of_known_angle(name, degrees, options, expected):
     assert weight(name, degrees, **options) == pytest.approx(expected)
+
+
+def test_ranks_are_shares_and_equal_angles_share_a_place():
+    weights = np.exp(WeightSettings(name="rank").log_weights(np.array([0.3, -0.1, 0.3, 0.2])))
+    np.testing.assert_allclose(weights, [3.5 / 4, 1 / 4, 3.5 / 4, 2 / 4])
 
 
 def test_every_name_has_a_function():

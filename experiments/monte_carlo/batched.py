@@ -1,0 +1,91 @@
+"""Methods 1 to 6 for a whole batch of runs at once, on any torch device. Radians, float64.
+
+The same formulas as services/planner/heading, which a test compares; here without a Python loop, because path
+tracking asks for hundreds of millions of headings.
+"""
+
+from collections.abc import Callable
+
+import torch
+from torch import Tensor
+
+TOLERANCE = 1e-12
+
+
+def batch_headings(method: str, current: Tensor, target: Tensor, gain_per_rad: float) -> Tensor:
+    """Headings (B,) from longitudes and latitudes (B, N, 2); weights are exp(gain_per_rad * angle)."""
+    one = _methods()[method]
+    vector, _ = one(current, target, gain_per_rad)
+    return torch.atan2(vector[:, 1], vector[:, 0])
+
+
+Vote = tuple[Tensor, Tensor]
+"""(B, 2) vector and (B,) logarithm of its scale."""
+
+
+def _methods() -> dict[str, Callable[[Tensor, Tensor, float], Vote]]:
+    return {
+        "1": lambda c, t, _: _pairs(c, t, None),
+        "2": lambda c, t, g: _pairs(c, t, g),
+        "3": lambda c, t, _: _singles(c, t, None),
+        "4": lambda c, t, g: _singles(c, t, g),
+        "5": lambda c, t, g: _sum(_pairs(c, t, None), _singles(c, t, g)),
+        "6": lambda c, t, g: _sum(_pairs(c, t, g), _singles(c, t, g)),
+    }
+
+
+def _pairs(current: Tensor, target: Tensor, gain: float | None) -> Vote:
+    """Equations (2.1) to (2.10). Every pair is met twice, as (i, j) and (j, i), which changes no direction.
+
+    Without trigonometry but for the weights: a sum of unit vectors has length sqrt(2 + 2 dot), and the
+    bisectors of keypoint i add up to u_i times the sum of its row.
+    """
+    u, v = _units(current), _units(target)
+    dot_c, dot_t = u @ u.mT, v @ v.mT
+    cross = _crosses(u) * _crosses(v)
+    vote = 1.0 + (_sign(cross) + 1.0) / 2.0 * (_sign(dot_c - dot_t) - 1.0)
+    vote = vote * (2.0 + 2.0 * dot_c).clamp_min(TOLERANCE).rsqrt()
+    scale = torch.zeros_like(u[:, 0, 0])
+    if gain is not None:
+        logs = gain * (torch.acos(dot_t.clamp(-1.0, 1.0)) - torch.acos(dot_c.clamp(-1.0, 1.0)))
+        scale = logs.amax((1, 2))
+        vote = vote * torch.exp(logs - scale[:, None, None])
+    vote.diagonal(dim1=1, dim2=2).zero_()
+    return (vote @ u).sum(1), scale
+
+
+def _singles(current: Tensor, target: Tensor, gain: float | None) -> Vote:
+    """Equations (2.11) to (2.18) over all matches."""
+    u = _units(current)
+    lat_c, lat_t = current[..., 1], target[..., 1]
+    a = _sign(torch.cos(lat_c) - torch.cos(lat_t))
+    b = (_sign(torch.sin(lat_c) * torch.sin(lat_t)) + 1.0) / 2.0
+    growth = None if gain is None else gain * (lat_t.abs() - lat_c.abs())
+    return _weighted((1.0 + b * (a - 1.0))[..., None] * u, growth)
+
+
+def _weighted(votes: Tensor, log_weights: Tensor | None) -> Vote:
+    if log_weights is None:
+        return votes.sum(1), torch.zeros_like(votes[:, 0, 0])
+    scale = log_weights.amax(1)
+    return (votes * torch.exp(log_weights - scale[:, None])[..., None]).sum(1), scale
+
+
+def _sum(a: Vote, b: Vote) -> Vote:
+    scale = torch.maximum(a[1], b[1])
+    return a[0] * torch.exp(a[1] - scale)[:, None] + b[0] * torch.exp(b[1] - scale)[:, None], scale
+
+
+def _units(lonlat: Tensor) -> Tensor:
+    """Longitude unit vectors (B, N, 2)."""
+    return torch.stack([torch.cos(lonlat[..., 0]), torch.sin(lonlat[..., 0])], -1)
+
+
+def _crosses(u: Tensor) -> Tensor:
+    """Cross products of all pairs (B, N, N)."""
+    turned = torch.stack([u[..., 1], -u[..., 0]], -1)
+    return turned @ u.mT
+
+
+def _sign(values: Tensor) -> Tensor:
+    return torch.where(values.abs() <= TOLERANCE, 0.0, torch.sign(values))

@@ -1,0 +1,107 @@
+"""All heading methods with bearing noise and wrong matches, which the thesis left out."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+
+from experiments.monte_carlo.scene import MonteCarloScene, Placement, draw_scene, lonlat_from
+from experiments.monte_carlo.tracking import follow
+from experiments.monte_carlo.votes import draw_choices
+from services.planner.heading.registry import heading_method
+from shared.geometry.angles import FloatArray, wrap_rad
+from shared.geometry.two_view import two_view
+from shared.geometry.two_view_types import TwoViewSettings
+
+ALL_METHODS = ("1", "2", "3", "4", "5", "6", "epipolar")
+NO_ANSWER_DEG = 90.0
+"""Error of a method that gives no heading: what a blind guess makes on average."""
+
+
+@dataclass(frozen=True)
+class NoisePlan:
+    """Runs in one scene under one condition.
+
+    Attributes:
+        noise_deg: standard deviation of each longitude and latitude, both frames.
+        outliers: share of the matches whose target bearing belongs to another keypoint.
+    """
+
+    placement: Placement
+    scene: int
+    seed: int
+    runs: int
+    count: int = 60
+    noise_deg: float = 0.5
+    outliers: float = 0.2
+
+    @property
+    def two_view(self) -> TwoViewSettings:
+        """Limits for this noise: an inlier lies within three deviations; these scenes are flat."""
+        threshold_deg = max(0.7, 3.0 * self.noise_deg)
+        return TwoViewSettings(threshold_rad=float(np.deg2rad(threshold_deg)), fallback=False)
+
+
+def noisy_errors(plan: NoisePlan) -> FloatArray:
+    """Absolute heading errors (methods, runs), degrees."""
+    rng, scene = _begin(plan)
+    chosen = draw_choices(plan.runs, plan.count, len(scene.points), rng)
+    errors = np.empty((len(ALL_METHODS), plan.runs))
+    for run, indices in enumerate(chosen):
+        current = lonlat_from(scene.current, scene.points[indices])
+        target = lonlat_from(scene.target, scene.points[indices])
+        current, target = (
+            disturbed(current, plan, rng),
+            with_outliers(disturbed(target, plan, rng), plan, rng),
+        )
+        geometry = two_view(current, target, rng, plan.two_view)
+        for row, name in enumerate(ALL_METHODS):
+            heading = heading_method(name)(current, target, geometry).heading_rad
+            error = None if heading is None else abs(float(wrap_rad(heading - scene.heading_rad)))
+            errors[row, run] = NO_ANSWER_DEG if error is None else np.rad2deg(error)
+    return errors
+
+
+def epipolar_paths(plan: NoisePlan) -> FloatArray:
+    """DCPE (runs,) of paths that follow the epipolar direction, percent; see tracking.scene_paths.
+
+    A step without an answer keeps the heading of the step before.
+    """
+    rng, scene = _begin(plan)
+    chosen = draw_choices(plan.runs, plan.count, len(scene.points), rng)
+    return np.concatenate([_path(scene, row[None], plan, rng) for row in chosen])
+
+
+def _path(
+    scene: MonteCarloScene, chosen: np.ndarray, plan: NoisePlan, rng: np.random.Generator
+) -> FloatArray:
+    target = with_outliers(
+        disturbed(lonlat_from(scene.target, scene.points[chosen[0]]), plan, rng), plan, rng
+    )
+    last = [0.0]
+
+    def steer(current: torch.Tensor, _target: torch.Tensor) -> torch.Tensor:
+        result = two_view(disturbed(current[0].numpy(), plan, rng), target, rng, plan.two_view)
+        if result.usable and result.heading_rad is not None:
+            last[0] = result.heading_rad
+        return torch.tensor(last, dtype=torch.float64)
+
+    return follow(scene, chosen, steer)
+
+
+def disturbed(lonlat: FloatArray, plan: NoisePlan, rng: np.random.Generator) -> FloatArray:
+    """Bearings with normal noise."""
+    return lonlat + rng.normal(0.0, np.deg2rad(plan.noise_deg), lonlat.shape)
+
+
+def with_outliers(target: FloatArray, plan: NoisePlan, rng: np.random.Generator) -> FloatArray:
+    """Target bearings of which a share is replaced by those of other keypoints, in a circle."""
+    wrong = rng.permutation(len(target))[: round(plan.outliers * len(target))]
+    mixed = target.copy()
+    mixed[wrong] = target[np.roll(wrong, 1)]
+    return mixed
+
+
+def _begin(plan: NoisePlan) -> tuple[np.random.Generator, MonteCarloScene]:
+    rng = np.random.default_rng([plan.seed, plan.scene, len(plan.placement)])
+    return rng, draw_scene(plan.placement, rng)
