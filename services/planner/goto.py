@@ -20,6 +20,10 @@ MAX_LOST = 12
 MAX_STUCK = 12
 SEARCH_STEPS = 150
 LAST_LEG_RAD = 1.0
+GOAL_SHARE = 0.6
+"""Least similarity of an arrival relative to that of the most similar place: where the goal picture was taken,
+nothing resembles it more than the goal. Of 75 arrivals in three worlds the right ones had S 159 and more, a
+look-alike had 31 among places of 60 and more."""
 
 
 class Goto:
@@ -53,7 +57,11 @@ class Goto:
         state, decision = self._follower.step(observation, self._matcher)
         self.progress = self._follower.progress
         if state == "arrived":
-            return self._end("succeeded", "", decision.why, notes + decision.notes)
+            s_map = self._similarity_of_map()
+            if self._follower.progress.similarity >= GOAL_SHARE * s_map:
+                return self._end("succeeded", "", decision.why, notes + decision.notes)
+            why = f"a look-alike of the goal: a place of the map resembles this view more, S {s_map}"
+            state, decision = "stuck", replace(decision, why=f"{decision.why}, {why}")
         if state == "going":
             self._last_heading_rad = decision.heading_rad
             return _with_notes(decision, notes)
@@ -62,6 +70,13 @@ class Goto:
     def _localise(self) -> dict[int, NodeMatch]:
         """The goal and the most similar places of the whole map, from the current frame alone."""
         return self._matcher.match([], LOCALISE_K, (self._goal,))
+
+    def _similarity_of_map(self) -> int:
+        """How much the most similar place of the map resembles this view."""
+        if self._profile.path_cost == "nodes":
+            return 0
+        here = [match for node, match in self._localise().items() if node != GOAL]
+        return max((similarity(match, self._profile) for match in here), default=0)
 
     def _plan_notes(self, here: dict[int, NodeMatch], ranges: Ranges) -> tuple[Note, ...]:
         """What localisation says about edges: one that just failed, suspended ones that are seen free."""

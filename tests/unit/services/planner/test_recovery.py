@@ -10,6 +10,7 @@ from services.drive.core import DriveLimits
 from services.planner.explore import FrontierExploration
 from services.planner.goto import Goto
 from services.planner.profiles import DEFAULT
+from shared.messages.matching import NodeMatch
 from simulator.parts import Material, box
 from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, Walker, picture, run
 
@@ -96,6 +97,28 @@ def test_a_stretch_without_features_is_crossed(explored):
     matcher.blind = False
     decision, _ = run(world, mission, DriveLimits(), 1500)
     assert decision.outcome == "succeeded", decision.why
+
+
+def test_a_look_alike_of_the_goal_is_not_taken_for_it(explored):
+    """Round the start 31 matches agree that the robot stands where the goal picture was taken."""
+    world, maps, matcher = explored
+    answer, deceived = matcher.match, []
+
+    def match(node_ids, best_k=0, targets=()):
+        found = answer(node_ids, best_k, targets)
+        for number in range(1, len(targets) + 1):
+            if math.dist(world.pose[:2], LOUNGE[:2]) < 0.8:
+                deceived.append(world.pose)
+                found[-number] = NodeMatch(
+                    node_id=-number, raw_matches=60, inliers=31, status="no_baseline", disparity_rad=0.001
+                )
+        return found
+
+    matcher.match = match
+    decision, _ = go(explored, HALL)
+    assert deceived
+    assert decision.outcome == "succeeded", decision.why
+    assert math.dist(world.pose[:2], HALL[:2]) < 0.35
 
 
 @pytest.mark.parametrize("seed", range(3))
