@@ -101,7 +101,7 @@ def test_a_stretch_without_features_is_crossed(explored):
 
 def test_a_look_alike_of_the_goal_is_not_taken_for_it(explored):
     """Round the start 31 matches agree that the robot stands where the goal picture was taken."""
-    world, maps, matcher = explored
+    world, _, matcher = explored
     answer, deceived = matcher.match, []
 
     def match(node_ids, best_k=0, targets=()):
