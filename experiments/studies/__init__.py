@@ -7,6 +7,7 @@ from experiments.studies.disturbance_matches import main as disturbance_matches
 from experiments.studies.failures import main as failures
 from experiments.studies.heading import main as heading
 from experiments.studies.heading_frames import main as heading_frames
+from experiments.studies.matching import main as matching
 from experiments.studies.recovery import main as recovery
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, no_args_is_help=True)
@@ -15,6 +16,7 @@ app.command("heading-frames")(heading_frames)
 app.command("disturbance")(run_disturbance)
 app.command("disturbance-matches")(disturbance_matches)
 app.command("failures")(failures)
+app.command("matching")(matching)
 app.command("recovery")(recovery)
 
 

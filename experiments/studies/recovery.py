@@ -8,7 +8,7 @@ import numpy as np
 import typer
 
 from experiments import options
-from experiments.failure import one_line_errors
+from experiments.failure import ExperimentError, one_line_errors
 from experiments.map_client import require_map
 from experiments.output import rounded, write_json
 from experiments.rounds import EXTRACT_TIMEOUT_S, MARGIN_M, Game, Round
@@ -23,6 +23,7 @@ from shared.topics import EXTRACT
 from simulator.freespace import FreeSpace, free_space
 from simulator.world_file import load_world
 
+TRIES = 10
 CARRIED_AT_STEPS = (5, 40)
 MAX_STEPS = 1500
 DOOR, DOOR_NAME, DOOR_APART_M = "bookshelf", "shut door", 0.5
@@ -68,7 +69,15 @@ def main(
 
 
 def carried(game: Game, space: FreeSpace, seed: int, rng: np.random.Generator) -> Row:
-    """A round in which the robot is put elsewhere after a few steps."""
+    """A round in which the robot is put elsewhere after a few steps; a shorter round is played again."""
+    for _ in range(TRIES):
+        row = _carried_once(game, space, seed, rng)
+        if row is not None:
+            return row
+    raise ExperimentError(f"{TRIES} rounds ended before the robot could be carried: choose another --seed")
+
+
+def _carried_once(game: Game, space: FreeSpace, seed: int, rng: np.random.Generator) -> Row | None:
     start, hider = game.choose()
     away = Pose(**dict(zip(("x_m", "y_m", "yaw_rad"), space.random_pose(rng, MARGIN_M), strict=True)))
     at_step = int(rng.integers(*CARRIED_AT_STEPS))
@@ -81,8 +90,7 @@ def carried(game: Game, space: FreeSpace, seed: int, rng: np.random.Generator) -
             game.hand.place_robot(away)
 
     played = game.seek(start, hider, seed, MAX_STEPS, carry)
-    good = done and (played.success or bool(played.run.status.failure))
-    return {**_outcome(played), "good": good}
+    return {**_outcome(played), "good": played.success or bool(played.run.status.failure)} if done else None
 
 
 def shut_door(

@@ -36,7 +36,7 @@ def extract(
         else np.asarray(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), dtype=np.uint8)
     )
     views = representation.views(gray)
-    found = [extractor.detect(view.gray) for view in views]
+    found = extractor.detect([view.gray for view in views])
     max_lat_rad = float(np.deg2rad(90.0 - profile.crop_deg))
     view_index, own_index, lonlat, scores = _merge(views, found, max_lat_rad)
     chosen = strongest(lonlat, scores, profile.keypoints)

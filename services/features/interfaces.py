@@ -68,8 +68,8 @@ class Extractor(Protocol):
 
     distance: Distance
 
-    def detect(self, gray: Image) -> Detections:
-        """Find keypoint candidates, many more than are kept."""
+    def detect(self, grays: Sequence[Image]) -> list[Detections]:
+        """Find keypoint candidates in views of one size, many more than are kept."""
         ...
 
     def describe(

@@ -3,7 +3,7 @@
 from services.features.decoding import decode_picture
 from services.features.extraction import extract
 from services.features.pipelines import Profile
-from services.features.registry import create_extractor, create_matcher, create_representation
+from services.features.registry import Runtime, create_extractor, create_matcher, create_representation
 from services.features.thumbnail import make_thumbnail
 from services.features.verification import two_view_settings
 from shared.messages.features import Features
@@ -13,12 +13,19 @@ from shared.messages.sensors import Frame
 class Pipeline:
     """The plugins of one profile, ready to use."""
 
-    def __init__(self, profile: Profile, thumbnail_width_px: int = 320, thumbnail_quality: int = 70) -> None:
+    def __init__(
+        self,
+        profile: Profile,
+        thumbnail_width_px: int = 320,
+        thumbnail_quality: int = 70,
+        runtime: Runtime | None = None,
+    ) -> None:
+        runtime = runtime or Runtime()
         self.profile = profile
         self.identity = profile.identity
-        self.extractor = create_extractor(profile)
+        self.extractor = create_extractor(profile, runtime)
         self.representation = create_representation(profile)
-        self.matcher = create_matcher(profile, self.extractor.distance)
+        self.matcher = create_matcher(profile, self.extractor.distance, runtime)
         self.verification = two_view_settings(profile.verification_deg, uneven_ground=profile.uneven_ground)
         self._enough_px = profile.resize[1] if profile.resize is not None else None
         self._thumbnail = (thumbnail_width_px, thumbnail_quality)

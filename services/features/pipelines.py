@@ -18,6 +18,8 @@ class Profile:
         upright: describe keypoints without turning them; the robot's camera always stands upright.
         verification_deg: largest angle off the epipolar plane of a verified match, degrees.
         uneven_ground: where the plane explains too little, try any motion of the camera.
+        detector: of the patch networks: gftt, harris or keynet (kornia's).
+        affnet: fit the shape of patches with AffNet; `upright` false turns them with OriNet (THESIS row 13).
     """
 
     extractor: str
@@ -30,6 +32,8 @@ class Profile:
     upright: bool = True
     verification_deg: float = 0.7
     uneven_ground: bool = False
+    detector: str = "gftt"
+    affnet: bool = False
 
     @property
     def identity(self) -> str:
@@ -54,15 +58,60 @@ PROFILES: dict[str, Profile] = {
     "orb_tangent": Profile("orb", representation="tangent", resize=None),
     "beblid_tangent": Profile("beblid", representation="tangent", resize=None),
     "sift_planar": Profile("sift", representation="planar"),
+    "superpoint_superglue": Profile("superpoint", matcher="superglue", keypoints=150),
 }
+
+CLASSIC = ("sift", "orb", "beblid")
+PATCH_NETWORKS = ("tfeat", "hardnet", "hardnet8", "sosnet", "mkd")
+KEYPOINT_NETWORKS = (
+    "aliked-t16",
+    "aliked-n16",
+    "aliked-n16rot",
+    "aliked-n32",
+    "disk",
+    "xfeat",
+    "dedode",
+    "superpoint",
+)
+EXTRACTORS = CLASSIC + PATCH_NETWORKS + KEYPOINT_NETWORKS
+REPRESENTATIONS = ("equirectangular", "tangent", "planar")
+MATCHERS = ("mutual_ratio", "brute_force", "lightglue", "superglue", "superglue-outdoor")
+LIGHTGLUE = ("aliked-n16", "aliked-n16rot", "aliked-n32", "disk", "dedode", "xfeat", "superpoint")
+"""Extractors for which somebody trained a LightGlue."""
 
 
 def find_profile(name: str) -> Profile:
-    """Return the profile of this name.
+    """Return a named profile, or one put together as extractor[/representation[/matcher]].
 
     Raises:
-        ValueError: there is none; the text lists those there are.
+        ValueError: no such name or plugin, or plugins that do not work together; the text says why.
     """
-    if name not in PROFILES:
-        raise ValueError(f"pipeline must be one of {sorted(PROFILES)}, got {name!r}")
-    return PROFILES[name]
+    if name in PROFILES:
+        return PROFILES[name]
+    extractor, representation, matcher, *rest = [*name.split("/"), "", "", ""][: max(3, name.count("/") + 1)]
+    if extractor not in EXTRACTORS or rest:
+        raise ValueError(
+            f"pipeline must be one of {sorted(PROFILES)} or extractor[/representation[/matcher]] "
+            f"with an extractor of {sorted(EXTRACTORS)}, got {name!r}"
+        )
+    for kind, value, choices in (
+        ("representation", representation, REPRESENTATIONS),
+        ("matcher", matcher, MATCHERS),
+    ):
+        if value and value not in choices:
+            raise ValueError(f"{kind} of pipeline {name!r} must be one of {list(choices)}, got {value!r}")
+    return combined(extractor, representation or "equirectangular", matcher or "mutual_ratio")
+
+
+def combined(extractor: str, representation: str, matcher: str) -> Profile:
+    """Profile of three plugins.
+
+    Raises:
+        ValueError: the matcher was not trained for the extractor.
+    """
+    if matcher.startswith("superglue") and extractor != "superpoint":
+        raise ValueError(f"matcher {matcher} was trained for superpoint alone, not for {extractor}")
+    if matcher == "lightglue" and extractor not in LIGHTGLUE:
+        raise ValueError(f"there is no lightglue for {extractor}, only for {', '.join(LIGHTGLUE)}")
+    resize = None if representation == "tangent" else (400, 800)
+    return Profile(extractor, representation, matcher, resize=resize)

@@ -1,15 +1,29 @@
 """Plugin name -> class, imported only when chosen: a classic pipeline loads no learned one's libraries."""
 
+from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
-from services.features.pipelines import Profile
+from services.features.pipelines import CLASSIC, Profile
 
 PLUGINS: dict[str, dict[str, str]] = {
     "extractor": {
         "sift": "services.features.extractors.sift:Sift",
         "orb": "services.features.extractors.orb:Orb",
         "beblid": "services.features.extractors.beblid:Beblid",
+        "tfeat": "services.features.extractors.tfeat:TFeat",
+        "hardnet": "services.features.extractors.hardnet:HardNet",
+        "hardnet8": "services.features.extractors.hardnet8:HardNet8",
+        "sosnet": "services.features.extractors.sosnet:SosNet",
+        "mkd": "services.features.extractors.mkd:Mkd",
+        "aliked-t16": "services.features.extractors.aliked:Aliked",
+        "aliked-n16": "services.features.extractors.aliked:Aliked",
+        "aliked-n16rot": "services.features.extractors.aliked:Aliked",
+        "aliked-n32": "services.features.extractors.aliked:Aliked",
+        "disk": "services.features.extractors.disk:Disk",
+        "xfeat": "services.features.extractors.xfeat:XFeat",
+        "dedode": "services.features.extractors.dedode:DeDoDe",
+        "superpoint": "services.features.extractors.superpoint:SuperPoint",
     },
     "representation": {
         "equirectangular": "services.features.representations.equirectangular:Equirectangular",
@@ -19,11 +33,27 @@ PLUGINS: dict[str, dict[str, str]] = {
     "matcher": {
         "mutual_ratio": "services.features.matchers.mutual_ratio:MutualRatio",
         "brute_force": "services.features.matchers.brute_force:BruteForce",
+        "lightglue": "services.features.matchers.lightglue:LightGlue",
+        "superglue": "services.features.matchers.superglue:SuperGlue",
+        "superglue-outdoor": "services.features.matchers.superglue:SuperGlue",
     },
 }
 
 
-def create(kind: str, name: str, *arguments: Any) -> Any:
+@dataclass(frozen=True)
+class Runtime:
+    """Where and how learned plugins run.
+
+    Attributes:
+        device: cpu or cuda.
+        trained: load trained weights; False leaves what torch's generator draws, to test shapes.
+    """
+
+    device: str = "cpu"
+    trained: bool = True
+
+
+def create(kind: str, name: str, *arguments: Any, **options: Any) -> Any:
     """Import and build one plugin.
 
     Raises:
@@ -33,12 +63,14 @@ def create(kind: str, name: str, *arguments: Any) -> Any:
     if name not in choices:
         raise ValueError(f"{kind} must be one of {sorted(choices)}, got {name!r}")
     module, attribute = choices[name].split(":")
-    return getattr(import_module(module), attribute)(*arguments)
+    return getattr(import_module(module), attribute)(*arguments, **options)
 
 
-def create_extractor(profile: Profile) -> Any:
+def create_extractor(profile: Profile, runtime: Runtime) -> Any:
     """Build the profile's extractor."""
-    return create("extractor", profile.extractor, profile)
+    if profile.extractor in CLASSIC:
+        return create("extractor", profile.extractor, profile)
+    return create("extractor", profile.extractor, profile, runtime.device, trained=runtime.trained)
 
 
 def create_representation(profile: Profile) -> Any:
@@ -46,6 +78,8 @@ def create_representation(profile: Profile) -> Any:
     return create("representation", profile.representation, profile)
 
 
-def create_matcher(profile: Profile, distance: str) -> Any:
+def create_matcher(profile: Profile, distance: str, runtime: Runtime) -> Any:
     """Build the profile's matcher for descriptors compared by `distance`."""
-    return create("matcher", profile.matcher, profile, distance)
+    if profile.matcher in ("mutual_ratio", "brute_force"):
+        return create("matcher", profile.matcher, profile, distance)
+    return create("matcher", profile.matcher, profile, distance, runtime.device, trained=runtime.trained)

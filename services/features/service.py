@@ -30,7 +30,8 @@ class FeatureService:
     def __init__(self, settings: FeaturesSettings, bus: Bus) -> None:
         cv2.setNumThreads(settings.threads)
         self._bus = bus
-        self._pipeline = Pipeline(settings.profile(), settings.thumbnail_width_px, settings.thumbnail_quality)
+        thumbnail = settings.thumbnail_width_px, settings.thumbnail_quality
+        self._pipeline = Pipeline(settings.profile(), *thumbnail, settings.runtime())
         self._frames = FrameCache(settings.frames_kept)
         self._maps = MapReader(bus, settings.map_timeout_s)
         self._incoming = bus.subscribe(FRAME, robot=settings.robot)

@@ -1,11 +1,13 @@
 """Settings of the feature service; importing them loads no image library."""
 
 from dataclasses import replace
+from typing import Literal
 
 from pydantic import Field, PositiveFloat, field_validator
 from pydantic_settings import SettingsConfigDict
 
 from services.features.pipelines import Profile, find_profile
+from services.features.registry import Runtime
 from shared.settings import ServiceSettings
 
 
@@ -13,8 +15,9 @@ class FeaturesSettings(ServiceSettings):
     """Read from the environment, e.g. FEATURES_PIPELINE=thesis.
 
     Attributes:
-        pipeline: profile name, see `pipelines`.
+        pipeline: a named profile or extractor/representation/matcher, see `pipelines`.
         uneven_ground: verify by any motion of the camera where the plane explains too little.
+        device: where networks run: cpu or cuda.
         threads: cores OpenCV may use.
         frames_kept: newest frames whose features a MATCH can name by number.
         map_timeout_s: longest wait for the map store.
@@ -26,6 +29,7 @@ class FeaturesSettings(ServiceSettings):
 
     pipeline: str = "sift"
     uneven_ground: bool = False
+    device: Literal["cpu", "cuda"] = "cpu"
     threads: int = Field(default=2, ge=1, le=64)
     frames_kept: int = Field(default=8, ge=1, le=1024)
     map_timeout_s: PositiveFloat = 5.0
@@ -35,6 +39,10 @@ class FeaturesSettings(ServiceSettings):
     def profile(self) -> Profile:
         """The pipeline's profile with what these settings replace."""
         return replace(find_profile(self.pipeline), uneven_ground=self.uneven_ground)
+
+    def runtime(self) -> Runtime:
+        """Where networks run."""
+        return Runtime(self.device)
 
     @field_validator("pipeline")
     @classmethod

@@ -27,6 +27,7 @@ COMMANDS: dict[str, LazyCommand] = {
     "calibrate": LazyCommand("experiments.calibrate", "Measure the thresholds of a pipeline."),
     "bench": LazyCommand("experiments.bench", "Time the stages of the control loop."),
     "world": LazyCommand("experiments.worlds", "Check a world file before anybody drives in it."),
+    "models": LazyCommand("experiments.models", "Trained weights of the learned pipelines."),
     "map": LazyCommand("experiments.maps", "List, export, import, rename and delete maps."),
 }
 

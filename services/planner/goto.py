@@ -17,7 +17,7 @@ from shared.messages.sensors import Ranges
 
 LOCALISE_K = 8
 MAX_LOST = 12
-MAX_STUCK = 12
+MAX_STUCK = 8
 SEARCH_STEPS = 150
 LAST_LEG_RAD = 1.0
 GOAL_SHARE = 0.6

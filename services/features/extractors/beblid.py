@@ -1,5 +1,6 @@
 """BEBLID (Suarez et al. 2020): boosted binary descriptor, 64 bytes (thesis, appendix A), on ORB's corners."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import cv2
@@ -26,9 +27,9 @@ class Beblid:
         self._beblid = cv2.xfeatures2d.BEBLID.create(ORB_SCALE, cv2.xfeatures2d.BEBLID_SIZE_512_BITS)
         self._upright = profile.upright
 
-    def detect(self, gray: Image) -> Detections:
+    def detect(self, grays: Sequence[Image]) -> list[Detections]:
         """Find oriented FAST corners."""
-        return detections_from_keypoints(self._orb.detect(gray, None))
+        return [detections_from_keypoints(self._orb.detect(gray, None)) for gray in grays]
 
     def describe(
         self, gray: Image, detections: Detections, chosen: IndexArray

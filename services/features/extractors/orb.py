@@ -1,5 +1,6 @@
 """ORB (Rublee et al. 2011): oriented FAST corners, 256 comparisons as 32 bytes (thesis, appendix A)."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import cv2
@@ -32,9 +33,9 @@ class Orb:
         self._orb = create_orb(profile)
         self._upright = profile.upright
 
-    def detect(self, gray: Image) -> Detections:
+    def detect(self, grays: Sequence[Image]) -> list[Detections]:
         """Find oriented FAST corners."""
-        return detections_from_keypoints(self._orb.detect(gray, None))
+        return [detections_from_keypoints(self._orb.detect(gray, None)) for gray in grays]
 
     def describe(
         self, gray: Image, detections: Detections, chosen: IndexArray

@@ -4,6 +4,8 @@ Lowe 2004 for detector and descriptor; Arandjelovic and Zisserman 2012 for RootS
 a unit vector whose Euclidean distance is the Hellinger distance of d. Bytes hold 512 d', clipped at 255.
 """
 
+from collections.abc import Sequence
+
 import cv2
 import numpy as np
 import numpy.typing as npt
@@ -28,12 +30,15 @@ class Sift:
         self._sift = cv2.SIFT.create(nfeatures=0, contrastThreshold=CONTRAST, edgeThreshold=10.0, sigma=1.6)
         self._upright = profile.upright
 
-    def detect(self, gray: Image) -> Detections:
+    def detect(self, grays: Sequence[Image]) -> list[Detections]:
         """Find extrema of the difference of Gaussians.
 
         The score is contrast times the root of the size: large blobs are found again from further away
         (measured at 1 to 1.5 m: 48 verified matches instead of 36 by contrast alone).
         """
+        return [self._of_view(gray) for gray in grays]
+
+    def _of_view(self, gray: Image) -> Detections:
         found = detections_from_keypoints(self._sift.detect(gray, None))
         sizes = np.array([keypoint.size for keypoint in found.handle], dtype=np.float32)
         once = first_of_each(np.column_stack([found.pixels, sizes]))

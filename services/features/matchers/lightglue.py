@@ -1,0 +1,64 @@
+"""LightGlue (Lindenberger et al. 2023): matching by attention, as kornia has it."""
+
+from collections.abc import Sequence
+
+import kornia.feature as kf
+import numpy as np
+import torch
+
+from services.features.interfaces import Distance, FeatureSet, IndexArray
+from services.features.matchers.pixels import HEIGHT_PX, WIDTH_PX, pixels_of
+from services.features.networks.runtime import device_named, loading
+from services.features.pipelines import Profile
+
+FEATURES = {
+    "aliked-n16": "aliked",
+    "aliked-n16rot": "aliked",
+    "aliked-n32": "aliked",
+    "disk": "disk",
+    "dedode": "dedodeb",
+    "xfeat": "xfeat",
+    "superpoint": "superpoint",
+}
+"""Extractor -> name of the weights trained for it."""
+
+
+class LightGlue:
+    """Mutual assignments above the network's own threshold."""
+
+    def __init__(
+        self, profile: Profile, distance: Distance, device: str = "cpu", *, trained: bool = True
+    ) -> None:
+        del distance
+        self._device = device_named(device)
+        features = FEATURES[profile.extractor]
+        self._network = _build(features, trained=trained).to(self._device).eval()
+        self._size = torch.tensor([[WIDTH_PX, HEIGHT_PX]], dtype=torch.float32, device=self._device)
+
+    def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[IndexArray]:
+        """(M, 2) index pairs per other, in the order of the query."""
+        one = self._picture(query)
+        pairs = []
+        for other in others:
+            if len(query) == 0 or len(other) == 0:
+                pairs.append(np.zeros((0, 2), dtype=np.intp))
+                continue
+            with torch.inference_mode():
+                found = self._network({"image0": one, "image1": self._picture(other)})["matches"][0]
+            pairs.append(found.cpu().numpy().astype(np.intp).reshape(-1, 2))
+        return pairs
+
+    def _picture(self, words: FeatureSet) -> dict[str, torch.Tensor]:
+        return {
+            "keypoints": pixels_of(words.lonlat_rad, self._device),
+            "descriptors": torch.as_tensor(words.descriptors[None].astype(np.float32), device=self._device),
+            "image_size": self._size,
+        }
+
+
+def _build(features: str, *, trained: bool) -> torch.nn.Module:
+    if trained:
+        with loading(f"lightglue-{features.removesuffix('b')}"):
+            return kf.LightGlue(features)
+    known = kf.LightGlue.features[features]
+    return kf.LightGlue(None, **{key: value for key, value in known.items() if key != "weights"})

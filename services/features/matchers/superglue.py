@@ -1,0 +1,61 @@
+"""SuperGlue (Sarlin et al. 2020), the thesis's matcher of SuperPoint; non-commercial weights."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import torch
+
+from services.features.interfaces import Distance, FeatureSet, IndexArray
+from services.features.matchers.pixels import HEIGHT_PX, WIDTH_PX, pixels_of
+from services.features.networks.non_commercial import require_consent
+from services.features.networks.runtime import device_named, loading
+from services.features.pipelines import Profile
+
+REPOSITORY = "magic-leap-community/superglue_{}"
+
+
+class SuperGlue:
+    """Indoor weights, or outdoor ones by the plugin's name (Q23)."""
+
+    def __init__(
+        self, profile: Profile, distance: Distance, device: str = "cpu", *, trained: bool = True
+    ) -> None:
+        del distance
+        from transformers import SuperGlueConfig, SuperGlueForKeypointMatching
+
+        self._device = device_named(device)
+        if trained:
+            require_consent("superglue")
+            place = "outdoor" if profile.matcher.endswith("outdoor") else "indoor"
+            with loading(f"superglue-{place}"):
+                network = SuperGlueForKeypointMatching.from_pretrained(REPOSITORY.format(place))
+        else:
+            network = SuperGlueForKeypointMatching(SuperGlueConfig())
+        self._network = network.to(self._device).eval()
+
+    def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[IndexArray]:
+        """(M, 2) index pairs per other, in the order of the query."""
+        return [self._pair(query, other) for other in others]
+
+    def _pair(self, query: FeatureSet, other: FeatureSet) -> IndexArray:
+        count = max(len(query), len(other))
+        if min(len(query), len(other)) == 0:
+            return np.zeros((0, 2), dtype=np.intp)
+        keypoints = torch.zeros(1, 2, count, 2, device=self._device)
+        descriptors = torch.zeros(1, 2, count, query.descriptors.shape[1], device=self._device)
+        scores = torch.zeros(1, 2, count, device=self._device)
+        mask = torch.zeros(1, 2, count, dtype=torch.int, device=self._device)
+        for side, words in enumerate((query, other)):
+            size = len(words)
+            keypoints[0, side, :size] = pixels_of(words.lonlat_rad, self._device)[0]
+            descriptors[0, side, :size] = torch.as_tensor(words.descriptors.astype(np.float32))
+            scores[0, side, :size] = torch.as_tensor(words.scores)
+            mask[0, side, :size] = 1
+        with torch.inference_mode():
+            # The public call detects anew with SuperPoint; this is the matching alone.
+            matches = self._network._match_image_pair(
+                keypoints, descriptors, scores, HEIGHT_PX, WIDTH_PX, mask=mask
+            )[0][0, 0, : len(query)]
+        target = matches.cpu().numpy().astype(np.intp)
+        rows = np.flatnonzero((target >= 0) & (target < len(other)))
+        return np.stack([rows, target[rows]], axis=1)

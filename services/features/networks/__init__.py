@@ -1,0 +1,1 @@
+"""What the learned plugins share: device, trained weights, the two kinds of network."""
