@@ -40,5 +40,5 @@ def curve_of(
     accepted = distance[None, :] <= levels[:, None]
     right = (accepted & correct).sum(axis=1)
     recall, precision = right / correspondences, right / np.maximum(accepted.sum(axis=1), 1)
-    order = np.lexsort((precision, recall))
+    order = np.lexsort((-precision, recall))  # of equal recalls the best counts
     return Curve(recall[order], precision[order])
