@@ -1,0 +1,43 @@
+"""The feature service's answers, worked out in this process."""
+
+from collections.abc import Sequence
+
+from experiments.topological_navigation.memory_map import MemoryMap
+from services.features.map_cache import Place
+from services.features.matching_requests import pair, verify_paired
+from services.features.pipeline import Pipeline
+from shared.messages.features import Features
+from shared.messages.matching import MatchRequest, NodeMatch
+
+NAME = "library"
+
+
+class LocalMatcher:
+    """Compares the current frame, set before each step, with the places of a map."""
+
+    def __init__(self, pipeline: Pipeline, maps: MemoryMap) -> None:
+        self._pipeline, self._maps = pipeline, maps
+        self.current: Features | None = None
+
+    def match(
+        self, node_ids: Sequence[int], best_k: int = 0, targets: Sequence[Features] = ()
+    ) -> dict[int, NodeMatch]:
+        """Matches of the current frame by node id, most similar first."""
+        if self.current is None:
+            raise ValueError("set current_frame first: there is nothing to compare")
+        ids = tuple(n for n in node_ids if n >= 0)
+        return self._ask(
+            self.current, MatchRequest(map=NAME, node_ids=ids, best_k=best_k, targets=tuple(targets))
+        )
+
+    def locate(self, features: Features, best_k: int) -> dict[int, NodeMatch]:
+        """Matches of any picture with the most similar nodes of the map."""
+        return self._ask(features, MatchRequest(map=NAME, best_k=best_k))
+
+    def _ask(self, features: Features, request: MatchRequest) -> dict[int, NodeMatch]:
+        places = {
+            node_id: Place(found.pipeline, self._maps.words(node_id))
+            for node_id, found in self._maps.features.items()
+        }
+        paired = pair(self._pipeline, request, features, places)
+        return {m.node_id: m for m in verify_paired(self._pipeline, request, paired)}

@@ -1,0 +1,82 @@
+"""A map in this process, and its file: the archive that `topnav map export` writes."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from services.features.interfaces import FeatureSet
+from services.features.verification import feature_set
+from services.map_store.archive import Archive, write_archive
+from services.map_store.blobs import checksum, pack_features, unpack_features
+from services.map_store.contents import Kind
+from services.map_store.errors import MapError
+from services.map_store.graph import AddPlace, Graph, Place
+from services.planner.graph import MapGraph
+from shared.messages.features import Features
+from shared.messages.maps import AddNode, Operation, PutEdge
+
+MAX_BYTES = 2_000_000_000
+
+
+class MemoryMap:
+    """Graph and features; what a mission needs of a map."""
+
+    def __init__(self) -> None:
+        self.graph = MapGraph()
+        self.features: dict[int, Features] = {}
+
+    def commit(self, operations: Sequence[Operation]) -> None:
+        """Change the graph; new nodes bring their features."""
+        self.graph.apply(operations)
+        for operation in operations:
+            if isinstance(operation, AddNode):
+                self.features[operation.node.node_id] = operation.features
+
+    def words(self, node_id: int) -> FeatureSet:
+        """Visual words of a node."""
+        return feature_set(self.features[node_id])
+
+
+def save(maps: MemoryMap, path: Path) -> None:
+    """Write the map; the same map gives the same bytes."""
+    packed = {node_id: pack_features(maps.features[node_id]) for node_id in maps.graph.nodes}
+    places = {
+        node_id: Place(node=node, features=checksum(packed[node_id]))
+        for node_id, node in maps.graph.nodes.items()
+    }
+
+    def blob(place: Place, kind: Kind) -> bytes:
+        del kind  # thumbnails are not kept here
+        return packed[place.node.node_id]
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    new = path.with_name(path.name + ".new")
+    with new.open("wb") as file:
+        write_archive(file, path.stem, 0, Graph(places=places, edges=dict(maps.graph.edges)), blob)
+    new.replace(path)
+
+
+def load(path: Path) -> MemoryMap:
+    """Read a map.
+
+    Raises:
+        ValueError: it is no such archive, or a pickle, which could run any code when opened.
+    """
+    if path.suffix in (".pickle", ".pkl"):
+        raise ValueError(
+            f"{path} is a pickle, which may run any code when it is opened: export a .zip instead"
+        )
+    maps = MemoryMap()
+    try:
+        with path.open("rb") as file:
+            archive = Archive(file, MAX_BYTES)
+            for step in archive.steps:
+                if isinstance(step, AddPlace):
+                    maps.graph.nodes[step.place.node.node_id] = step.place.node
+                    maps.features[step.place.node.node_id] = unpack_features(
+                        archive.blob(step.place.features)
+                    )
+                elif isinstance(step, PutEdge):
+                    maps.graph.edges[step.edge.a, step.edge.b] = step.edge
+    except (OSError, MapError) as error:
+        raise ValueError(f"{path} is no map: {error}") from error
+    return maps
