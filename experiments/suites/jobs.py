@@ -24,7 +24,7 @@ from simulator.freespace import free_space
 from simulator.world_file import load_world
 
 MAP = "suite"
-EXPLORE_STEPS = 12_000
+EXPLORE_STEPS = 30_000
 TIMED_MESSAGES = 1500
 
 

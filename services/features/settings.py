@@ -17,6 +17,7 @@ class FeaturesSettings(ServiceSettings):
     Attributes:
         pipeline: a named profile or extractor/representation/matcher, see `pipelines`.
         uneven_ground: verify by any motion of the camera where the plane explains too little.
+        extractor: in place of `pipeline` where not empty.
         device: where networks run: cpu or cuda.
         threads: cores OpenCV may use.
         frames_kept: newest frames whose features a MATCH can name by number.
@@ -28,6 +29,7 @@ class FeaturesSettings(ServiceSettings):
     model_config = SettingsConfigDict(env_prefix="FEATURES_")
 
     pipeline: str = "sift"
+    extractor: str = ""
     uneven_ground: bool = False
     device: Literal["cpu", "cuda"] = "cpu"
     threads: int = Field(default=2, ge=1, le=64)
@@ -38,14 +40,15 @@ class FeaturesSettings(ServiceSettings):
 
     def profile(self) -> Profile:
         """The pipeline's profile with what these settings replace."""
-        return replace(find_profile(self.pipeline), uneven_ground=self.uneven_ground)
+        return replace(find_profile(self.extractor or self.pipeline), uneven_ground=self.uneven_ground)
 
     def runtime(self) -> Runtime:
         """Where networks run."""
         return Runtime(self.device)
 
-    @field_validator("pipeline")
+    @field_validator("pipeline", "extractor")
     @classmethod
     def _known(cls, name: str) -> str:
-        find_profile(name)
+        if name:
+            find_profile(name)
         return name

@@ -37,6 +37,24 @@ def test_every_profile_names_plugins_that_exist(name):
     assert profile.matcher in PLUGINS["matcher"]
 
 
+def test_an_extractor_alone_takes_the_place_of_the_pipeline(monkeypatch):
+    monkeypatch.setenv("FEATURES_EXTRACTOR", "aliked-t16")
+    assert FeaturesSettings().profile().extractor == "aliked-t16"
+    monkeypatch.setenv("FEATURES_EXTRACTOR", "orb/tangent/brute_force")
+    profile = FeaturesSettings().profile()
+    assert (profile.extractor, profile.representation, profile.matcher) == ("orb", "tangent", "brute_force")
+    monkeypatch.setenv("FEATURES_EXTRACTOR", "")
+    assert FeaturesSettings().profile().extractor == "sift"
+
+
+@pytest.mark.parametrize(
+    "name", ["surf", "sift/mercator", "sift/tangent/lightglue", "sift/tangent/brute_force/x"]
+)
+def test_pipelines_that_cannot_be_are_refused_at_the_start(name):
+    with pytest.raises(ValidationError, match="lightglue|must be one of"):
+        FeaturesSettings(pipeline=name)
+
+
 def test_a_plugin_file_has_the_name_of_its_plugin():
     for choices in PLUGINS.values():
         for name, path in choices.items():
