@@ -30,7 +30,7 @@ def main(
     json_file: options.JsonFile = None,
     continue_: Annotated[bool, typer.Option("--continue", help="Go on with a map that exists.")] = False,
     fresh: Annotated[bool, typer.Option("--fresh", help="Delete a map of this name first.")] = False,
-    max_steps: options.MaxSteps = 5000,
+    max_steps: options.MaxSteps = 30_000,
     drawing: Annotated[Path | None, typer.Option(help="Draw the map to this PNG.")] = None,
     profile: options.ProfileName = None,
     pipeline: options.PipelineName = None,
