@@ -44,6 +44,8 @@ def draw_boxes(
         grid[0, column].set_title(f"method {method}")
         grid[1, column].set_xticks(range(1, len(counts) + 1), [str(n) for n in counts])
         grid[1, column].set_xlabel("matches")
+    for row, values in zip(grid, (stds, means), strict=True):
+        row[0].set_ylim(0.0, 1.05 * float(values.max()))
     grid[0, 0].set_ylabel(f"standard deviation per scene ({unit})")
     grid[1, 0].set_ylabel(f"mean per scene ({unit})")
     figure.suptitle(title)
@@ -96,7 +98,6 @@ def _box(axes: Axes, values: FloatArray) -> None:
         flierprops={"markersize": 2, "markeredgecolor": "0.5"},
     )
     axes.plot(range(1, values.shape[1] + 1), values.mean(axis=0), "--", color="#0072B2", linewidth=1.2)
-    axes.set_ylim(0, None)
     axes.grid(axis="y", alpha=0.3)
 
 

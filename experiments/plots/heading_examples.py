@@ -54,6 +54,8 @@ def draw_failed_path(path: Path, failed: FailedPath, title: str) -> None:
         _places(axes, failed.scene)
         axes.plot(points[:, 0], points[:, 1], ".", color=SERIES[2], label="matches")
         axes.plot(*failed.path.T, "-", color=SERIES[1], linewidth=1.2, label="path")
+    reach_m = max(SIDE_M / 2, float(np.abs(failed.path).max())) + 0.5
+    whole.set(xlim=(-reach_m, reach_m), ylim=(-reach_m, reach_m))
     tail = failed.path[-30:]
     middle, reach = tail.mean(axis=0), max(1.0, float(np.ptp(tail, axis=0).max()))
     near.set(

@@ -10,13 +10,15 @@ from experiments import options
 from experiments.failure import ExperimentError
 from experiments.monte_carlo import examples, study
 from experiments.monte_carlo.claims import CLAIMS, Figures, judged
-from experiments.monte_carlo.scene import Placement
+from experiments.monte_carlo.scene import PLACEMENTS, Placement
 from experiments.monte_carlo.work import results_of
 from experiments.output import write_json
+from experiments.page import write_page
 from experiments.plots import heading_examples as drawings
 from experiments.tables import print_rows, wide_console
 
 Part = Literal["ahae", "dcpe", "noise", "sweep", "examples"]
+UNITS = (("ahae", "deg"), ("dcpe", "pct"))
 PARTS: tuple[Part, ...] = ("ahae", "dcpe", "noise", "sweep", "examples")
 
 
@@ -56,6 +58,7 @@ def main(
                 study.draw(plots, name.upper(), unit, measured[name])
         if "examples" in parts:
             _draw_examples(plots)
+        _write_page(plots, report)
     if json_file is not None:
         write_json(json_file, report)
     _show(report)
@@ -101,8 +104,37 @@ def _draw_examples(folder: Path) -> None:
             drawings.draw_failed_path(folder / f"failed-path-method-{method}.png", failed, title)
 
 
+def _write_page(folder: Path, report: dict[str, Any]) -> None:
+    """All tables and figures on one page."""
+    wide = [(f"Mean {name.upper()}", _wide(report.get(name, []), f"mean_{unit}")) for name, unit in UNITS]
+    tables = [
+        *wide,
+        ("The thesis's orderings", report.get("orderings", [])),
+        ("Noise and wrong matches, 60 matches (AHAE)", report.get("noise", [])),
+        ("Paths of the epipolar direction with that noise", report.get("epipolar_dcpe", [])),
+        ("Priority functions, 60 matches (AHAE)", report.get("sweep", [])),
+    ]
+    figures = [
+        (
+            f"{name.upper()}, target in the {placement.replace('_', '-')}: {kind}",
+            f"{name}-{placement}-{kind}.png",
+        )
+        for name, _ in UNITS
+        for placement in PLACEMENTS
+        for kind in ("boxes", "comparison")
+    ]
+    figures += [
+        ("Growth of a pair's longitude difference and truth of its bisector", "pair-growth-and-heading.png"),
+        ("Matches that vote backwards because their latitude shrinks", "latitude-decrease.png"),
+        ("A path of method 2 that does not arrive", "failed-path-method-2.png"),
+        ("A path of method 1 that does not arrive", "failed-path-method-1.png"),
+    ]
+    title = "Heading methods in random scenes"
+    write_page(folder, "heading", title, "topnav study heading --plots FOLDER", tables, figures)
+
+
 def _show(report: dict[str, Any]) -> None:
-    for name, unit in (("ahae", "deg"), ("dcpe", "pct")):
+    for name, unit in UNITS:
         if name in report:
             print_rows(f"mean {name.upper()} ({unit})", _wide(report[name], f"mean_{unit}"))
     if "orderings" in report:

@@ -16,6 +16,7 @@ from experiments.matching.measure import measure_pair, words_of
 from experiments.matching.pictures import from_folder, rendered
 from experiments.matching.placing import UNCHANGED, Change, Image
 from experiments.output import write_json
+from experiments.page import write_page
 from experiments.plots.matching import draw_curves, draw_matching
 from experiments.tables import print_rows, wide_console
 
@@ -60,6 +61,7 @@ def main(
         for matcher in plan.MATCHERS:
             draw_matching(plots / f"map-{matcher}.png", report["results"], matcher)
         _draw_example(plots, sources[0], size.canvas_px)
+        _write_page(plots, report)
     _show(report)
 
 
@@ -130,6 +132,26 @@ def _draw_example(folder: Path, picture: Image, canvas_px: int) -> None:
         result = measure_pair(first, second, pipeline.extractor.distance, "brute_force")
         curves.append((f"sift, {representation}, 45 deg", result.known))
     draw_curves(folder / "precision-recall.png", curves)
+
+
+def _write_page(folder: Path, report: dict[str, Any]) -> None:
+    """All tables and figures on one page."""
+    tables = [
+        ("Tangent pictures against the whole canvas beyond 45 degrees of latitude", report["tangent_wins"]),
+        ("Extraction of 1024 x 2048 pixels", report["timing"]),
+        ("Mean average precision", [row for row in report["results"] if row["map"] is not None]),
+        ("Not measured", [row for row in report["results"] if row["map"] is None]),
+    ]
+    figures = [(f"Mean average precision, {m}", f"map-{m}.png") for m in plan.MATCHERS]
+    figures.append(("Precision against recall of one pair", "precision-recall.png"))
+    write_page(
+        folder,
+        "matching",
+        "Descriptors on the sphere",
+        "topnav study matching --plots FOLDER",
+        tables,
+        figures,
+    )
 
 
 def _show(report: dict[str, Any]) -> None:

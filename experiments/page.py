@@ -1,0 +1,52 @@
+"""A study as one Markdown page beside its figures."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+
+def write_page(
+    folder: Path,
+    name: str,
+    title: str,
+    command: str,
+    tables: Sequence[tuple[str, Sequence[Mapping[str, object]]]],
+    figures: Sequence[tuple[str, str]],
+) -> Path:
+    """Write `folder/name`.md.
+
+    Args:
+        folder: where the figures lie.
+        name: file name without its ending.
+        title: headline.
+        command: what made it, for whoever wants it again.
+        tables: headline and rows; columns are the keys of the first row.
+        figures: caption and file name; those that are not there are left out.
+
+    Returns:
+        The page.
+    """
+    lines = [f"# {title}", "", f"Made by `{command}`.", ""]
+    for headline, rows in tables:
+        if rows:
+            lines += [f"## {headline}", "", *_table(rows), ""]
+    for caption, file in figures:
+        if (folder / file).exists():
+            lines += [f"![{caption}]({file})", "", f"*{caption}*", ""]
+    page = folder / f"{name}.md"
+    page.parent.mkdir(parents=True, exist_ok=True)
+    page.write_text("\n".join(lines), encoding="utf-8")
+    return page
+
+
+def _table(rows: Sequence[Mapping[str, object]]) -> list[str]:
+    columns = list(rows[0])
+    head = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
+    return head + ["| " + " | ".join(_cell(row.get(key)) for key in columns) + " |" for row in rows]
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if value is None:
+        return ""
+    return f"{value:.3g}" if isinstance(value, float) else str(value).replace("|", "\\|")
