@@ -15,28 +15,39 @@ from shared.messages.matching import NodeMatch
 NEAR_HOPS = 1
 """Within so many edges of the place the robot came from an edge closes no loop."""
 
+FAR_HOPS = 3
+"""Beyond so many edges a look-alike is as likely as the place itself: of 153 such edges in a village of equal
+houses 58 were wrong, of 1195 nearer ones 11. None of the wrong ones had more than 106 verified matches."""
+
 YAW_RAD = math.radians(8.0)
 DIRECTION_RAD = math.radians(15.0)
 
 
 def unsupported_closures(
-    graph: MapGraph, matches: Mapping[int, NodeMatch], driven_from: int | None
+    graph: MapGraph, matches: Mapping[int, NodeMatch], driven_from: int | None, s_far: int = 0
 ) -> dict[int, str]:
     """Places of `matches` far from where the robot came from that no neighbour of theirs bears witness for.
+
+    Beyond FAR_HOPS at least `s_far` verified matches are needed as well: the robot must nearly stand there.
 
     Args:
         graph: the map without the new place.
         matches: trusted matches of the new frame that would become edges.
         driven_from: the place the robot came from; None (the first place, or carried) asks for no witness.
+        s_far: verified matches needed beyond FAR_HOPS.
 
     Returns:
         Place and reason.
     """
     if driven_from is None or driven_from not in graph.nodes:
         return {}
-    near = _within(graph, driven_from)
+    near = _within(graph, driven_from, NEAR_HOPS)
+    far = far_places(graph, matches, driven_from) if s_far else set()
     refused = {}
     for place in sorted(set(matches) - near):
+        if place in far and matches[place].inliers < s_far:
+            refused[place] = f"node {place} is far in the map, {matches[place].inliers} of {s_far} matches"
+            continue
         witnesses = [n for n in graph.neighbours(place) if n in matches]
         if any(agrees(graph, matches, place, witness) for witness in witnesses):
             continue
@@ -107,11 +118,16 @@ def agrees(graph: MapGraph, matches: Mapping[int, NodeMatch], place: int, witnes
     return detour - _apart(to_witness.heading_rad, back_rad) < DIRECTION_RAD
 
 
-def _within(graph: MapGraph, start: int) -> set[int]:
+def far_places(graph: MapGraph, matches: Mapping[int, NodeMatch], driven_from: int) -> set[int]:
+    """Places of `matches` more than FAR_HOPS edges from where the robot came from."""
+    return {n for n in matches if n in graph.nodes} - _within(graph, driven_from, FAR_HOPS)
+
+
+def _within(graph: MapGraph, start: int, hops: int) -> set[int]:
     plain: nx.Graph[int] = nx.Graph()
     plain.add_nodes_from(graph.nodes)
     plain.add_edges_from(ends for ends, edge in graph.edges.items() if not edge.suspended)
-    return set(nx.single_source_shortest_path_length(plain, start, cutoff=NEAR_HOPS))
+    return set(nx.single_source_shortest_path_length(plain, start, cutoff=hops))
 
 
 def _apart(first_rad: float, second_rad: float) -> float:

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from services.planner.closures import far_places
 from services.planner.departure import Departure
 from services.planner.frontiers import mark_explored, sector_rad
 from services.planner.graph import MapGraph
@@ -71,9 +72,11 @@ class Leaving:
     def _new_or_known(self, observation: Observation, matches: dict[int, NodeMatch]) -> Decision | NewPlace:
         """New unless some place of the whole map is too similar; look-alikes make no place known."""
         origin = self._departure.node_id
-        refused = judge_edges(self._maps.graph, observation, matches, self._profile, origin).refused
-        credible = {n: m for n, m in matches.items() if n not in refused or n == origin}
-        if is_new_place(credible, self._profile):
+        graph = self._maps.graph
+        edges_of = judge_edges(graph, observation, matches, self._profile, origin)
+        credible = {n: m for n, m in matches.items() if n not in edges_of.refused or n == origin}
+        closes_loop = self._profile.s_far and far_places(graph, edges_of.admitted, origin)
+        if is_new_place(credible, self._profile) or closes_loop:
             return self._new_place(observation, credible)
         return self._close(f"leads to node {ranked(credible, self._profile)[0][0]}")
 

@@ -134,7 +134,7 @@ def _refused(
         return {}
     refused = {n: f"two motions explain the view of node {n}" for n, m in admitted.items() if has_rival(m)}
     left = {n: m for n, m in admitted.items() if n not in refused}
-    refused |= unsupported_closures(graph, left, driven_from)
+    refused |= unsupported_closures(graph, left, driven_from, profile.s_far)
     return refused | contradicted(graph, {n: m for n, m in admitted.items() if n not in refused})
 
 

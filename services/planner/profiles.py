@@ -41,6 +41,7 @@ class Profile(BaseModel):
         far_rad: with less disparity than this an edge needs more than s_node_max: few matches that hardly
             move are far away, and so may the place be.
         arrival_rad: angular disparity at which a place is reached; 0 uses s_final.
+        s_far: an edge to a far part of the map needs so many matches: among equal houses fewer prove nothing.
         near_rad, s_near: with less disparity and more S the robot may stop where obstacles end its way.
     """
 
@@ -86,6 +87,7 @@ class Profile(BaseModel):
     similarity_m: float = Field(default=0.0, ge=0.0)
     s_blind_min: NonNegativeInt = 0
     far_rad: float = Field(default=0.0, ge=0.0)
+    s_far: NonNegativeInt = 0
 
 
 DEFAULT = Profile(name="default")
@@ -136,6 +138,7 @@ OUTDOOR = DEFAULT.model_copy(
         "similarity_m": 300.0,
         "s_blind_min": 36,
         "far_rad": math.radians(3.5),
+        "s_far": 110,
     }
 )
 """Streets and yards, with 500 keypoints: places are 4 m apart, and one edge covers a wide sector.

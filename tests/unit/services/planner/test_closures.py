@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from services.planner.closures import agrees, contradicted, unsupported_closures
+from services.planner.closures import agrees, contradicted, far_places, unsupported_closures
 from services.planner.graph import MapGraph, edge_between
 from shared.messages.maps import Edge, Node
 from shared.messages.matching import NodeMatch
@@ -48,6 +48,21 @@ def test_a_far_place_needs_a_neighbour_that_fits(graph):
     assert set(unsupported_closures(graph, {0: match(0), 7: match(7)}, driven_from=0)) == {7}
     seen = {0: match(0), 7: match(7), 6: match(6)}
     assert unsupported_closures(graph, seen, driven_from=0) == {}
+
+
+def test_a_far_part_of_the_map_is_joined_only_where_the_robot_nearly_stands_there(graph):
+    seen = {0: match(0), 7: match(7), 6: match(6)}
+    refused = unsupported_closures(graph, seen, driven_from=0, s_far=110)
+    assert set(refused) == {6, 7}
+    assert "70 of 110" in refused[7]
+    near = {n: m.model_copy(update={"inliers": 120}) for n, m in seen.items()}
+    assert unsupported_closures(graph, near, driven_from=0, s_far=110) == {}
+    assert far_places(graph, seen, 0) == {6, 7}
+
+
+def test_within_three_edges_fewer_matches_do(graph):
+    seen = {0: match(0), 2: match(2), 3: match(3)}
+    assert unsupported_closures(graph, seen, driven_from=0, s_far=110) == {}
 
 
 def test_a_carried_robot_is_asked_for_none(graph):
