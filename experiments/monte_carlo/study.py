@@ -14,6 +14,7 @@ from experiments.monte_carlo.statistics import Statistics
 from experiments.monte_carlo.sweep import FUNCTIONS, WEIGHTED, SweepPlan, scene_sweep
 from experiments.monte_carlo.tracking import DcpePlan, scene_paths
 from experiments.plots.boxes import draw_boxes, draw_comparison
+from services.planner.heading.weights import WeightSettings
 from shared.geometry.angles import FloatArray
 
 NOISES_DEG = (0.0, 0.25, 0.5, 1.0)
@@ -43,19 +44,24 @@ FULL = Size(100, 2000, 100, 2000, 100, 10, 40)
 """The thesis's: 100 scenes of 2000 runs (section 3.2.1)."""
 
 
-def ahae(size: Size, seed: int, work: Worker) -> dict[Placement, Statistics]:
+def ahae(size: Size, seed: int, work: Worker, gain_per_rad: float) -> dict[Placement, Statistics]:
     """Absolute heading angle errors by placement, degrees."""
+    weight = WeightSettings(gain=gain_per_rad, unit="rad")
     plans = [
-        AhaePlan(p, s, seed, size.ahae_runs, size.counts) for p in PLACEMENTS for s in range(size.scenes)
+        AhaePlan(p, s, seed, size.ahae_runs, size.counts, weight)
+        for p in PLACEMENTS
+        for s in range(size.scenes)
     ]
     found = np.array(work(scene_errors, plans)).reshape(len(PLACEMENTS), size.scenes, 2, len(METHODS), -1)
     return {p: Statistics(size.counts, found[k, :, 0], found[k, :, 1]) for k, p in enumerate(PLACEMENTS)}
 
 
-def dcpe(size: Size, seed: int, work: Worker, device: str) -> dict[Placement, Statistics]:
+def dcpe(
+    size: Size, seed: int, work: Worker, gain_per_rad: float, device: str
+) -> dict[Placement, Statistics]:
     """Distance covered percent errors by placement, percent."""
     plans = [
-        DcpePlan(p, s, n, seed, size.dcpe_runs, device=device)
+        DcpePlan(p, s, n, seed, size.dcpe_runs, gain_per_rad, device)
         for p in PLACEMENTS
         for s in range(size.dcpe_scenes)
         for n in size.counts

@@ -11,6 +11,7 @@ from experiments.failure import ExperimentError
 from experiments.monte_carlo import examples, study
 from experiments.monte_carlo.claims import CLAIMS, Figures, judged
 from experiments.monte_carlo.scene import PLACEMENTS, Placement
+from experiments.monte_carlo.tracking import DEG
 from experiments.monte_carlo.work import results_of
 from experiments.output import write_json
 from experiments.page import write_page
@@ -26,6 +27,9 @@ def main(
     quick: Annotated[bool, typer.Option("--quick", help="A glimpse in less than a minute.")] = False,
     full: Annotated[bool, typer.Option("--full", help="The thesis's 100 scenes of 2000 runs.")] = False,
     only: Annotated[str | None, typer.Option(help=f'Parts, as "ahae,dcpe"; of {", ".join(PARTS)}.')] = None,
+    gain: Annotated[
+        float, typer.Option(min=0.01, help="Of exp in methods 2, 4, 5 and 6, per radian; 57.3 is per degree.")
+    ] = DEG,
     device: Annotated[str, typer.Option(help="Where paths are tracked: cpu or cuda.")] = "cpu",
     cluster: Annotated[str | None, typer.Option(help="Dask scheduler, for example tcp://host:8786.")] = None,
     jobs: Annotated[int | None, typer.Option(min=1, help="Processes; default: all cores.")] = None,
@@ -51,7 +55,7 @@ def main(
         cluster=cluster,
         jobs=jobs,
     )
-    report, measured = _measure(parts, size, seed, work, device)
+    report, measured = _measure(parts, size, seed, work, gain, device)
     if plots is not None:
         for name, unit in (("ahae", "deg"), ("dcpe", "%")):
             if name in measured:
@@ -65,15 +69,15 @@ def main(
 
 
 def _measure(
-    parts: tuple[Part, ...], size: study.Size, seed: int, work: study.Worker, device: str
+    parts: tuple[Part, ...], size: study.Size, seed: int, work: study.Worker, gain: float, device: str
 ) -> tuple[dict[str, Any], dict[str, Figures]]:
-    report: dict[str, Any] = {"seed": seed, "scenes": size.scenes, "ahae_runs": size.ahae_runs}
+    report: dict[str, Any] = {"seed": seed, "scenes": size.scenes, "ahae_runs": size.ahae_runs, "gain": gain}
     measured: dict[str, Figures] = {}
     if "ahae" in parts:
-        measured["ahae"] = study.ahae(size, seed, work)
+        measured["ahae"] = study.ahae(size, seed, work, gain)
         report["ahae"] = [row for p, s in measured["ahae"].items() for row in s.rows(p, "deg")]
     if "dcpe" in parts:
-        measured["dcpe"] = study.dcpe(size, seed, work, device)
+        measured["dcpe"] = study.dcpe(size, seed, work, gain, device)
         report["dcpe"] = [row for p, s in measured["dcpe"].items() for row in s.rows(p, "pct")]
         report |= {"dcpe_scenes": size.dcpe_scenes, "dcpe_runs": size.dcpe_runs}
     if measured:
