@@ -46,8 +46,8 @@ class Size:
 
 
 QUICK = Size(1, 1024, (0.0, 30.0, 60.0), False)
-NORMAL = Size(2, 1024, (-60.0, -30.0, 0.0, 30.0, 60.0), True)
-FULL = Size(4, 1024, LATITUDES_DEG, True)
+NORMAL = Size(1, 1024, (-60.0, -30.0, 0.0, 30.0, 60.0), True)
+FULL = Size(2, 1024, LATITUDES_DEG, True)
 
 
 def changes(size: Size) -> list[Change]:

@@ -25,7 +25,7 @@ TIMED_PX = 2048
 
 def main(
     quick: Annotated[bool, typer.Option("--quick", help="One picture, three latitudes.")] = False,
-    full: Annotated[bool, typer.Option("--full", help="Four pictures, nine latitudes.")] = False,
+    full: Annotated[bool, typer.Option("--full", help="Two pictures, nine latitudes.")] = False,
     only: Annotated[str | None, typer.Option(help='Descriptors, as "sift,orb"; default: all.')] = None,
     pictures: Annotated[
         Path | None, typer.Option(help="Folder of pictures instead of rendered views.")
