@@ -10,6 +10,8 @@ from services.features.interfaces import FeatureSet
 from services.features.pipeline import Pipeline
 from services.features.pipelines import PROFILES, Profile
 from shared.geometry.angles import wrap_rad
+from shared.geometry.icosahedron import tangent_layout
+from shared.geometry.sphere import bearings_from_lonlat
 
 CLASSIC = ("sift", "thesis", "orb", "beblid")
 TURNS = 5
@@ -106,6 +108,28 @@ def test_descriptor_widths_are_the_thesis_ones(room, name, width):
     words = words_of(room(0.0, 0.0, 0.0, 400), PROFILES[name])
     assert words.descriptors.shape[1] == width
     assert words.descriptors.dtype == np.uint8
+
+
+def test_tangent_pictures_lose_no_keypoint_where_two_faces_meet(room):
+    """As many keypoints next to the edges of faces as the area there holds."""
+    layout = tangent_layout(9, 1)
+    picture = room(0.0, 0.0, 0.0, 512)
+    near = np.sin(np.deg2rad(1.5))
+
+    def at_border(bearings):
+        faces = layout.faces_of(bearings)
+        return np.einsum("nek,nk->ne", layout.edge_normals[faces], bearings).min(axis=1) < near
+
+    shares, counts = [], []
+    for turn in range(4):
+        profile = replace(PROFILES["sift_tangent"], keypoints=4000, crop_deg=0.0)
+        words = words_of(np.roll(picture, 37 * turn, axis=1), profile)
+        shares.append(at_border(bearings_from_lonlat(words.lonlat_rad.astype(float))).mean())
+        counts.append(len(words))
+    uniform = np.random.default_rng(1).normal(size=(20000, 3))
+    expected = at_border(uniform / np.linalg.norm(uniform, axis=1, keepdims=True)).mean()
+    assert min(counts) > 1000
+    assert np.mean(shares) == pytest.approx(expected, rel=0.1)
 
 
 def test_tangent_pictures_give_the_same_bearings_each_keypoint_once(room):
