@@ -21,7 +21,6 @@ DESCRIPTORS = (
     "tfeat",
     "mkd",
     "aliked-t16",
-    "aliked-n16",
     "hardnet",
     "hardnet8",
     "sosnet",
