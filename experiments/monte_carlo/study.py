@@ -39,7 +39,7 @@ class Size:
 
 
 QUICK = Size(8, 200, 4, 4, 6, 2, 3, counts=(5, 13, 34, 60))
-NORMAL = Size(100, 500, 60, 10, 40, 5, 20)
+NORMAL = Size(100, 500, 30, 10, 25, 4, 12)
 FULL = Size(100, 2000, 100, 2000, 100, 10, 40)
 """The thesis's: 100 scenes of 2000 runs (section 3.2.1)."""
 
