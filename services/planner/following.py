@@ -29,10 +29,15 @@ FollowState = Literal["going", "arrived", "lost", "stuck", "unclear"]
 
 @dataclass
 class Target:
-    """End of the path: a goal picture, or the last node when `features` is None."""
+    """End of the path: a goal picture, or the last node when `features` is None.
+
+    Attributes:
+        look_alike: the goal picture resembles a wrong place too: it counts only from the last via point on.
+    """
 
     features: Features | None
     arrival_rad: float
+    look_alike: bool = False
 
 
 class PathFollower:
@@ -142,10 +147,11 @@ class PathFollower:
         s_there = similarity(there, self._profile)
         if self._strict:
             return s_here > self._profile.s_via_max and s_there > self._profile.s_via_min
-        if trusted(there, self._profile) and is_clear(there, ranges, self._profile):
+        beside = later == self.index + 1 and self._is_at(here)
+        early = self._target.look_alike and self.path[later] == GOAL and not beside
+        if not early and trusted(there, self._profile) and is_clear(there, ranges, self._profile):
             return s_there > self._profile.s_edge_min
-        beyond = later == self.index + 1 and self._is_at(here) and self._known_leg()
-        return beyond and s_there > self._profile.s_via_min
+        return beside and self._known_leg() and s_there > self._profile.s_via_min
 
     def _mark_driven(self, match: NodeMatch | None) -> tuple[Note, ...]:
         """The robot stands at a via point: the leg to it has been driven."""

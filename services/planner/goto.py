@@ -34,6 +34,7 @@ class Goto:
         self._targets: dict[int, float] | None = None
         self._follower: PathFollower | None = None
         self._lost = self._stuck = 0
+        self._look_alike = False
         self._avoid: dict[int, float] = {}
         self._doubted: set[Leg] = set()
         self._experience = Experience(profile, maps)
@@ -57,9 +58,11 @@ class Goto:
         state, decision = self._follower.step(observation, self._matcher)
         self.progress = self._follower.progress
         if state == "arrived":
-            s_map = self._similarity_of_map()
+            here = self._places_here()
+            s_map = max((similarity(match, self._profile) for match in here.values()), default=0)
             if self._follower.progress.similarity >= GOAL_SHARE * s_map:
                 return self._end("succeeded", "", decision.why, notes + decision.notes)
+            self._deceived(here)
             why = f"a look-alike of the goal: a place of the map resembles this view more, S {s_map}"
             state, decision = "stuck", replace(decision, why=f"{decision.why}, {why}")
         if state == "going":
@@ -71,12 +74,18 @@ class Goto:
         """The goal and the most similar places of the whole map, from the current frame alone."""
         return self._matcher.match([], LOCALISE_K, (self._goal,))
 
-    def _similarity_of_map(self) -> int:
-        """How much the most similar place of the map resembles this view."""
+    def _places_here(self) -> dict[int, NodeMatch]:
+        """The places that resemble this view; none by the thesis's rules, which do not ask."""
         if self._profile.path_cost == "nodes":
-            return 0
-        here = [match for node, match in self._localise().items() if node != GOAL]
-        return max((similarity(match, self._profile) for match in here), default=0)
+            return {}
+        return {node: match for node, match in self._localise().items() if node != GOAL}
+
+    def _deceived(self, here: dict[int, NodeMatch]) -> None:
+        """This is not where the picture was taken: nor is that beside the places seen from here."""
+        self._look_alike = True
+        seen = {node for node, match in here.items() if trusted(match, self._profile)}
+        elsewhere = {node: cost for node, cost in (self._targets or {}).items() if node not in seen}
+        self._targets = elsewhere or self._targets
 
     def _plan_notes(self, here: dict[int, NodeMatch], ranges: Ranges) -> tuple[Note, ...]:
         """What localisation says about edges: one that just failed, suspended ones that are seen free."""
@@ -164,7 +173,7 @@ class Goto:
         return seen and similarity(match, self._profile) > self._profile.s_edge_min
 
     def _follow(self, path: list[int]) -> None:
-        target = Target(self._goal, self._profile.arrival_rad)
+        target = Target(self._goal, self._profile.arrival_rad, self._look_alike)
         self._follower = PathFollower(
             self._profile, self._maps, path, target, self._doubted, self._experience
         )
