@@ -9,10 +9,11 @@ import torch
 
 from experiments.topological_navigation.pictures import Image, picture_of, resized
 from services.features.extraction import extract
-from services.features.interfaces import FeatureSet
+from services.features.interfaces import FeatureSet, FloatArray, IndexArray
 from services.features.pipeline import Pipeline
 from services.features.pipelines import Profile, combined
 from services.features.registry import Runtime
+from shared.geometry.sphere import EquirectGrid
 
 DESCRIPTORS = {
     "orb": "orb",
@@ -130,7 +131,7 @@ class SelectKeypointDescriptor:
 
     def try_descriptor(self) -> Details:
         """Keypoints and descriptors of `img_info` with the chosen descriptor and representation."""
-        return self._details(self.words(picture_of(self._img_info)))
+        return self._details(self._img_info)
 
     def compute_cv2_keypoints(self, img: Image) -> Details:
         """Keypoints (M, 4) and SIFT, BEBLID or ORB descriptors (M, 128 | 64 | 32) of a picture."""
@@ -159,7 +160,9 @@ class SelectKeypointDescriptor:
 
     def words(self, picture: Image) -> FeatureSet:
         """Visual words of a picture, without those at the border where `ignore_border_kp` is set."""
-        whole = resized(picture, self.resize)
+        return self._words(resized(picture, self.resize))
+
+    def _words(self, whole: Image) -> FeatureSet:
         pipeline = self.pipeline
         found = extract(whole, pipeline.extractor, pipeline.representation, pipeline.profile)
         if self.ignore_border_kp:
@@ -189,7 +192,7 @@ class SelectKeypointDescriptor:
             raise ValueError(
                 f"kp_descriptor must be one of {', '.join(allowed)} here, got {self._kp_descriptor}"
             )
-        return self._details(self.words(picture_of(img)))
+        return self._details(img)
 
     def _represented(self, representation: str) -> Details:
         before, self.representation = self._representation, representation
@@ -198,11 +201,10 @@ class SelectKeypointDescriptor:
         finally:
             self.representation = before
 
-    def _details(self, words: FeatureSet) -> Details:
-        height, width = resized(picture_of(self._img_info), self.resize).shape[:2]
-        column = (np.pi - words.lonlat_rad[:, 0]) / (2.0 * np.pi) * width
-        row = (np.pi / 2.0 - words.lonlat_rad[:, 1]) / np.pi * height
-        places = np.column_stack([column, row, words.lonlat_rad]).astype(np.float32)
+    def _details(self, info: Any) -> Details:
+        whole = resized(picture_of(info), self.resize)
+        words = self._words(whole)
+        places = np.column_stack([_pixels(words, whole), words.lonlat_rad]).astype(np.float32)
         return torch.from_numpy(places), torch.from_numpy(np.ascontiguousarray(words.descriptors))
 
 
@@ -213,23 +215,28 @@ def _known(what: str, name: str, names: dict[str, str]) -> str:
     return found
 
 
-def _pixels(words: FeatureSet, picture: Image) -> tuple[np.ndarray, np.ndarray]:
-    height, width = picture.shape[:2]
-    column = ((np.pi - words.lonlat_rad[:, 0]) / (2.0 * np.pi) * width).astype(int) % width
-    row = np.clip((np.pi / 2.0 - words.lonlat_rad[:, 1]) / np.pi * height, 0, height - 1).astype(int)
-    return column, row
+def _pixels(words: FeatureSet, whole: Image) -> FloatArray:
+    """Columns and rows (N, 2) of keypoints in a whole panorama."""
+    height, width = whole.shape[:2]
+    return EquirectGrid(width, height).pixels_from_lonlat(words.lonlat_rad)
+
+
+def _cells(words: FeatureSet, whole: Image) -> IndexArray:
+    """The pixels (N, 2) that keypoints lie in."""
+    height, width = whole.shape[:2]
+    return np.minimum(_pixels(words, whole).astype(np.intp), [width - 1, height - 1])
 
 
 def _inside(words: FeatureSet, picture: Image) -> FeatureSet:
     lit = (picture if picture.ndim == 2 else picture.max(axis=2)) > 0
     inner = cv2.erode(lit.astype(np.uint8), np.ones((3, 3)), iterations=BORDER_PX, borderValue=0)
-    column, row = _pixels(words, picture)
+    column, row = _cells(words, picture).T
     keep = np.flatnonzero(inner[row, column])
     return FeatureSet(words.lonlat_rad[keep], words.scores[keep], words.descriptors[keep])
 
 
 def _drawn(picture: Image, words: FeatureSet) -> Image:
     shown = cv2.cvtColor(picture, cv2.COLOR_GRAY2BGR) if picture.ndim == 2 else picture.copy()
-    for column, row in zip(*_pixels(words, picture), strict=True):
+    for column, row in _cells(words, picture):
         cv2.circle(shown, (int(column), int(row)), 3, (0, 220, 0), 1, cv2.LINE_AA)
     return np.asarray(shown, np.uint8)

@@ -76,6 +76,12 @@ def test_keypoints_have_four_columns_and_descriptors_their_width(frames, name, r
     assert (keypoints[:, 0] <= 800).all()
 
 
+def test_a_picture_given_directly_needs_no_img_info(frames):
+    keypoints, _ = SelectKeypointDescriptor("", "SIFT", max_keypoints=50).compute_cv2_keypoints(frames[0])
+    named, _ = SelectKeypointDescriptor(frames[0], "SIFT", max_keypoints=50).try_descriptor()
+    assert torch.equal(keypoints, named)
+
+
 def test_a_path_an_opencv_and_a_torch_image_give_the_same(frames, files):
     rgb = torch.from_numpy(frames[0][..., ::-1].copy()).permute(2, 0, 1)[None]
     found = [
