@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from experiments.monte_carlo.scene import Placement, draw_scene
+from experiments.monte_carlo.scene import Placement, draw_scene, generator_of
 from experiments.monte_carlo.votes import draw_choices, headings, vote_table
 from services.planner.heading.weights import WeightSettings
 from shared.geometry.angles import FloatArray, wrap_rad
@@ -28,14 +28,10 @@ class AhaePlan:
     counts: tuple[int, ...] = COUNTS
     weight: WeightSettings = DEFAULT_WEIGHT
 
-    def generator(self) -> np.random.Generator:
-        """The draws of this scene alone, whoever works it out."""
-        return np.random.default_rng([self.seed, self.scene, len(self.placement)])
-
 
 def scene_errors(plan: AhaePlan) -> FloatArray:
     """Mean and standard deviation over the runs of one scene, (2, methods, counts), degrees."""
-    rng = plan.generator()
+    rng = generator_of(plan.placement, plan.scene, plan.seed)
     scene = draw_scene(plan.placement, rng)
     chosen = draw_choices(plan.runs, max(plan.counts), len(scene.points), rng)
     found = headings(vote_table(scene, plan.weight), chosen, plan.counts)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 
-from experiments.monte_carlo.scene import MonteCarloScene, Placement, draw_scene, lonlat_from
+from experiments.monte_carlo.scene import MonteCarloScene, Placement, draw_scene, generator_of, lonlat_from
 from experiments.monte_carlo.tracking import follow
 from experiments.monte_carlo.votes import draw_choices
 from services.planner.heading.registry import heading_method
@@ -103,5 +103,5 @@ def with_outliers(target: FloatArray, plan: NoisePlan, rng: np.random.Generator)
 
 
 def _begin(plan: NoisePlan) -> tuple[np.random.Generator, MonteCarloScene]:
-    rng = np.random.default_rng([plan.seed, plan.scene, len(plan.placement)])
+    rng = generator_of(plan.placement, plan.scene, plan.seed)
     return rng, draw_scene(plan.placement, rng)

@@ -57,6 +57,11 @@ class MonteCarloScene:
         return float(np.hypot(*(self.target - self.current)))
 
 
+def generator_of(placement: Placement, scene: int, seed: int) -> np.random.Generator:
+    """The draws of one scene alone, whoever works it out."""
+    return np.random.default_rng([seed, scene, len(placement)])
+
+
 def draw_scene(placement: Placement, rng: np.random.Generator, keypoints: int = KEYPOINTS) -> MonteCarloScene:
     """Uniform keypoints and a uniform current place; the target where the placement says."""
     half = SIDE_M / 2

@@ -133,6 +133,5 @@ def draw(folder: Path, name: str, unit: str, figures: dict[Placement, Statistics
     for placement, s in figures.items():
         title = f"{name}, target in the {placement.replace('_', '-')}"
         place = folder / f"{name.lower()}-{placement}"
-        parts = (title, unit, s.counts, s.means, s.stds, METHODS)
-        draw_boxes(place.with_name(place.name + "-boxes.png"), *parts)
-        draw_comparison(place.with_name(place.name + "-comparison.png"), *parts)
+        draw_boxes(place.with_name(place.name + "-boxes.png"), title, unit, s)
+        draw_comparison(place.with_name(place.name + "-comparison.png"), title, unit, s)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from experiments.monte_carlo.scene import Placement, draw_scene, lonlat_from
+from experiments.monte_carlo.scene import Placement, draw_scene, generator_of, lonlat_from
 from experiments.monte_carlo.votes import draw_choices
 from services.planner.heading.registry import heading_method
 from services.planner.heading.weights import WeightSettings
@@ -40,7 +40,7 @@ class SweepPlan:
 
 def scene_sweep(plan: SweepPlan) -> FloatArray:
     """Mean absolute heading error (functions, weighted methods), degrees."""
-    rng = np.random.default_rng([plan.seed, plan.scene, len(plan.placement)])
+    rng = generator_of(plan.placement, plan.scene, plan.seed)
     scene = draw_scene(plan.placement, rng)
     current, target = lonlat_from(scene.current, scene.points), lonlat_from(scene.target, scene.points)
     errors = np.zeros((len(FUNCTIONS), len(WEIGHTED)))

@@ -14,7 +14,7 @@ from torch import Tensor
 
 from experiments.monte_carlo.ahae import METHODS
 from experiments.monte_carlo.batched import batch_headings
-from experiments.monte_carlo.scene import MonteCarloScene, Placement, draw_scene
+from experiments.monte_carlo.scene import MonteCarloScene, Placement, draw_scene, generator_of
 from experiments.monte_carlo.votes import IndexArray, draw_choices
 from shared.geometry.angles import FloatArray
 
@@ -43,7 +43,7 @@ class DcpePlan:
 
 def scene_paths(plan: DcpePlan) -> FloatArray:
     """DCPE of all runs with each method, (methods, runs), percent, at most 100."""
-    rng = np.random.default_rng([plan.seed, plan.scene, len(plan.placement)])
+    rng = generator_of(plan.placement, plan.scene, plan.seed)
     scene = draw_scene(plan.placement, rng)
     chosen = draw_choices(plan.runs, plan.count, len(scene.points), rng)
     size = max(1, MOST_PAIRS[plan.device] // plan.count**2)

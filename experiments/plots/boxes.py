@@ -1,27 +1,20 @@
 """Box plots per method and comparisons over the number of matches (thesis figures 3.16 to 3.66)."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from experiments.monte_carlo.ahae import METHODS
+from experiments.monte_carlo.statistics import Statistics
 from experiments.plots.colours import MARKERS, SERIES
 from shared.geometry.angles import FloatArray
 
 DPI = 110
 
 
-def draw_boxes(
-    path: Path,
-    title: str,
-    unit: str,
-    counts: Sequence[int],
-    means: FloatArray,
-    stds: FloatArray,
-    methods: Sequence[str],
-) -> None:
+def draw_boxes(path: Path, title: str, unit: str, figures: Statistics) -> None:
     """One column per method; above the standard deviations of all scenes, below their means.
 
     Boxes are quartiles, the orange line is the median, the dashed blue line joins the means.
@@ -30,21 +23,18 @@ def draw_boxes(
         path: PNG to write.
         title: of the figure.
         unit: of the values.
-        counts: matches per run.
-        means: (scenes, methods, counts).
-        stds: (scenes, methods, counts).
-        methods: names of the methods.
+        figures: of one placement.
     """
-    figure = Figure(figsize=(3.0 * len(methods), 5.6), layout="constrained")
+    figure = Figure(figsize=(3.0 * len(METHODS), 5.6), layout="constrained")
     FigureCanvasAgg(figure)
-    grid = figure.subplots(2, len(methods), sharex=True, sharey="row", squeeze=False)
-    for column, method in enumerate(methods):
-        for axes, values in zip(grid[:, column], (stds, means), strict=True):
+    grid = figure.subplots(2, len(METHODS), sharex=True, sharey="row", squeeze=False)
+    for column, method in enumerate(METHODS):
+        for axes, values in zip(grid[:, column], (figures.stds, figures.means), strict=True):
             _box(axes, values[:, column])
         grid[0, column].set_title(f"method {method}")
-        grid[1, column].set_xticks(range(1, len(counts) + 1), [str(n) for n in counts])
+        grid[1, column].set_xticks(range(1, len(figures.counts) + 1), [str(n) for n in figures.counts])
         grid[1, column].set_xlabel("matches")
-    for row, values in zip(grid, (stds, means), strict=True):
+    for row, values in zip(grid, (figures.stds, figures.means), strict=True):
         row[0].set_ylim(0.0, 1.05 * float(values.max()))
     grid[0, 0].set_ylabel(f"standard deviation per scene ({unit})")
     grid[1, 0].set_ylabel(f"mean per scene ({unit})")
@@ -52,35 +42,27 @@ def draw_boxes(
     _save(figure, path)
 
 
-def draw_comparison(
-    path: Path,
-    title: str,
-    unit: str,
-    counts: Sequence[int],
-    means: FloatArray,
-    stds: FloatArray,
-    methods: Sequence[str],
-) -> None:
+def draw_comparison(path: Path, title: str, unit: str, figures: Statistics) -> None:
     """Mean and spread over the scenes of both the standard deviations and the means, one line per method."""
     figure = Figure(figsize=(10.0, 6.4), layout="constrained")
     FigureCanvasAgg(figure)
     grid = figure.subplots(2, 2, sharex=True)
-    for column, (values, name) in enumerate(((stds, "standard deviations"), (means, "means"))):
-        for row, (figures, what) in enumerate(
-            ((values.mean(axis=0), "mean"), (values.std(axis=0), "spread"))
-        ):
+    for column, (values, name) in enumerate(
+        ((figures.stds, "standard deviations"), (figures.means, "means"))
+    ):
+        for row, (lines, what) in enumerate(((values.mean(axis=0), "mean"), (values.std(axis=0), "spread"))):
             axes = grid[row, column]
-            for number, method in enumerate(methods):
+            for number, method in enumerate(METHODS):
                 axes.plot(
-                    counts,
-                    figures[number],
+                    figures.counts,
+                    lines[number],
                     color=SERIES[number % len(SERIES)],
                     marker=MARKERS[number % len(MARKERS)],
                     markersize=4,
                     label=f"method {method}",
                 )
             axes.set(title=f"{what} of the scenes' {name}", ylabel=unit, xscale="log", ylim=(0, None))
-            axes.set_xticks(list(counts), [str(n) for n in counts])
+            axes.set_xticks(list(figures.counts), [str(n) for n in figures.counts])
             axes.minorticks_off()
             axes.grid(alpha=0.3)
     for axes in grid[1]:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from experiments.page import markdown_table
 from experiments.suites.plan import world_label
 
 ROUND_COLUMNS = {
@@ -37,8 +38,14 @@ MAP_COLUMNS = {
 
 def suite_markdown(suite: str, maps: Sequence[Mapping[str, Any]], runs: Sequence[Mapping[str, Any]]) -> str:
     """Tables of maps, runs, and rounds that failed."""
-    lines = [f"# Suite {suite}", "", "## Rounds", "", *_table(ROUND_COLUMNS, [run_row(run) for run in runs])]
-    lines += ["", "## Maps", "", *_table(MAP_COLUMNS, [map_row(one) for one in maps])]
+    lines = [
+        f"# Suite {suite}",
+        "",
+        "## Rounds",
+        "",
+        *markdown_table(ROUND_COLUMNS, [run_row(run) for run in runs]),
+    ]
+    lines += ["", "## Maps", "", *markdown_table(MAP_COLUMNS, [map_row(one) for one in maps])]
     failed = [
         f"- {world_label(run['world'])}, {run['profile']}, round {number}: {one['reason']} "
         f"({one['final_distance_m']:.2f} m left)"
@@ -70,12 +77,3 @@ def map_row(one: Mapping[str, Any]) -> dict[str, Any]:
     nodes = max(1, one["nodes"])
     figures = {"s_per_node": one["wall_s"] / nodes, "kb_per_node": one["bytes_per_node"] / 1000}
     return {**one, **figures, "world": world_label(one["world"])}
-
-
-def _table(columns: Mapping[str, str], rows: Sequence[Mapping[str, Any]]) -> list[str]:
-    head = ["| " + " | ".join(columns.values()) + " |", "|" + "---|" * len(columns)]
-    return head + ["| " + " | ".join(_cell(row.get(key, "")) for key in columns) + " |" for row in rows]
-
-
-def _cell(value: object) -> str:
-    return f"{value:.3g}" if isinstance(value, float) else str(value)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from services.planner.heading.pairs import sign
+from services.planner.heading.pairs import signed_bisectors, vote_signs
 from shared.geometry.angles import FloatArray
 
 
@@ -21,12 +21,8 @@ def pair_headings(u_c: list[FloatArray], u_t: list[FloatArray]) -> FloatArray:
         u_t: [u_ti, u_tj], each (P, 2), target frame.
     """
     (ci, cj), (ti, tj) = u_c, u_t
-    a = sign((ci * cj).sum(axis=1) - (ti * tj).sum(axis=1))
-    b = (sign(_cross(ci, cj) * _cross(ti, tj)) + 1.0) / 2.0
-    bisector = ci + cj
-    length = np.hypot(bisector[:, 0], bisector[:, 1])
-    scale = np.where(length > 1e-9, 1.0 / np.maximum(length, 1e-9), 0.0)
-    return np.asarray((1.0 + b * (a - 1.0))[:, None] * bisector * scale[:, None])
+    spread = (ci * cj).sum(axis=1) - (ti * tj).sum(axis=1)
+    return signed_bisectors(ci, cj, spread, _cross(ci, cj) * _cross(ti, tj))
 
 
 def latitude_headings(u_c: FloatArray, v_c: FloatArray, v_t: FloatArray, v_h: FloatArray) -> FloatArray:
@@ -38,9 +34,8 @@ def latitude_headings(u_c: FloatArray, v_c: FloatArray, v_t: FloatArray, v_h: Fl
         v_t: (N, 2) latitude unit vectors, target frame.
         v_h: (2,) horizontal unit vector.
     """
-    a = sign(v_c @ v_h - v_t @ v_h)
-    b = (sign(_cross(v_c, v_h) * _cross(v_t, v_h)) + 1.0) / 2.0
-    return np.asarray((1.0 + b * (a - 1.0))[:, None] * u_c)
+    signs = vote_signs(v_c @ v_h - v_t @ v_h, _cross(v_c, v_h) * _cross(v_t, v_h))
+    return np.asarray(signs[:, None] * u_c)
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:

@@ -76,8 +76,16 @@ KEYPOINT_NETWORKS = (
 EXTRACTORS = CLASSIC + PATCH_NETWORKS + KEYPOINT_NETWORKS
 REPRESENTATIONS = ("equirectangular", "tangent", "planar")
 MATCHERS = ("mutual_ratio", "brute_force", "lightglue", "superglue", "superglue-outdoor")
-LIGHTGLUE = ("aliked-n16", "aliked-n16rot", "aliked-n32", "disk", "dedode", "xfeat", "superpoint")
-"""Extractors for which somebody trained a LightGlue."""
+LIGHTGLUE = {
+    "aliked-n16": "aliked",
+    "aliked-n16rot": "aliked",
+    "aliked-n32": "aliked",
+    "disk": "disk",
+    "dedode": "dedodeb",
+    "xfeat": "xfeat",
+    "superpoint": "superpoint",
+}
+"""Extractors for which somebody trained a LightGlue -> kornia's name of those weights."""
 
 
 def find_profile(name: str) -> Profile:

@@ -9,18 +9,7 @@ import torch
 from services.features.interfaces import Distance, FeatureSet, IndexArray
 from services.features.matchers.pixels import HEIGHT_PX, WIDTH_PX, pixels_of
 from services.features.networks.runtime import device_named, loading
-from services.features.pipelines import Profile
-
-FEATURES = {
-    "aliked-n16": "aliked",
-    "aliked-n16rot": "aliked",
-    "aliked-n32": "aliked",
-    "disk": "disk",
-    "dedode": "dedodeb",
-    "xfeat": "xfeat",
-    "superpoint": "superpoint",
-}
-"""Extractor -> name of the weights trained for it."""
+from services.features.pipelines import LIGHTGLUE, Profile
 
 
 class LightGlue:
@@ -31,7 +20,7 @@ class LightGlue:
     ) -> None:
         del distance
         self._device = device_named(device)
-        features = FEATURES[profile.extractor]
+        features = LIGHTGLUE[profile.extractor]
         self._network = _build(features, trained=trained).to(self._device).eval()
         self._size = torch.tensor([[WIDTH_PX, HEIGHT_PX]], dtype=torch.float32, device=self._device)
 

@@ -7,6 +7,8 @@ we have held the file in our hands; the others are checked by their libraries al
 from dataclasses import dataclass
 from typing import Literal
 
+from services.features.pipelines import PATCH_NETWORKS
+
 Source = Literal["kornia", "transformers"]
 
 
@@ -43,7 +45,6 @@ def _aliked(variant: str, size_bytes: int, sha256: str) -> TrainedModel:
 
 
 MAGIC_LEAP = "Magic Leap, non-commercial research only"
-PATCHES = ("tfeat", "hardnet", "hardnet8", "sosnet", "mkd")
 
 MODELS: tuple[TrainedModel, ...] = (
     _aliked("aliked-t16", 794859, "56782336919db220144a884e710e2b6af13b3b8f8da15b915a239078ab471085"),
@@ -73,7 +74,7 @@ MODELS: tuple[TrainedModel, ...] = (
         "AffNet.pth",
         "MIT",
         "github.com/ducha-aiki/affnet",
-        PATCHES,
+        PATCH_NETWORKS,
         339871,
         "65c8bb2cf71e913818522d09dcc4262bcbcef5d756baa86a41f28526c2d61160",
     ),
@@ -82,7 +83,7 @@ MODELS: tuple[TrainedModel, ...] = (
         "OriNet.pth",
         "MIT",
         "github.com/ducha-aiki/affnet",
-        PATCHES,
+        PATCH_NETWORKS,
         323258,
         "030e7964ae3e136d00431c7e11c6b67df40ad299f02ac384fee0f1c3fd1dcb30",
     ),
@@ -91,7 +92,7 @@ MODELS: tuple[TrainedModel, ...] = (
         "keynet_pytorch.pth",
         "MIT",
         "github.com/axelBarroso/Key.Net-Pytorch",
-        PATCHES,
+        PATCH_NETWORKS,
         79873,
         "59d3a46d57b439513acf531877fdfaa95eb550ccd10ec462e23d7c1f7a86d52a",
     ),

@@ -5,12 +5,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import numpy.typing as npt
 import torch
 
 from services.features.interfaces import Detections, Distance, Image, IndexArray
-from services.features.networks.runtime import batch_of, device_named
+from services.features.networks.runtime import batch_of, device_named, unit_descriptors
 from services.features.pipelines import Profile
 
 CANDIDATES = 3
@@ -66,7 +65,5 @@ class KeypointNetwork(ABC):
 
 
 def _detections(found: Found) -> Detections:
-    lengths = torch.linalg.vector_norm(found.descriptors.float(), dim=-1, keepdim=True).clamp_min(1e-6)
-    unit = (found.descriptors.float() / lengths).cpu().numpy().astype(np.float16)
     pixels = found.keypoints.double().cpu().numpy().reshape(-1, 2) + 0.5
-    return Detections(pixels, found.scores.float().cpu().numpy(), unit)
+    return Detections(pixels, found.scores.float().cpu().numpy(), unit_descriptors(found.descriptors))

@@ -10,7 +10,7 @@ import numpy.typing as npt
 import torch
 
 from services.features.interfaces import Detections, Distance, Image, IndexArray
-from services.features.networks.runtime import batch_of, device_named, loading
+from services.features.networks.runtime import batch_of, device_named, loading, unit_descriptors
 from services.features.pipelines import Profile
 
 CANDIDATES = 3
@@ -64,9 +64,7 @@ class PatchNetwork(ABC):
             frames = detections.handle[:, torch.as_tensor(chosen, device=self._device)]
             for step in self._steps:
                 frames = step(frames, picture)
-            found = self._describe(picture, frames)[0].float()
-            unit = found / torch.linalg.vector_norm(found, dim=-1, keepdim=True).clamp_min(1e-6)
-        return chosen, unit.cpu().numpy().astype(np.float16)
+            return chosen, unit_descriptors(self._describe(picture, frames)[0])
 
 
 def _detector(profile: Profile, *, trained: bool) -> torch.nn.Module:

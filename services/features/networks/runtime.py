@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 import numpy as np
+import numpy.typing as npt
 import torch
 
 from services.features.interfaces import Image
@@ -40,6 +41,12 @@ def loading(what: str) -> Iterator[None]:
             f"the weights of {what} could not be loaded ({first}): run 'topnav models pull {what}' where "
             "there is a network, or copy the file into the cache that 'topnav models list' names"
         ) from error
+
+
+def unit_descriptors(found: torch.Tensor) -> npt.NDArray[np.float16]:
+    """Descriptors (N, D) of length one, as they travel."""
+    lengths = torch.linalg.vector_norm(found.float(), dim=-1, keepdim=True).clamp_min(1e-6)
+    return np.asarray((found.float() / lengths).cpu().numpy(), np.float16)
 
 
 def batch_of(grays: Sequence[Image], channels: int, device: torch.device) -> torch.Tensor:

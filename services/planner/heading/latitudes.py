@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from services.planner.heading.pairs import sign
+from services.planner.heading.pairs import vote_signs
 from shared.geometry.angles import FloatArray
 
 
@@ -33,8 +33,6 @@ def latitude_votes(current: FloatArray, target: FloatArray) -> LatitudeVotes:
     """
     lat_c, lat_t = current[:, 1], target[:, 1]
     u = np.stack([np.cos(current[:, 0]), np.sin(current[:, 0])], axis=1)
-    a = sign(np.cos(lat_c) - np.cos(lat_t))  # (2.13)
-    b = (
-        sign(np.sin(lat_c) * np.sin(lat_t)) + 1.0
-    ) / 2.0  # (2.14): both cross products with the x axis are -sin
-    return LatitudeVotes((1.0 + b * (a - 1.0))[:, None] * u, np.abs(lat_t) - np.abs(lat_c))
+    # (2.13) and (2.14): both cross products with the x axis are -sin.
+    signs = vote_signs(np.cos(lat_c) - np.cos(lat_t), np.sin(lat_c) * np.sin(lat_t))
+    return LatitudeVotes(signs[:, None] * u, np.abs(lat_t) - np.abs(lat_c))

@@ -38,15 +38,31 @@ def pair_votes(current: FloatArray, target: FloatArray) -> PairVotes:
     u = np.stack([np.cos(current[:, 0]), np.sin(current[:, 0])], axis=1)
     delta_c = wrap_rad(current[i, 0] - current[j, 0])
     delta_t = wrap_rad(target[i, 0] - target[j, 0])
-    a = sign(
-        np.cos(delta_c) - np.cos(delta_t)
-    )  # (2.4): a dot product of unit vectors is the cosine of the difference
-    b = (sign(np.sin(delta_c) * np.sin(delta_t)) + 1.0) / 2.0  # (2.5): the cross product is its sine
-    bisector = u[i] + u[j]
+    # Of unit vectors a dot product is the cosine of the difference (2.4), a cross product its sine (2.5).
+    spread, kept = np.cos(delta_c) - np.cos(delta_t), np.sin(delta_c) * np.sin(delta_t)
+    directions = signed_bisectors(u[i], u[j], spread, kept)
+    return PairVotes(directions, np.abs(delta_t) - np.abs(delta_c))
+
+
+def signed_bisectors(u_i: FloatArray, u_j: FloatArray, spread: FloatArray, kept: FloatArray) -> FloatArray:
+    """Bisectors (P, 2) of unit vectors with their signs, equations (2.3) to (2.6); zero if antipodal.
+
+    Args:
+        u_i: (P, 2) first of each pair, current frame.
+        u_j: (P, 2) second.
+        spread: (P,) dot product of the pair in the current frame less that in the target frame.
+        kept: (P,) product of its cross products in both frames, positive where the order is kept.
+    """
+    bisector = u_i + u_j
     length = np.hypot(bisector[:, 0], bisector[:, 1])
     scale = np.where(length > 1e-9, 1.0 / np.maximum(length, 1e-9), 0.0)
-    directions = (1.0 + b * (a - 1.0))[:, None] * bisector * scale[:, None]  # (2.6)
-    return PairVotes(directions, np.abs(delta_t) - np.abs(delta_c))
+    return np.asarray(vote_signs(spread, kept)[:, None] * bisector * scale[:, None])
+
+
+def vote_signs(towards: FloatArray, kept: FloatArray) -> FloatArray:
+    """Signs (N,) of votes, 1 + B (A - 1): A is the sign of `towards`, B whether `kept` is positive."""
+    a, b = sign(towards), (sign(kept) + 1.0) / 2.0
+    return 1.0 + b * (a - 1.0)
 
 
 def sign(values: FloatArray) -> FloatArray:
