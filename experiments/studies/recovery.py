@@ -26,6 +26,7 @@ from simulator.world_file import load_world
 TRIES = 10
 CARRIED_AT_STEPS = (5, 40)
 MAX_STEPS = 1500
+KINDS = ("carried", "foreign", "shut-door")
 DOOR, DOOR_NAME, DOOR_APART_M = "bookshelf", "shut door", 0.5
 
 Row = dict[str, Any]
@@ -39,11 +40,14 @@ def main(
         tuple[float, float, float], typer.Option(help="Middle of the only door and its heading (degrees).")
     ] = (1.65, -0.1, 90.0),
     trials: Annotated[int, typer.Option(min=1, help="Trials of each kind.")] = 10,
+    only: Annotated[str, typer.Option(help=f"One of {', '.join(KINDS)}; default: all.")] = "",
     seed: options.Seed = 1,
     json_file: options.JsonFile = None,
     data_dir: options.DataDir = options.DATA_DIR,
 ) -> None:
     """Carried robots, pictures from elsewhere, a shut door: each ends well or says by name why not."""
+    if only and only not in KINDS:
+        raise typer.BadParameter(f"--only must be one of {', '.join(KINDS)}, got {only!r}")
     rng = np.random.default_rng(seed)
     rows: list[Row] = []
     with one_line_errors(), open_stack(StackChoice(data_dir, world, seed, lockstep=True)) as stack:
@@ -51,13 +55,14 @@ def main(
         space = free_space(load_world(world))
         game = Game(stack, space, map_name, rng)
         game.begin(seed)
-        pictures = foreign_pictures(elsewhere, trials, rng)
+        pictures = foreign_pictures(elsewhere, trials, rng) if only in ("", "foreign") else []
         kinds: dict[str, Callable[[int], Row]] = {
             "carried": lambda n: carried(game, space, seed + n, rng),
             "foreign": lambda n: foreign(stack, game, map_name, pictures[n], seed + n),
-            "shut door": lambda n: shut_door(game, space, door_m, seed + n, rng),
+            "shut-door": lambda n: shut_door(game, space, door_m, seed + n, rng),
         }
-        for kind, trial in kinds.items():
+        for kind in (only,) if only else KINDS:
+            trial = kinds[kind]
             for number in range(trials):
                 rows.append({"kind": kind, "trial": number + 1, **trial(number)})
                 if json_file is not None:

@@ -19,6 +19,9 @@ WINDOW = 4
 
 STUCK_STEPS = 35
 CLOSER = 0.95
+WAITING_STEPS = 8
+"""Steps at a via point after which the next one should have shown."""
+
 SLOW_RAD = math.radians(12.0)
 SLOWEST = 0.15
 NEAREST_STEPS = 8
@@ -61,7 +64,7 @@ class PathFollower:
         self._heading_rad: float | None = None
         self._steady = SteadyHeading()
         self._best_rad = float("inf")
-        self._stale = 0
+        self._stale = self._waiting = 0
         self.progress = Progress(via_points=tuple(path))
 
     def step(self, observation: Observation, matcher: Matcher) -> tuple[FollowState, Decision]:
@@ -86,6 +89,8 @@ class PathFollower:
             if self._strict
             else self._steady.follow(via, seen_rad, close=s_cv >= self._profile.s_node_max)
         )
+        if self._waits_too_long(match):
+            return "stuck", self._hold(f"at {_name(via)}, {_name(self.path[self.index + 1])} unseen", notes)
         if self._no_progress(match):
             if self._near_end(match):
                 return "arrived", self._hold(f"as near to {_name(via)} as obstacles allow, S {s_cv}", notes)
@@ -96,6 +101,12 @@ class PathFollower:
     def current_leg(self) -> Leg | None:
         """The leg being driven; None at index 0, where there is none (thesis equation 6.4)."""
         return leg(*self.path[self.index - 1 : self.index + 1]) if self.index else None
+
+    def failed_leg(self) -> tuple[Leg | None, int]:
+        """What stopped the robot: the leg being driven and its via point; at a via point, what comes next."""
+        if self._waiting > WAITING_STEPS:
+            return self.next_leg(), self.path[self.index + 1]
+        return self.current_leg(), self.path[self.index]
 
     def next_leg(self) -> Leg:
         """The leg from the current via point to the one after it."""
@@ -192,6 +203,12 @@ class PathFollower:
         else:
             self._stale += 1
         return self._stale > (NEAREST_STEPS if self._near_end(match) else STUCK_STEPS)
+
+    def _waits_too_long(self, match: NodeMatch) -> bool:
+        """At a via point from which the next one does not show: what leads there is shut."""
+        at_via = not (self._strict or self._at_end()) and self._is_at(match)
+        self._waiting = self._waiting + 1 if at_via else 0
+        return self._waiting > WAITING_STEPS
 
     def _near_end(self, match: NodeMatch) -> bool:
         near = match.disparity_rad is not None and match.disparity_rad < self._profile.near_rad

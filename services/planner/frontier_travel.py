@@ -101,7 +101,7 @@ class FrontierTravel:
         A way that ended early blames its end only when others ended before it; one that ended before its
         first place is tried from another place in sight.
         """
-        end, via, failed_leg = follower.path[-1], follower.path[follower.index], follower.current_leg()
+        end, (failed_leg, via) = follower.path[-1], follower.failed_leg()
         self._in_vain += 1
         blamed = via == end or self._in_vain > TRAVELS_IN_VAIN
         self._failures[end] = self._failures.get(end, 0) + blamed

@@ -183,9 +183,8 @@ class Goto:
         assert self._follower is not None
         if state == "unclear":
             return self._doubt(self._follower.next_leg(), decision, notes)
-        ends = self._follower.current_leg()
-        via = self._follower.path[self._follower.index]
-        if via == GOAL and self._follower.index:
+        ends, via = self._follower.failed_leg()
+        if via == GOAL and ends is not None:
             self._blame_last_leg(self._follower.path[-2])
         self._follower = None
         self._avoid[via] = self._avoid.get(via, 0.0) + 0.5

@@ -44,8 +44,9 @@ def test_a_closed_door_is_a_typed_failure_and_an_open_one_is_used_again(explored
     world, maps, _ = explored
     before = world.space
     world.put(DOOR)
-    decision, _ = go(explored, HALL)
+    decision, steps = go(explored, HALL)
     assert (decision.outcome, decision.failure) == ("failed", "blocked"), decision.why
+    assert steps < 600, "at a via point that shows nothing beyond, waiting is no use"
     assert any(edge.suspended for edge in maps.graph.edges.values())
     assert world.collisions == 0
     world.take_away(before)
