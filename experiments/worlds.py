@@ -10,6 +10,7 @@ from rich.table import Table
 
 from experiments import options
 from experiments.output import write_json
+from experiments.plots.saving import save
 from simulator.world_check import WorldReport, examine
 from simulator.world_file import WorldFile, load_world
 from simulator.world_reference import reference, renewed
@@ -87,14 +88,13 @@ def _draw(world: WorldFile, path: Path) -> None:
 
     from experiments.plots.world import draw_world
 
-    figure = Figure(figsize=(8, 8), dpi=130, layout="constrained")
+    figure = Figure(figsize=(8, 8), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
     draw_world(axes, world)
     axes.plot([world.start.x_m], [world.start.y_m], "o", color="#1a9a3c")
     axes.set_title(f"{world.name}, start in green")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path)
+    save(figure, path)
 
 
 def _render(world: WorldFile, path: Path) -> None:

@@ -9,9 +9,8 @@ from matplotlib.figure import Figure
 from experiments.monte_carlo.ahae import METHODS
 from experiments.monte_carlo.statistics import Statistics
 from experiments.plots.colours import MARKERS, SERIES
+from experiments.plots.saving import save
 from shared.geometry.angles import FloatArray
-
-DPI = 110
 
 
 def draw_boxes(path: Path, title: str, unit: str, figures: Statistics) -> None:
@@ -39,7 +38,7 @@ def draw_boxes(path: Path, title: str, unit: str, figures: Statistics) -> None:
     grid[0, 0].set_ylabel(f"standard deviation per scene ({unit})")
     grid[1, 0].set_ylabel(f"mean per scene ({unit})")
     figure.suptitle(title)
-    _save(figure, path)
+    save(figure, path)
 
 
 def draw_comparison(path: Path, title: str, unit: str, figures: Statistics) -> None:
@@ -69,7 +68,7 @@ def draw_comparison(path: Path, title: str, unit: str, figures: Statistics) -> N
         axes.set_xlabel("matches")
     grid[0, 1].legend(fontsize=8)
     figure.suptitle(title)
-    _save(figure, path)
+    save(figure, path)
 
 
 def _box(axes: Axes, values: FloatArray) -> None:
@@ -81,8 +80,3 @@ def _box(axes: Axes, values: FloatArray) -> None:
     )
     axes.plot(range(1, values.shape[1] + 1), values.mean(axis=0), "--", color="#0072B2", linewidth=1.2)
     axes.grid(axis="y", alpha=0.3)
-
-
-def _save(figure: Figure, path: Path) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=DPI)

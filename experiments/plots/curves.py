@@ -6,8 +6,9 @@ from typing import Any
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from experiments.plots.saving import save
+
 SIZE_IN = (10.0, 4.4)
-DPI = 130
 MEASURES = (("success_rate", "success rate"), ("spl_mean", "mean SPL"))
 
 
@@ -40,5 +41,4 @@ def draw_curves(path: Path, results: list[dict[str, Any]], clean: str) -> None:
         axes.set(xlabel="level", title=title, xlim=(-0.03, 1.03), ylim=(-0.03, 1.05))
         axes.grid(alpha=0.3)
     figure.axes[1].legend(loc="lower left", fontsize=8)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=DPI)
+    save(figure, path)

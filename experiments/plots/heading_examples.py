@@ -10,8 +10,7 @@ from matplotlib.figure import Figure
 from experiments.monte_carlo.examples import FailedPath, LatitudeCase, PairCloud
 from experiments.monte_carlo.scene import SIDE_M, MonteCarloScene
 from experiments.plots.colours import SERIES
-
-DPI = 110
+from experiments.plots.saving import save
 
 
 def draw_pair_cloud(path: Path, cloud: PairCloud) -> None:
@@ -27,7 +26,7 @@ def draw_pair_cloud(path: Path, cloud: PairCloud) -> None:
         ylabel="bisector away from the true heading (deg)",
     )
     axes.legend()
-    _save(figure, path)
+    save(figure, path)
 
 
 def draw_latitude_case(path: Path, case: LatitudeCase) -> None:
@@ -41,7 +40,7 @@ def draw_latitude_case(path: Path, case: LatitudeCase) -> None:
     ):
         axes.plot(points[mask, 0], points[mask, 1], ".", color=colour, label=name)
     axes.legend(fontsize=8)
-    _save(figure, path)
+    save(figure, path)
 
 
 def draw_failed_path(path: Path, failed: FailedPath, title: str) -> None:
@@ -71,7 +70,7 @@ def draw_failed_path(path: Path, failed: FailedPath, title: str) -> None:
     )
     headings.set(xlabel="step", ylabel="heading (deg)", title="heading")
     headings.legend(fontsize=8)
-    _save(figure, path)
+    save(figure, path)
 
 
 def _places(axes: Axes, scene: MonteCarloScene) -> None:
@@ -86,8 +85,3 @@ def _figure(width: float, height: float) -> tuple[Figure, Axes]:
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure, figure.subplots()
-
-
-def _save(figure: Figure, path: Path) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=DPI)

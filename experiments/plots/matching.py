@@ -8,8 +8,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from experiments.plots.colours import MARKERS, SERIES
+from experiments.plots.saving import save
 
-DPI = 110
 LINES = {"equirectangular": "-", "tangent": "--"}
 LABELS = {
     "latitude": "latitude of the picture's centre (deg)",
@@ -54,8 +54,7 @@ def draw_matching(path: Path, rows: Sequence[dict[str, Any]], matcher: str) -> N
         axes.axis("off")
     handles, labels = grid[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside right upper", fontsize=7)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=DPI)
+    save(figure, path)
 
 
 def draw_curves(path: Path, curves: Sequence[tuple[str, Any]]) -> None:
@@ -74,5 +73,4 @@ def draw_curves(path: Path, curves: Sequence[tuple[str, Any]]) -> None:
     axes.set(xlabel="recall", ylabel="precision", xlim=(0, 1), ylim=(0, 1.03))
     axes.grid(alpha=0.3)
     axes.legend(fontsize=8)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=DPI)
+    save(figure, path)

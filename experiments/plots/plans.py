@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from experiments.plots.saving import save
 from experiments.plots.world import draw_world
 from shared.messages.maps import Edge
 from shared.messages.simulation import Pose
@@ -23,7 +24,6 @@ START = "#1a9a3c"
 VIA = "#8a2be2"
 TARGET = "#d62020"
 PATH = "#ff8c00"
-DPI = 130
 SIZE_IN = (7.5, 8.5)
 LABELLED = 150
 
@@ -48,7 +48,7 @@ def draw_map(path: Path, world: WorldFile, poses: Mapping[int, Pose], edges: Ite
     figure, axes = _sheet(world)
     _graph(axes, poses, edges)
     axes.set_title(f"map of {world.name}: {len(poses)} places")
-    _save(figure, path)
+    save(figure, path)
 
 
 def draw_way(
@@ -68,11 +68,11 @@ def draw_way(
     handles = [Line2D([], [], color=c, marker="o", linestyle="", label=name) for name, c in named]
     handles.append(Line2D([], [], color=PATH, label="way driven"))
     axes.legend(handles=handles, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, fontsize=8)
-    _save(figure, path)
+    save(figure, path)
 
 
 def _sheet(world: WorldFile) -> tuple[Figure, Axes]:
-    figure = Figure(figsize=SIZE_IN, dpi=DPI, layout="constrained")
+    figure = Figure(figsize=SIZE_IN, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
     draw_world(axes, world)
@@ -96,8 +96,3 @@ def _spot(axes: Axes, pose: Pose, colour: str, size: float, zorder: int) -> None
     axes.scatter(
         [pose.x_m], [pose.y_m], s=size, color=colour, edgecolors="white", linewidths=0.5, zorder=zorder
     )
-
-
-def _save(figure: Figure, path: Path) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path)

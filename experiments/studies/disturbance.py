@@ -14,7 +14,8 @@ from experiments.plots.curves import draw_curves
 from experiments.progress import mission_progress
 from experiments.rounds import Game, hiding_place
 from experiments.stack import StackChoice, open_stack
-from experiments.studies.disturbance_results import CLEAN, ResultsFile, Row, settings_to_run, summary
+from experiments.studies.disturbance_results import CLEAN, settings_to_run, summary
+from experiments.studies.results_file import ResultsFile, Row
 from experiments.tables import print_rows, wide_console
 from services.launcher.state import StateFolder
 from simulator.changes import changed_world

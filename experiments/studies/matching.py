@@ -1,6 +1,5 @@
 """`topnav study matching`: descriptors, representations and matchers on the sphere (thesis, section 3.1)."""
 
-import json
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,10 +14,11 @@ from experiments.matching import plan, study
 from experiments.matching.measure import measure_pair, words_of
 from experiments.matching.pictures import from_folder, rendered
 from experiments.matching.placing import UNCHANGED, Change, Image
-from experiments.output import write_json
 from experiments.page import write_page
 from experiments.plots.matching import draw_curves, draw_matching
+from experiments.studies.results_file import ResultsFile
 from experiments.tables import print_rows, wide_console
+from services.features.plugins import CLASSIC
 
 TIMED_PX = 2048
 
@@ -51,12 +51,19 @@ def main(
         if pictures is None
         else from_folder(pictures, size.images, side_px)
     )
-    report = _measure(names, sources, size, json_file, {"seed": seed, "canvas_px": size.canvas_px})
+    setup = {
+        "seed": seed,
+        "canvas_px": size.canvas_px,
+        "images": len(sources),
+        "latitudes_deg": list(size.latitudes_deg),
+    }
+    file = ResultsFile(json_file, setup, "timing")
+    _measure(file, names, sources, size)
     if timing:
-        _time(report, names, rendered(1, TIMED_PX // 4, seed, folder)[0], json_file)
-    report["tangent_wins"] = study.tangent_wins(report["results"])
-    if json_file is not None:
-        write_json(json_file, report)
+        _time(file, names, rendered(1, TIMED_PX // 4, seed, folder)[0])
+    wins = study.tangent_wins(file.results)
+    file.write(tangent_wins=wins)
+    report = {**file.tables, "tangent_wins": wins}
     if plots is not None:
         for matcher in plan.MATCHERS:
             draw_matching(plots / f"map-{matcher}.png", report["results"], matcher)
@@ -65,13 +72,9 @@ def main(
     _show(report)
 
 
-def _measure(
-    names: list[str], sources: list[Image], size: plan.Size, json_file: Path | None, setup: dict[str, Any]
-) -> dict[str, Any]:
-    """Rows of all descriptors; those in the file from an earlier try of the same setup are kept."""
-    setup |= {"images": len(sources), "latitudes_deg": list(size.latitudes_deg)}
-    report = _earlier(json_file, setup)
-    done = {row["descriptor"] for row in report["results"]}
+def _measure(file: ResultsFile, names: list[str], sources: list[Image], size: plan.Size) -> None:
+    """Rows of all descriptors that the file does not have yet."""
+    done = {row["descriptor"] for row in file.results}
     with wide_console(stderr=True).status("") as status:
         for name in names:
             if name in done:
@@ -80,36 +83,19 @@ def _measure(
             for row in study.measured(name, sources, size):
                 rows.append(row)
                 status.update(f"{name}, {row['representation']}, {row['matcher']}: {row['disturbance']}")
-            report["results"] += rows
-            if json_file is not None:
-                write_json(json_file, report)
-    return report
+            file.add(*rows)
 
 
-def _earlier(json_file: Path | None, setup: dict[str, Any]) -> dict[str, Any]:
-
-    if json_file is not None and json_file.exists():
-        report: dict[str, Any] = json.loads(json_file.read_text(encoding="utf-8"))
-        if {key: report.get(key) for key in setup} != setup:
-            raise ExperimentError(f"{json_file} belongs to another setup: choose another --json file")
-        return report
-    return {**setup, "results": [], "timing": []}
-
-
-def _time(report: dict[str, Any], names: list[str], view: Image, json_file: Path | None) -> None:
+def _time(file: ResultsFile, names: list[str], view: Image) -> None:
     """Extraction times of a 1024 x 2048 picture full of texture: the view, tiled over the sphere."""
     panorama = np.asarray(cv2.resize(np.tile(view, (2, 4)), (TIMED_PX, TIMED_PX // 2)), np.uint8)
-    done = {row["descriptor"] for row in report["timing"]}
+    done = {row["descriptor"] for row in file.tables["timing"]}
     for name in names:
-        row = (
-            study.timed(name, panorama, 3 if name in ("sift", "orb", "beblid") else 1)
-            if name not in done
-            else None
-        )
+        if name in done:
+            continue
+        row = study.timed(name, panorama, 3 if name in CLASSIC else 1)
         if row is not None:
-            report["timing"].append(row)
-            if json_file is not None:
-                write_json(json_file, report)
+            file.add(row, table="timing")
 
 
 def _names(only: str | None) -> list[str]:

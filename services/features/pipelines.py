@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from services.features.plugins import PLUGINS
+
 
 @dataclass(frozen=True)
 class Profile:
@@ -61,21 +63,6 @@ PROFILES: dict[str, Profile] = {
     "superpoint_superglue": Profile("superpoint", matcher="superglue", keypoints=150),
 }
 
-CLASSIC = ("sift", "orb", "beblid")
-PATCH_NETWORKS = ("tfeat", "hardnet", "hardnet8", "sosnet", "mkd")
-KEYPOINT_NETWORKS = (
-    "aliked-t16",
-    "aliked-n16",
-    "aliked-n16rot",
-    "aliked-n32",
-    "disk",
-    "xfeat",
-    "dedode",
-    "superpoint",
-)
-EXTRACTORS = CLASSIC + PATCH_NETWORKS + KEYPOINT_NETWORKS
-REPRESENTATIONS = ("equirectangular", "tangent", "planar")
-MATCHERS = ("mutual_ratio", "brute_force", "lightglue", "superglue", "superglue-outdoor")
 LIGHTGLUE = {
     "aliked-n16": "aliked",
     "aliked-n16rot": "aliked",
@@ -97,17 +84,16 @@ def find_profile(name: str) -> Profile:
     if name in PROFILES:
         return PROFILES[name]
     extractor, representation, matcher, *rest = [*name.split("/"), "", "", ""][: max(3, name.count("/") + 1)]
-    if extractor not in EXTRACTORS or rest:
+    if extractor not in PLUGINS["extractor"] or rest:
         raise ValueError(
             f"pipeline must be one of {sorted(PROFILES)} or extractor[/representation[/matcher]] "
-            f"with an extractor of {sorted(EXTRACTORS)}, got {name!r}"
+            f"with an extractor of {sorted(PLUGINS['extractor'])}, got {name!r}"
         )
-    for kind, value, choices in (
-        ("representation", representation, REPRESENTATIONS),
-        ("matcher", matcher, MATCHERS),
-    ):
-        if value and value not in choices:
-            raise ValueError(f"{kind} of pipeline {name!r} must be one of {list(choices)}, got {value!r}")
+    for kind, value in (("representation", representation), ("matcher", matcher)):
+        if value and value not in PLUGINS[kind]:
+            raise ValueError(
+                f"{kind} of pipeline {name!r} must be one of {list(PLUGINS[kind])}, got {value!r}"
+            )
     return combined(extractor, representation or "equirectangular", matcher or "mutual_ratio")
 
 

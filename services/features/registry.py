@@ -4,40 +4,8 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
-from services.features.pipelines import CLASSIC, Profile
-
-PLUGINS: dict[str, dict[str, str]] = {
-    "extractor": {
-        "sift": "services.features.extractors.sift:Sift",
-        "orb": "services.features.extractors.orb:Orb",
-        "beblid": "services.features.extractors.beblid:Beblid",
-        "tfeat": "services.features.extractors.tfeat:TFeat",
-        "hardnet": "services.features.extractors.hardnet:HardNet",
-        "hardnet8": "services.features.extractors.hardnet8:HardNet8",
-        "sosnet": "services.features.extractors.sosnet:SosNet",
-        "mkd": "services.features.extractors.mkd:Mkd",
-        "aliked-t16": "services.features.extractors.aliked:Aliked",
-        "aliked-n16": "services.features.extractors.aliked:Aliked",
-        "aliked-n16rot": "services.features.extractors.aliked:Aliked",
-        "aliked-n32": "services.features.extractors.aliked:Aliked",
-        "disk": "services.features.extractors.disk:Disk",
-        "xfeat": "services.features.extractors.xfeat:XFeat",
-        "dedode": "services.features.extractors.dedode:DeDoDe",
-        "superpoint": "services.features.extractors.superpoint:SuperPoint",
-    },
-    "representation": {
-        "equirectangular": "services.features.representations.equirectangular:Equirectangular",
-        "tangent": "services.features.representations.tangent:Tangent",
-        "planar": "services.features.representations.planar:Planar",
-    },
-    "matcher": {
-        "mutual_ratio": "services.features.matchers.mutual_ratio:MutualRatio",
-        "brute_force": "services.features.matchers.brute_force:BruteForce",
-        "lightglue": "services.features.matchers.lightglue:LightGlue",
-        "superglue": "services.features.matchers.superglue:SuperGlue",
-        "superglue-outdoor": "services.features.matchers.superglue:SuperGlue",
-    },
-}
+from services.features.pipelines import Profile
+from services.features.plugins import CLASSIC, PLUGINS
 
 
 @dataclass(frozen=True)

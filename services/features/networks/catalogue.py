@@ -7,7 +7,7 @@ we have held the file in our hands; the others are checked by their libraries al
 from dataclasses import dataclass
 from typing import Literal
 
-from services.features.pipelines import PATCH_NETWORKS
+from services.features.plugins import PATCH_NETWORKS
 
 Source = Literal["kornia", "transformers"]
 
@@ -74,7 +74,7 @@ MODELS: tuple[TrainedModel, ...] = (
         "AffNet.pth",
         "MIT",
         "github.com/ducha-aiki/affnet",
-        PATCH_NETWORKS,
+        tuple(PATCH_NETWORKS),
         339871,
         "65c8bb2cf71e913818522d09dcc4262bcbcef5d756baa86a41f28526c2d61160",
     ),
@@ -83,7 +83,7 @@ MODELS: tuple[TrainedModel, ...] = (
         "OriNet.pth",
         "MIT",
         "github.com/ducha-aiki/affnet",
-        PATCH_NETWORKS,
+        tuple(PATCH_NETWORKS),
         323258,
         "030e7964ae3e136d00431c7e11c6b67df40ad299f02ac384fee0f1c3fd1dcb30",
     ),
@@ -92,7 +92,7 @@ MODELS: tuple[TrainedModel, ...] = (
         "keynet_pytorch.pth",
         "MIT",
         "github.com/axelBarroso/Key.Net-Pytorch",
-        PATCH_NETWORKS,
+        tuple(PATCH_NETWORKS),
         79873,
         "59d3a46d57b439513acf531877fdfaa95eb550ccd10ec462e23d7c1f7a86d52a",
     ),

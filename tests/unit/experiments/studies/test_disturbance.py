@@ -7,7 +7,8 @@ import pytest
 from experiments.failure import ExperimentError
 from experiments.plots.curves import draw_curves
 from experiments.studies import disturbance
-from experiments.studies.disturbance_results import CLEAN, ResultsFile, settings_to_run, summary
+from experiments.studies.disturbance_results import CLEAN, settings_to_run, summary
+from experiments.studies.results_file import ResultsFile
 
 SETUP = {"world": "plain", "seed": 1}
 

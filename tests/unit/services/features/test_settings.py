@@ -7,7 +7,8 @@ import pytest
 
 from services.features.pipeline import Pipeline
 from services.features.pipelines import PROFILES, find_profile
-from services.features.registry import PLUGINS, create
+from services.features.plugins import PLUGINS
+from services.features.registry import create
 from services.features.settings import FeaturesSettings
 
 
