@@ -7,8 +7,6 @@ claimed must then fit as well: the turn and the direction it is seen at follow f
 import math
 from collections.abc import Mapping
 
-import networkx as nx
-
 from services.planner.graph import MapGraph
 from shared.messages.matching import NodeMatch
 
@@ -41,7 +39,7 @@ def unsupported_closures(
     """
     if driven_from is None or driven_from not in graph.nodes:
         return {}
-    near = _within(graph, driven_from, NEAR_HOPS)
+    near = graph.within(driven_from, NEAR_HOPS)
     far = far_places(graph, matches, driven_from) if s_far else set()
     refused = {}
     for place in sorted(set(matches) - near):
@@ -120,14 +118,7 @@ def agrees(graph: MapGraph, matches: Mapping[int, NodeMatch], place: int, witnes
 
 def far_places(graph: MapGraph, matches: Mapping[int, NodeMatch], driven_from: int) -> set[int]:
     """Places of `matches` more than FAR_HOPS edges from where the robot came from."""
-    return {n for n in matches if n in graph.nodes} - _within(graph, driven_from, FAR_HOPS)
-
-
-def _within(graph: MapGraph, start: int, hops: int) -> set[int]:
-    plain: nx.Graph[int] = nx.Graph()
-    plain.add_nodes_from(graph.nodes)
-    plain.add_edges_from(ends for ends, edge in graph.edges.items() if not edge.suspended)
-    return set(nx.single_source_shortest_path_length(plain, start, cutoff=hops))
+    return {n for n in matches if n in graph.nodes} - graph.within(driven_from, FAR_HOPS)
 
 
 def _apart(first_rad: float, second_rad: float) -> float:

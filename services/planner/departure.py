@@ -8,8 +8,11 @@ from services.planner.profiles import Profile
 from services.planner.similarity import CLOSE, similarity
 from shared.messages.matching import NodeMatch
 
-JUMP_RAD = math.radians(90.0)
-"""The direction back turns slowly while the robot drives away; it never jumps so far between two frames."""
+FIRST_JUMP_RAD = math.radians(90.0)
+"""The direction back is about opposite to the way at first; the robot may still get round something."""
+
+JUMP_RAD = math.radians(45.0)
+"""Then it turns slowly while the robot drives away; it never jumps so far between two frames."""
 
 
 @dataclass
@@ -33,8 +36,10 @@ class Departure:
             return True
         if similarity(origin, profile) > CLOSE * profile.s_node_max:
             return True
-        expected = self.heading_rad + math.pi if self.back_rad is None else self.back_rad
-        if abs(math.remainder(origin.heading_rad - expected, math.tau)) > JUMP_RAD:
+        expected, jump_rad = self.heading_rad + math.pi, FIRST_JUMP_RAD
+        if self.back_rad is not None:
+            expected, jump_rad = self.back_rad, JUMP_RAD
+        if abs(math.remainder(origin.heading_rad - expected, math.tau)) > jump_rad:
             return False
         self.back_rad = origin.heading_rad
         return True

@@ -1,6 +1,5 @@
 """Following a path of places: which via point to aim at, when to go on to the next, when to give up."""
 
-import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -22,7 +21,7 @@ CLOSER = 0.95
 WAITING_STEPS = 8
 """Steps at a via point after which the next one should have shown."""
 
-SLOW_RAD = math.radians(12.0)
+SLOW_M = 1.33
 SLOWEST = 0.15
 NEAREST_STEPS = 8
 """Steps without coming closer after which a place within `near_rad` is as near as obstacles allow."""
@@ -183,10 +182,11 @@ class PathFollower:
         return match.status == "no_baseline" or (match.status == "ok" and near)
 
     def _speed(self, match: NodeMatch) -> float:
-        """Slow down over the last few degrees of disparity, so that a step does not overshoot the goal."""
+        """Slow down over the last metre or so, as disparity tells it, so as not to overshoot the goal."""
         if not self._at_end() or match.disparity_rad is None or self._target.arrival_rad <= 0.0:
             return 1.0
-        return min(1.0, max(SLOWEST, apart_rad(match.disparity_rad, match.inliers, self._profile) / SLOW_RAD))
+        left_rad = apart_rad(match.disparity_rad, match.inliers, self._profile)
+        return min(1.0, max(SLOWEST, left_rad / (SLOW_M * self._profile.disparity_rad_per_m)))
 
     def _unseen(self, via: int, s_cv: int, notes: tuple[Note, ...]) -> tuple[FollowState, Decision]:
         """The via point is not seen: keep going for a few frames, then report lost."""

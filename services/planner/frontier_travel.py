@@ -1,12 +1,13 @@
 """Travel to the nearest place with something unexplored; what cannot be reached is closed."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from services.planner.experience import Experience, Leg
 from services.planner.following import PathFollower, Target
 from services.planner.frontiers import frontier_sectors
 from services.planner.ports import Decision, MapAccess, Matcher, Note, Observation, Progress
 from services.planner.profiles import Profile
+from services.planner.region import places_around
 from services.planner.routing import plan_path, visible
 from services.planner.search import Search, search_back
 from services.planner.similarity import ranked
@@ -64,7 +65,8 @@ class FrontierTravel:
             return Decision("hold", why=why, outcome="succeeded")
         matches = self._matcher.match([], NEAR_NODES)
         clear = {n for n, m in matches.items() if is_clear(m, observation.ranges, self._profile)}
-        starts = visible(matches, self._profile, self._profile.s_via_min, clear)
+        here = {n: matches[n] for n in places_around(graph, matches, self._profile)}
+        starts = visible(here, self._profile, self._profile.s_via_min, clear)
         fresh = {n: cost for n, cost in starts.items() if n not in self._bad_starts} or starts
         path = plan_path(graph, fresh, frontier, self._profile, self._doubted, self._experience.banned)
         if not path:
@@ -83,17 +85,22 @@ class FrontierTravel:
             return decision
         self._follower = None
         if state == "arrived":
-            return self._arrived(follower.path[-1], decision.notes)
+            return self._arrived(follower, decision)
         if state == "unclear":
             self._doubted.add(follower.next_leg())
             return Decision("hold", why=f"planning again: {decision.why}", notes=decision.notes)
         return self._failed(follower, decision)
 
-    def _arrived(self, end: int, notes: tuple[Note, ...]) -> Arrival:
+    def _arrived(self, follower: PathFollower, decision: Decision) -> Decision | Arrival:
+        end = follower.path[-1]
+        matches = self._matcher.match([end], NEAR_NODES)
+        if end not in places_around(self._maps.graph, matches, self._profile):
+            why = f"a look-alike of node {end}: other places resemble this view more"
+            return self._failed(follower, replace(decision, why=why))
         self._bad_starts, self._in_vain = set(), 0
-        match = self._matcher.match([end]).get(end)
+        match = matches.get(end)
         yaw_rad = match.yaw_rad if match is not None and match.yaw_rad is not None else 0.0
-        return Arrival(end, yaw_rad, notes)
+        return Arrival(end, yaw_rad, decision.notes)
 
     def _failed(self, follower: PathFollower, decision: Decision) -> Decision:
         """Twice in vain: that place's directions are closed, so that exploration always ends.

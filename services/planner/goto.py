@@ -6,6 +6,7 @@ from services.planner.experience import Experience, Leg, leg
 from services.planner.following import PathFollower, Target
 from services.planner.ports import GOAL, Decision, MapAccess, Matcher, Note, Observation, Progress
 from services.planner.profiles import Profile
+from services.planner.region import places_around
 from services.planner.routing import plan_path, visible
 from services.planner.search import Search, search_back
 from services.planner.similarity import ranked, similarity, trusted
@@ -120,6 +121,7 @@ class Goto:
             return None
         if not self._targets:
             return self._end("failed", "goal_not_in_map", "the goal resembles no place of the map", ())
+        here = {n: here[n] for n in places_around(self._maps.graph, here, self._profile)}
         clear = {n for n, m in here.items() if is_clear(m, ranges, self._profile)}
         starts = visible(here, self._profile, self._profile.s_via_min, clear)
         closed = self._experience.unreachable

@@ -22,9 +22,11 @@ class MapGraph:
     def __init__(self, nodes: Iterable[Node] = (), edges: Iterable[Edge] = ()) -> None:
         self.nodes = {node.node_id: node for node in nodes}
         self.edges = {(edge.a, edge.b): edge for edge in edges}
+        self._linked: nx.Graph[int] | None = None
 
     def apply(self, operations: Iterable[Operation]) -> None:
         """Change the graph as the map store does."""
+        self._linked = None
         for operation in operations:
             match operation:
                 case AddNode() | UpdateNode():
@@ -92,12 +94,21 @@ class MapGraph:
         reached = [node for node in self.nodes if node in paths]
         return {n: list(reversed(paths[n][1:])) for n in reached}, {n: distances[n] for n in reached}
 
+    def within(self, start: int, hops: int) -> set[int]:
+        """Nodes at most so many edges from `start`, suspended ones excluded; `start` is one of them."""
+        return set(nx.single_source_shortest_path_length(self._links(), start, cutoff=hops))
+
     def components(self) -> int:
         """Number of connected parts, suspended edges excluded."""
-        graph: nx.Graph[int] = nx.Graph()
-        graph.add_nodes_from(self.nodes)
-        graph.add_edges_from(ends for ends, edge in self.edges.items() if not edge.suspended)
-        return int(nx.number_connected_components(graph))
+        return int(nx.number_connected_components(self._links()))
+
+    def _links(self) -> "nx.Graph[int]":
+        """The edges that may be used; built once between changes."""
+        if self._linked is None:
+            self._linked = nx.Graph()
+            self._linked.add_nodes_from(self.nodes)
+            self._linked.add_edges_from(ends for ends, edge in self.edges.items() if not edge.suspended)
+        return self._linked
 
 
 def fewest_nodes(edge: Edge) -> float:

@@ -128,7 +128,7 @@ OUTDOOR = DEFAULT.model_copy(
         "travel_arrival_rad": math.radians(2.5),
         "near_rad": math.radians(2.0),
         "s_near": 240,
-        "opening_m": 2.5,
+        "opening_m": 4.0,
         "blocked_m": 0.4,
         "doorway_m": 50.0,
         "departure_steps": 40,
