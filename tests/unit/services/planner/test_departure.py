@@ -28,6 +28,12 @@ def test_a_jump_is_not_followed_and_not_remembered():
     assert departure.follows(seen(3.0), DEFAULT)
 
 
+def test_after_the_first_frame_half_a_right_angle_is_a_jump():
+    departure = Departure(4, 0, 0.0)
+    assert departure.follows(seen(math.pi - 1.0), DEFAULT)
+    assert not departure.follows(seen(math.pi - 1.9), DEFAULT)
+
+
 def test_the_first_direction_must_lie_behind_the_robot():
     assert not Departure(4, 0, 1.0).follows(seen(1.0), DEFAULT)
     assert Departure(4, 0, 1.0).follows(seen(1.0 + math.pi), DEFAULT)
