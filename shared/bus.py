@@ -1,5 +1,6 @@
 """Typed access to Zenoh: publishers, subscribers, questions, liveliness; everything closes with the bus."""
 
+import re
 import threading
 import time
 import uuid
@@ -39,7 +40,14 @@ class Publisher(Generic[M]):
         Raises:
             WireError: longer than the topic allows; every reader would throw it away.
         """
-        payload = encode(message)
+        self.put_bytes(encode(message))
+
+    def put_bytes(self, payload: bytes) -> None:
+        """Send a message that is encoded already.
+
+        Raises:
+            WireError: as for `put`.
+        """
         if len(payload) > self._topic.max_bytes:
             most = self._topic.max_bytes
             raise WireError(f"{self._topic.template}: at most {most} bytes expected, got {len(payload)}")
@@ -100,6 +108,14 @@ class Bus:
             declared = self._session.declare_subscriber(key, store)
         self._declared.append(declared)
         return inbox
+
+    def tap(self, topic: Topic[M], store: Callable[[str, bytes], None]) -> None:
+        """Hand every payload of a topic, whosever it is, to `store` with its key, on Zenoh's threads."""
+        key = re.sub(r"\{\w+\}", "*", topic.template)
+        handler: Any = zenoh.handlers.Callback(
+            lambda sample: store(str(sample.key_expr), sample.payload.to_bytes()), indirect=False
+        )
+        self._declared.append(self._session.declare_subscriber(key, handler))
 
     def requests(
         self, query: Query[Q, R], wake: threading.Event | None = None, **names: str

@@ -7,7 +7,7 @@ import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 PACKAGES = ("services", "shared", "simulator", "experiments")
-SERVICES = ("features", "map_store", "planner", "drive", "gateway", "launcher")
+SERVICES = ("features", "map_store", "planner", "drive", "gateway", "recorder", "launcher")
 
 # Pure code: the same input gives the same output, whatever the clock, the bus and the environment say.
 PURE = (
@@ -48,6 +48,7 @@ FORBIDDEN = {
     "gateway": {"torch", "kornia", "sapien", "sqlalchemy"},
     "map_store": {"torch", "kornia", "cv2", "sapien"},
     "features": {"sapien", "fastapi", "sqlalchemy"},
+    "recorder": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
     "launcher": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
 }
 TRUTH_NAMES = {"Truth", "TRUTH"}

@@ -28,6 +28,9 @@ COMMANDS: dict[str, LazyCommand] = {
     "bench": LazyCommand("experiments.bench", "Time the stages of the control loop."),
     "world": LazyCommand("experiments.worlds", "Check a world file before anybody drives in it."),
     "models": LazyCommand("experiments.models", "Trained weights of the learned pipelines."),
+    "record": LazyCommand("experiments.recordings.record", "Write what the bus says into an MCAP file."),
+    "replay": LazyCommand("experiments.recordings.replay", "Play a recording, as if live."),
+    "recover": LazyCommand("experiments.recordings.recover", "Save what is in a broken recording."),
     "map": LazyCommand("experiments.maps", "List, export, import, rename and delete maps."),
 }
 

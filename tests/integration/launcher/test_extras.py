@@ -23,6 +23,7 @@ SERVICES = {
     "planner": "services.planner",
     "drive": "services.drive",
     "gateway": "services.gateway",
+    "recorder": "services.recorder",
     "launcher": "services.launcher",
 }
 HOOK = """

@@ -1,0 +1,48 @@
+"""`topnav record`: everything that the processes of a running stack tell each other, in one file."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from experiments import options
+from experiments.failure import ExperimentError
+from experiments.tables import print_rows, wide_console
+from services.launcher.state import StateFolder
+from services.recorder.channels import topics_named
+from services.recorder.recorder import record
+from services.recorder.recording import RecordingWriter
+from shared.bus import open_bus
+from shared.lifecycle import stop_on_signals
+
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+
+
+@app.command()
+def main(
+    file: Annotated[Path, typer.Argument(help="MCAP file to write.")],
+    seconds: Annotated[float | None, typer.Option(min=0.1, help="Stop by itself; else Ctrl+C does.")] = None,
+    without: Annotated[str, typer.Option(help='Topics to leave out, as "frame,features".')] = "",
+    endpoint: options.Endpoint = None,
+    data_dir: options.DataDir = options.DATA_DIR,
+) -> None:
+    """Record the bus of a running stack until Ctrl+C."""
+    left_out = topics_named(without)
+    address = endpoint or _endpoint(data_dir)
+    stop = stop_on_signals()
+    with RecordingWriter(file) as writer, open_bus(address) as bus:
+        wide_console(stderr=True).print(f"recording {address} into {file}; Ctrl+C ends it", highlight=False)
+        backlog = record(bus, writer, left_out, stop, seconds)
+    lost = backlog.dropped()
+    rows = [
+        {"key": key, "messages": count, "lost": lost.get(key, 0)}
+        for key, count in sorted(writer.counts.items())
+    ]
+    print_rows(f"{file}, {file.stat().st_size / 1e6:.1f} MB", rows)
+
+
+def _endpoint(data_dir: Path) -> str:
+    running = StateFolder(data_dir.resolve()).read()
+    if running is None:
+        raise ExperimentError(f"no stack runs in {data_dir}: start one ('topnav up') or give --endpoint")
+    return running.endpoint
