@@ -8,8 +8,9 @@ from fastapi import Request
 from fastapi.responses import Response, StreamingResponse
 from starlette.background import BackgroundTask
 
-from services.gateway.problems import MEDIA_TYPE, ProblemError
+from services.gateway.problems import ProblemError
 from services.gateway.state import Gateway
+from shared.openapi import MEDIA_TYPE
 
 SENT_ON = ("accept", "content-type", "if-match", "if-none-match")
 SENT_BACK = ("content-type", "content-length", "content-disposition", "etag", "cache-control", "location")

@@ -1,6 +1,7 @@
 """REST over the same store: `create_app(store)`. The schema is at /openapi.json, a page at /docs."""
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 from fastapi import APIRouter, Depends, FastAPI
@@ -9,17 +10,15 @@ from services.map_store import archive_routes, graph_routes, map_routes, problem
 from services.map_store.body_limit import BodyLimit
 from services.map_store.errors import UnavailableError
 from services.map_store.guard import writer_guard
-from services.map_store.schemas import Health, Problem
+from services.map_store.schemas import Health
 from services.map_store.store import MapStore
+from shared.openapi import with_problems
 
 VERSION = "1"
 MAX_BODY_BYTES = 100_000
 """Of every request but an import."""
 
 DESCRIPTION = "Maps of places: their nodes, edges, pictures and history. Errors are RFC 9457 problems."
-ERRORS: dict[int | str, dict[str, Any]] = {
-    status: {"model": Problem, "description": "problem+json"} for status in (401, 404, 409, 413, 422, 507)
-}
 
 
 def create_app(
@@ -45,9 +44,20 @@ def create_app(
         graph_routes.build(store, write),
         archive_routes.build(store, write, max_archive_bytes),
     ):
-        app.include_router(router, responses=ERRORS)
+        app.include_router(router)
     app.include_router(_health(store, ready))
+    _describe_problems(app)
     return app
+
+
+def _describe_problems(app: FastAPI) -> None:
+    plain = app.openapi
+
+    @cache
+    def described() -> dict[str, Any]:
+        return with_problems(plain())
+
+    app.openapi = described  # type: ignore[method-assign]
 
 
 def _health(store: MapStore, ready: Callable[[], bool]) -> APIRouter:
@@ -58,7 +68,7 @@ def _health(store: MapStore, ready: Callable[[], bool]) -> APIRouter:
         """The process lives."""
         return Health(status="alive")
 
-    @router.get("/readyz", responses={503: {"model": Problem}})
+    @router.get("/readyz")
     def readyz() -> Health:
         """The database answers and questions on the bus are taken."""
         if not ready():

@@ -9,6 +9,7 @@ from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
 from services.map_store import errors
+from shared.openapi import MEDIA_TYPE
 
 log = logging.getLogger(__name__)
 
@@ -31,7 +32,7 @@ def problem(kind: str, status: int, detail: str, headers: dict[str, str] | None 
         "status": status,
         "detail": detail[:MAX_DETAIL],
     }
-    return JSONResponse(body, status, headers, media_type="application/problem+json")
+    return JSONResponse(body, status, headers, media_type=MEDIA_TYPE)
 
 
 def install(app: FastAPI) -> None:

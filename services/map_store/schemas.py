@@ -1,6 +1,6 @@
 """What REST takes and gives."""
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict
 
 from services.map_store.catalogue import MapSummary
 from services.map_store.history import Revision
@@ -86,15 +86,6 @@ class Health(BaseModel):
     """Whether the service lives or is ready."""
 
     status: str
-
-
-class Problem(BaseModel):
-    """An error as RFC 9457 has it (application/problem+json)."""
-
-    type: str = Field(examples=["urn:topnav:problem:missing"])
-    title: str
-    status: int
-    detail: str
 
 
 def map_view(summary: MapSummary) -> MapView:

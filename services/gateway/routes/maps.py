@@ -1,5 +1,7 @@
 """Maps: passed through to the map store, so that a browser needs one address only."""
 
+from typing import Any
+
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
@@ -9,6 +11,9 @@ from services.gateway.storage import forward, forward_stream
 
 router = APIRouter(tags=["maps"])
 
+ZIP: dict[int | str, dict[str, Any]] = {200: {"content": {"application/zip": {}}}}
+JPEG: dict[int | str, dict[str, Any]] = {200: {"content": {"image/jpeg": {}}}}
+
 
 @router.get("/api/maps")
 async def list_maps(request: Request, gateway: GatewayDep) -> Response:
@@ -16,13 +21,13 @@ async def list_maps(request: Request, gateway: GatewayDep) -> Response:
     return await forward(gateway, request, "/maps")
 
 
-@router.post("/api/maps")
+@router.post("/api/maps", status_code=201)
 async def create_map(request: Request, gateway: GatewayDep) -> Response:
     """Make an empty map."""
     return await _with_body(gateway, request, "/maps")
 
 
-@router.post("/api/maps/import")
+@router.post("/api/maps/import", status_code=201)
 async def import_map(request: Request, gateway: GatewayDep) -> Response:
     """Add a map from an archive made by export."""
     return await forward_stream(gateway, request, "/maps/import")
@@ -40,7 +45,7 @@ async def rename_map(request: Request, map_name: MapPath, gateway: GatewayDep) -
     return await _with_body(gateway, request, f"/maps/{map_name}")
 
 
-@router.delete("/api/maps/{map_name}")
+@router.delete("/api/maps/{map_name}", status_code=204)
 async def delete_map(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
     """Delete a map."""
     return await forward(gateway, request, f"/maps/{map_name}")
@@ -64,7 +69,7 @@ async def delete_node(request: Request, map_name: MapPath, node_id: int, gateway
     return await forward(gateway, request, f"/maps/{map_name}/nodes/{node_id}")
 
 
-@router.get("/api/maps/{map_name}/nodes/{node_id:int}/thumbnail")
+@router.get("/api/maps/{map_name}/nodes/{node_id:int}/thumbnail", response_class=Response, responses=JPEG)
 async def show_thumbnail(request: Request, map_name: MapPath, node_id: int, gateway: GatewayDep) -> Response:
     """What a place looks like."""
     return await forward(gateway, request, f"/maps/{map_name}/nodes/{node_id}/thumbnail")
@@ -94,7 +99,7 @@ async def undo(request: Request, map_name: MapPath, gateway: GatewayDep) -> Resp
     return await _with_body(gateway, request, f"/maps/{map_name}/undo")
 
 
-@router.get("/api/maps/{map_name}/export")
+@router.get("/api/maps/{map_name}/export", response_class=Response, responses=ZIP)
 async def export_map(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
     """A map as one archive."""
     return await forward(gateway, request, f"/maps/{map_name}/export")
