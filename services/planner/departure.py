@@ -11,7 +11,7 @@ from shared.messages.matching import NodeMatch
 FIRST_JUMP_RAD = math.radians(90.0)
 """The direction back is about opposite to the way at first; the robot may still get round something."""
 
-JUMP_RAD = math.radians(45.0)
+JUMP_RAD = math.radians(25.0)
 """Then it turns slowly while the robot drives away; it never jumps so far between two frames."""
 
 

@@ -51,6 +51,7 @@ class FrontierExploration:
 
     def _leave(self, node_id: int, yaw_rad: float, notes: tuple[Note, ...]) -> Decision:
         """Start a departure from a node the robot stands at, or hold when it has no frontier."""
+        self._travel.stand_at(node_id)
         node = self._maps.graph.nodes[node_id]
         sector = best_sector(node, self._last_heading_rad - yaw_rad)
         if sector is None:
@@ -67,7 +68,6 @@ class FrontierExploration:
         self.progress = leaving.progress
         if isinstance(result, NewPlace):
             self._leaving = None
-            self._travel.new_place()
             self._last_heading_rad = leaving.heading_rad
             return self._leave(result.node_id, 0.0, result.notes)
         if leaving.done:

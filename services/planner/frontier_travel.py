@@ -43,11 +43,12 @@ class FrontierTravel:
         self._bad_starts: set[int] = set()
         self._in_vain = 0
         self._cut_off = 0
+        self._last: int | None = None
         self.progress: Progress | None = None
 
-    def new_place(self) -> None:
-        """A place was added: the robot knows where it is."""
-        self._search = None
+    def stand_at(self, node_id: int) -> None:
+        """The robot knows where it is: it leaves from here."""
+        self._search, self._last = None, node_id
 
     def step(self, observation: Observation, last_heading_rad: float) -> Decision | Arrival:
         """One step; `last_heading_rad` is where a lost robot came from, turned round."""
@@ -65,7 +66,7 @@ class FrontierTravel:
             return Decision("hold", why=why, outcome="succeeded")
         matches = self._matcher.match([], NEAR_NODES)
         clear = {n for n, m in matches.items() if is_clear(m, observation.ranges, self._profile)}
-        here = {n: matches[n] for n in places_around(graph, matches, self._profile)}
+        here = {n: matches[n] for n in places_around(graph, matches, self._profile, self._last)}
         starts = visible(here, self._profile, self._profile.s_via_min, clear)
         fresh = {n: cost for n, cost in starts.items() if n not in self._bad_starts} or starts
         path = plan_path(graph, fresh, frontier, self._profile, self._doubted, self._experience.banned)
@@ -82,6 +83,7 @@ class FrontierTravel:
         state, decision = follower.step(observation, self._matcher)
         self.progress = follower.progress
         if state == "going":
+            self._last = follower.path[follower.index]
             return decision
         self._follower = None
         if state == "arrived":
@@ -94,7 +96,7 @@ class FrontierTravel:
     def _arrived(self, follower: PathFollower, decision: Decision) -> Decision | Arrival:
         end = follower.path[-1]
         matches = self._matcher.match([end], NEAR_NODES)
-        if end not in places_around(self._maps.graph, matches, self._profile):
+        if end not in places_around(self._maps.graph, matches, self._profile, self._last):
             why = f"a look-alike of node {end}: other places resemble this view more"
             return self._failed(follower, replace(decision, why=why))
         self._bad_starts, self._in_vain = set(), 0
@@ -110,6 +112,8 @@ class FrontierTravel:
         """
         end, (failed_leg, via) = follower.path[-1], follower.failed_leg()
         self._in_vain += 1
+        if self._in_vain > 1:
+            self._last = None
         blamed = via == end or self._in_vain > TRAVELS_IN_VAIN
         self._failures[end] = self._failures.get(end, 0) + blamed
         notes = (*decision.notes, Note("travel_failed", f"to node {end}: {decision.why}"))

@@ -42,6 +42,7 @@ class Goto:
         self._suspect: tuple[Leg, str] | None = None
         self._search: Search | None = None
         self._last_heading_rad = 0.0
+        self._last: int | None = None
         self.progress = Progress()
 
     def decide(self, observation: Observation) -> Decision:
@@ -68,6 +69,8 @@ class Goto:
             state, decision = "stuck", replace(decision, why=f"{decision.why}, {why}")
         if state == "going":
             self._last_heading_rad = decision.heading_rad
+            if self.progress.nearest_node is not None:
+                self._last = self.progress.nearest_node
             return _with_notes(decision, notes)
         return self._recover(state, decision, notes)
 
@@ -121,7 +124,7 @@ class Goto:
             return None
         if not self._targets:
             return self._end("failed", "goal_not_in_map", "the goal resembles no place of the map", ())
-        here = {n: here[n] for n in places_around(self._maps.graph, here, self._profile)}
+        here = {n: here[n] for n in places_around(self._maps.graph, here, self._profile, self._last)}
         clear = {n for n, m in here.items() if is_clear(m, ranges, self._profile)}
         starts = visible(here, self._profile, self._profile.s_via_min, clear)
         closed = self._experience.unreachable
@@ -201,6 +204,7 @@ class Goto:
             self._suspect = (ends, state)
         if state != "stuck":
             self._lost += 1
+            self._last = self._last if self._lost == 1 else None
             if self._lost > MAX_LOST:
                 kind: FailureKind = "blocked" if self._experience.banned else "lost"
                 return self._end("failed", kind, decision.why, notes)

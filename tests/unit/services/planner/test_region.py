@@ -35,6 +35,17 @@ def test_the_place_the_robot_stands_at_outweighs_several_look_alikes(graph):
     assert places_around(graph, seen(n1=180, n9=50, n10=60, n11=50), OUTDOOR) == {1}
 
 
+def test_a_robot_does_not_jump_to_a_look_alike(graph):
+    seen_now = seen(n1=40, n9=84, n10=60, n11=48)
+    assert places_around(graph, seen_now, OUTDOOR, last=0) == {1}
+    assert places_around(graph, seen_now, OUTDOOR) == {9, 10, 11}
+
+
+def test_a_robot_that_was_carried_is_where_it_stands(graph):
+    assert places_around(graph, seen(n1=30, n10=180), OUTDOOR, last=0) == {10}
+    assert places_around(graph, seen(n1=20, n10=60), OUTDOOR, last=0) == {10}
+
+
 def test_what_no_edge_joins_any_more_lies_elsewhere(graph):
     cut = graph.edge(1, 2)
     graph.edges[1, 2] = cut.model_copy(update={"suspended": True})
