@@ -102,7 +102,7 @@ class Leaving:
 
     def _doorway(self, ranges: Ranges, matches: dict[int, NodeMatch]) -> bool:
         """Whether a way out shows beside the way that the places around do not know."""
-        if is_new_place(matches, self._profile):
+        if not self._profile.doorway_m or is_new_place(matches, self._profile):
             return False
         nodes = self._maps.graph.nodes
         seen = [(n, m) for n, m in ranked(matches, self._profile) if n in nodes and trusted(m, self._profile)]
