@@ -40,6 +40,7 @@ class Goto:
         self._doubted: set[Leg] = set()
         self._experience = Experience(profile, maps)
         self._suspect: tuple[Leg, str] | None = None
+        self._excused: set[Leg] = set()
         self._search: Search | None = None
         self._last_heading_rad = 0.0
         self._last: int | None = None
@@ -103,14 +104,18 @@ class Goto:
         return tuple(notes)
 
     def _judge_suspect(self, seen: dict[int, NodeMatch]) -> tuple[Note, ...]:
-        """A robot that finds itself far from the leg it lost was carried: that says nothing about the leg."""
+        """A robot that finds itself far from the leg it lost was carried: that says nothing about the leg.
+
+        Nobody carries it off the same leg twice: then the leg leads elsewhere than the map says.
+        """
         if self._suspect is None or not seen:
             return ()
         (ends, why), self._suspect = self._suspect, None
         graph = self._maps.graph
         near = {*ends, *graph.neighbours(ends[0]), *graph.neighbours(ends[1])}
         best = ranked(seen, self._profile)[0][0]
-        if best not in near:
+        if best not in near and ends not in self._excused:
+            self._excused.add(ends)
             return (Note("relocated", f"lost near edge {ends}, found again at node {best}"),)
         return (self._experience.failed(ends, why),)
 
