@@ -156,7 +156,7 @@ def _enough_agree(match: NodeMatch, profile: Profile) -> bool:
 def _far(match: NodeMatch, profile: Profile) -> bool:
     """Whether only things far away agree, so that the place may be anywhere along the way."""
     disparity_rad = match.disparity_rad if match.disparity_rad is not None else 0.0
-    return disparity_rad < profile.far_rad and similarity(match, profile) < profile.s_node_max
+    return disparity_rad < profile.far_rad and similarity(match, profile) < profile.s_sure
 
 
 def _edge(node_id: int, other: int, match: NodeMatch, profile: Profile, *, clear: bool, driven: bool) -> Edge:

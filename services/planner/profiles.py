@@ -17,6 +17,7 @@ class Profile(BaseModel):
     Attributes:
         similarity: S counts verified matches (inliers) or raw ones (thesis).
         s_edge_min, s_node_max: map thresholds of equations 4.1 and 4.2.
+        s_sure: S from which an edge needs no further proof.
         share_min: share of the raw matches that must be verified for an edge with S below s_sure; look-alike
             places agree in less. The edge to the place the robot came from needs no more than s_edge_min.
         edge_window: so many of the newest places may get an edge to a new one; 0: the most similar of all.
@@ -39,8 +40,8 @@ class Profile(BaseModel):
         similarity_m: a place is at least this over S away, metres: where most of what is seen is far off,
             small disparity alone does not mean near. 0 leaves it out.
         s_blind_min: S of an edge along which no free ground was seen.
-        far_rad: with less disparity than this an edge needs more than s_node_max: few matches that hardly
-            move are far away, and so may the place be.
+        far_rad: with less disparity than this an edge needs s_sure matches: few that hardly move are far away,
+            and so may the place be.
         arrival_rad: angular disparity at which a place is reached; 0 uses s_final.
         s_far: an edge to a far part of the map needs so many matches: among equal houses fewer prove nothing.
         near_rad, s_near: with less disparity and more S the robot may stop where obstacles end its way.
