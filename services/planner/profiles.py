@@ -40,8 +40,8 @@ class Profile(BaseModel):
         similarity_m: a place is at least this over S away, metres: where most of what is seen is far off,
             small disparity alone does not mean near. 0 leaves it out.
         s_blind_min: S of an edge along which no free ground was seen.
-        far_rad: with less disparity than this an edge needs s_sure matches: few that hardly move are far away,
-            and so may the place be.
+        far_rad: with less disparity than this an edge needs s_sure matches: few matches that hardly move are
+            far away, and so may the place be.
         arrival_rad: angular disparity at which a place is reached; 0 uses s_final.
         s_far: an edge to a far part of the map needs so many matches: among equal houses fewer prove nothing.
         near_rad, s_near: with less disparity and more S the robot may stop where obstacles end its way.
