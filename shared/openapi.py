@@ -1,6 +1,8 @@
 """What REST descriptions say of errors: all of them are RFC 9457 problems. Pure, on the plain document."""
 
 import copy
+from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 MEDIA_TYPE = "application/problem+json"
@@ -44,3 +46,8 @@ def with_problems(document: dict[str, Any]) -> dict[str, Any]:
                 del answers[status]
             answers |= {"4XX": error, "5XX": error}
     return result
+
+
+def describing_problems(plain: Callable[[], dict[str, Any]]) -> Callable[[], dict[str, Any]]:
+    """What an application's `openapi` is to be replaced by: `plain` with problems, made once."""
+    return cache(lambda: with_problems(plain()))

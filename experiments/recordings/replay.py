@@ -54,9 +54,10 @@ def main(
         player = Player(bus, names, left_out)
         console = wide_console(stderr=True)
         console.print(f"replaying {index.duration_s:.1f} s at rate {rate:g}; Ctrl+C ends it", highlight=False)
-        play(read(file), player.put, rate, stop)
-        while loop and not stop.is_set():
+        again = True
+        while again and not stop.is_set():
             play(read(file), player.put, rate, stop)
+            again = loop
     print_rows(str(file), [{"key": key, "messages": n} for key, n in sorted(player.counts.items())])
 
 

@@ -1,7 +1,6 @@
 """Errors as RFC 9457 problem details: what was expected, what came, what to do next."""
 
 import logging
-from functools import cache
 from http import HTTPStatus
 from typing import Any
 
@@ -12,7 +11,7 @@ from starlette.exceptions import HTTPException
 
 from services.gateway.metrics import Metrics
 from services.gateway.picture import PictureError
-from shared.openapi import MEDIA_TYPE, with_problems
+from shared.openapi import MEDIA_TYPE, describing_problems
 
 log = logging.getLogger(__name__)
 
@@ -97,13 +96,7 @@ def install(app: FastAPI, metrics: Metrics) -> None:
     app.add_exception_handler(HTTPException, on_http)
     app.add_exception_handler(RequestValidationError, on_invalid)
     app.add_exception_handler(Exception, on_bug)
-    plain = app.openapi
-
-    @cache
-    def described() -> dict[str, Any]:
-        return with_problems(plain())
-
-    app.openapi = described  # type: ignore[method-assign]
+    app.openapi = describing_problems(app.openapi)  # type: ignore[method-assign]
 
 
 def invalid(errors: list[Any]) -> ProblemError:

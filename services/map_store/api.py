@@ -1,8 +1,6 @@
 """REST over the same store: `create_app(store)`. The schema is at /openapi.json, a page at /docs."""
 
 from collections.abc import Callable
-from functools import cache
-from typing import Any
 
 from fastapi import APIRouter, Depends, FastAPI
 
@@ -12,7 +10,7 @@ from services.map_store.errors import UnavailableError
 from services.map_store.guard import writer_guard
 from services.map_store.schemas import Health
 from services.map_store.store import MapStore
-from shared.openapi import with_problems
+from shared.openapi import describing_problems
 
 VERSION = "1"
 MAX_BODY_BYTES = 100_000
@@ -46,18 +44,8 @@ def create_app(
     ):
         app.include_router(router)
     app.include_router(_health(store, ready))
-    _describe_problems(app)
+    app.openapi = describing_problems(app.openapi)  # type: ignore[method-assign]
     return app
-
-
-def _describe_problems(app: FastAPI) -> None:
-    plain = app.openapi
-
-    @cache
-    def described() -> dict[str, Any]:
-        return with_problems(plain())
-
-    app.openapi = described  # type: ignore[method-assign]
 
 
 def _health(store: MapStore, ready: Callable[[], bool]) -> APIRouter:

@@ -17,7 +17,7 @@ SUSPENDED_RAD = 20.0
 
 
 class MapGraph:
-    """Undirected graph of places (thesis section 4.2)."""
+    """Undirected graph of places (thesis section 4.2); once it was asked, only `apply` changes it."""
 
     def __init__(self, nodes: Iterable[Node] = (), edges: Iterable[Edge] = ()) -> None:
         self.nodes = {node.node_id: node for node in nodes}
