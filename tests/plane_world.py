@@ -35,12 +35,14 @@ Pose = tuple[float, float, float]
 
 @dataclass
 class Walker:
-    """A person who walks to and fro and stops in front of the robot."""
+    """A person who walks to and fro, stops in front of the robot, and turns back if it does not give way."""
 
     ends: tuple[tuple[float, float], tuple[float, float]]
     speed_mps: float = 0.5
     radius_m: float = 0.22
     polite_m: float = 0.75
+    patience_steps: int = 30
+    waited_steps: int = 0
     share: float = 0.0
     direction: int = 1
 
@@ -51,13 +53,18 @@ class Walker:
         return x + self.share * (u - x), y + self.share * (v - y)
 
     def walk(self, robot: Pose) -> None:
-        """One step, unless the robot would be too near."""
+        """One step, unless the robot would be too near; after some steps of waiting, the other way."""
         before = self.share
         self.share += self.direction * self.speed_mps * STEP_S / math.dist(*self.ends)
         if not 0.0 <= self.share <= 1.0:
             self.direction, self.share = -self.direction, min(1.0, max(0.0, self.share))
-        if math.dist(self.point, robot[:2]) < self.polite_m:
-            self.share = before
+        if math.dist(self.point, robot[:2]) >= self.polite_m:
+            self.waited_steps = 0
+            return
+        self.share = before
+        self.waited_steps += 1
+        if self.waited_steps % self.patience_steps == 0:
+            self.direction = -self.direction
 
     def touches(self, point: tuple[float, float]) -> bool:
         """Whether a robot there bumps into the person."""

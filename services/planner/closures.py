@@ -5,7 +5,7 @@ claimed must then fit as well: the turn and the direction it is seen at follow f
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 
 from services.planner.graph import MapGraph
 from shared.messages.matching import NodeMatch
@@ -51,6 +51,27 @@ def unsupported_closures(
             continue
         refused[place] = f"{len(witnesses)} neighbours of node {place} seen, none agrees"
     return refused
+
+
+def witnessed(graph: MapGraph, matches: Mapping[int, NodeMatch], sure: Set[int]) -> set[int]:
+    """Places of `matches` that a neighbour among the sure ones bears witness for, or one so witnessed.
+
+    Args:
+        graph: the map.
+        matches: trusted matches of the current frame.
+        sure: places known to be in sight.
+
+    Returns:
+        The places, without the sure ones.
+    """
+    known, waiting = set(sure), sorted(set(sure))
+    while waiting:
+        witness = waiting.pop()
+        for place in graph.neighbours(witness):
+            if place in matches and place not in known and agrees(graph, matches, place, witness):
+                known.add(place)
+                waiting.append(place)
+    return known - sure
 
 
 def contradicted(graph: MapGraph, matches: Mapping[int, NodeMatch]) -> dict[int, str]:

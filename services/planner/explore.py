@@ -15,6 +15,7 @@ from services.planner.leaving import Leaving, NewPlace
 from services.planner.mapping import Edges, add_place
 from services.planner.ports import Decision, MapAccess, Matcher, Note, Observation, Progress
 from services.planner.profiles import Profile
+from services.planner.second_look import look_again
 
 
 class FrontierExploration:
@@ -36,12 +37,17 @@ class FrontierExploration:
         result = self._travel.step(observation, self._last_heading_rad)
         self.progress = self._travel.progress or self.progress
         if isinstance(result, Arrival):
-            return self._leave(result.node_id, result.yaw_rad, result.notes)
+            seen = self._look_again(observation, result)
+            return self._leave(result.node_id, result.yaw_rad, (*result.notes, *seen))
         return result
 
     def open_directions(self) -> int:
         """Frontiers left in the map."""
         return open_directions(self._maps.graph)
+
+    def _look_again(self, observation: Observation, arrival: Arrival) -> tuple[Note, ...]:
+        matches = self._matcher.match([], self._profile.edge_candidates)
+        return look_again(self._maps, observation, matches, self._profile, arrival.node_id, arrival.yaw_rad)
 
     def _first(self, observation: Observation) -> Decision:
         """The only node: random heading (thesis section 4.2)."""

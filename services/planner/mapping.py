@@ -1,15 +1,16 @@
 """Making a place and its edges from the current frame (thesis equations 4.1 and 4.2)."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from services.planner.closures import contradicted, unsupported_closures
+from services.planner.closures import contradicted, unsupported_closures, witnessed
 from services.planner.frontiers import with_explored
 from services.planner.graph import MapGraph, edge_between
 from services.planner.ports import MapAccess, Note, Observation
 from services.planner.profiles import Profile
 from services.planner.rivals import has_rival
 from services.planner.similarity import heading_of, ranked, similarity, trusted
-from services.planner.surroundings import is_clear, is_clear_from, openings
+from services.planner.surroundings import is_clear_from, is_surely_clear, openings
 from shared.messages.maps import AddNode, Edge, Node, Operation, PutEdge, UpdateNode
 from shared.messages.matching import NodeMatch
 
@@ -28,12 +29,14 @@ class Edges:
     """The places that a new frame resembles: those that get an edge, and why the others do not.
 
     Attributes:
-        clear: of the admitted, those with free ground seen all the way.
+        clear: those with free ground seen all the way.
+        covered: too uncertain for an edge, but there: nothing is unexplored that way.
     """
 
     admitted: dict[int, NodeMatch] = field(default_factory=dict)
     clear: frozenset[int] = frozenset()
     refused: dict[int, str] = field(default_factory=dict)
+    covered: dict[int, NodeMatch] = field(default_factory=dict)
 
 
 def judge_edges(
@@ -56,7 +59,7 @@ def judge_edges(
     clear = frozenset(
         n
         for n, m in similar.items()
-        if is_clear(m, observation.ranges, profile) or is_clear_from(graph.nodes[n], m, profile)
+        if is_surely_clear(m, observation.ranges, profile) or is_clear_from(graph.nodes[n], m, profile)
     )
     enough = {
         n: m
@@ -69,7 +72,9 @@ def judge_edges(
         )
     }
     refused = _refused(graph, enough, profile, driven_from)
-    return Edges({n: m for n, m in enough.items() if n not in refused}, clear, refused)
+    admitted = {n: m for n, m in enough.items() if n not in refused}
+    covered = {n: similar[n] for n in witnessed(graph, similar, set(admitted))}
+    return Edges(admitted, clear, refused, covered)
 
 
 def add_place(
@@ -92,17 +97,7 @@ def add_place(
         The new node's id, and a note for each edge that was refused.
     """
     node_id = maps.graph.next_id()
-    edges = [
-        _edge(
-            node_id,
-            other,
-            match,
-            profile,
-            clear=other in edges_of.clear,
-            driven=other == driven_from,
-        )
-        for other, match in edges_of.admitted.items()
-    ]
+    edges = edges_to(node_id, edges_of.admitted, edges_of, profile, driven_from)
     features = observation.features
     node = Node(
         node_id=node_id,
@@ -112,18 +107,38 @@ def add_place(
         keypoints=len(features.lonlat_rad),
         open=openings(observation.ranges, profile),
     )
-    grown = MapGraph([*maps.graph.nodes.values(), node], [*maps.graph.edges.values(), *edges])
-    node = with_explored(node, grown, profile)
-    others = [maps.graph.nodes[e.b if e.a == node_id else e.a] for e in edges]
-    known = [with_explored(other, grown, profile) for other in others]
-    changed = [UpdateNode(node=n) for n in known if n != maps.graph.nodes[n.node_id]]
+    seen = edges + edges_to(node_id, edges_of.covered, edges_of, profile)
+    node, *others = explored_along(maps.graph, node, seen, profile)
     operations: list[Operation] = [AddNode(node=node, features=features)]
     operations += [PutEdge(edge=edge) for edge in edges]
-    operations += changed
+    operations += [UpdateNode(node=other) for other in others]
     maps.commit(operations)
     return node_id, tuple(
         Note("closure_refused", f"node {node_id}: {why}") for why in edges_of.refused.values()
     )
+
+
+def explored_along(graph: MapGraph, node: Node, seen: Sequence[Edge], profile: Profile) -> list[Node]:
+    """`node`, then each place at the other end of `seen` with less left to explore than before."""
+    grown = MapGraph([*graph.nodes.values(), node], [*graph.edges.values(), *seen])
+    others = [graph.nodes[e.b if e.a == node.node_id else e.a] for e in seen]
+    known = [with_explored(other, grown, profile) for other in others]
+    changed = [n for n in known if n != graph.nodes[n.node_id]]
+    return [with_explored(node, grown, profile), *changed]
+
+
+def edges_to(
+    node_id: int,
+    places: Mapping[int, NodeMatch],
+    judged: Edges,
+    profile: Profile,
+    driven_from: int | None = None,
+) -> list[Edge]:
+    """Edges from a node, whose frame was matched, to `places`."""
+    return [
+        _edge(node_id, other, match, profile, clear=other in judged.clear, driven=other == driven_from)
+        for other, match in places.items()
+    ]
 
 
 def _refused(

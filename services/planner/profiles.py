@@ -39,6 +39,8 @@ class Profile(BaseModel):
         disparity_rad_per_m: how fast bearings change with distance in this kind of place.
         similarity_m: a place is at least this over S away, metres: where most of what is seen is far off,
             small disparity alone does not mean near. 0 leaves it out.
+        unsure_m: a place with S below s_sure may be this over S away, metres: it gets no edge unless ground
+            up to there is seen free. 0 leaves it out.
         s_blind_min: S of an edge along which no free ground was seen.
         far_rad: with less disparity than this an edge needs s_sure matches: few matches that hardly move are
             far away, and so may the place be.
@@ -87,6 +89,7 @@ class Profile(BaseModel):
     robot_slim_m: PositiveFloat = 0.27
     disparity_rad_per_m: PositiveFloat = math.radians(9.0)
     similarity_m: float = Field(default=0.0, ge=0.0)
+    unsure_m: float = Field(default=0.0, ge=0.0)
     s_blind_min: NonNegativeInt = 0
     far_rad: float = Field(default=0.0, ge=0.0)
     s_far: NonNegativeInt = 0
@@ -138,6 +141,7 @@ OUTDOOR = DEFAULT.model_copy(
         "robot_slim_m": 0.3,
         "disparity_rad_per_m": math.radians(2.2),
         "similarity_m": 300.0,
+        "unsure_m": 500.0,
         "s_blind_min": 60,
         "far_rad": math.radians(3.5),
         "s_far": 110,

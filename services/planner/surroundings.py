@@ -74,13 +74,23 @@ def length_m(match: NodeMatch, profile: Profile) -> float:
 
 def is_clear(match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
     """Whether the sensors see free ground all the way to the matched place."""
+    return _is_free_for(length_m(match, profile), match, ranges, profile)
+
+
+def is_surely_clear(match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
+    """The same where the matched place may be as far away as places with so few matches are."""
+    most_m = profile.unsure_m / max(match.inliers, 1) if match.inliers < profile.s_sure else 0.0
+    return _is_free_for(max(most_m, length_m(match, profile)), match, ranges, profile)
+
+
+def _is_free_for(length_m: float, match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
     if match.status == "no_baseline":
         return True
     if match.heading_rad is None or match.disparity_rad is None:
         return False
     obstacles = Obstacles.from_ranges(ranges.angles_rad, ranges.distances_m, ranges.max_range_m)
     free_m = obstacles.clearance_m(np.array([match.heading_rad]), profile.robot_radius_m)[0]
-    return bool(length_m(match, profile) <= free_m + profile.robot_radius_m)
+    return bool(length_m <= free_m + profile.robot_radius_m)
 
 
 def is_clear_from(node: Node, match: NodeMatch, profile: Profile) -> bool:

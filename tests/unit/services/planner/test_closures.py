@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from services.planner.closures import agrees, contradicted, far_places, unsupported_closures
+from services.planner.closures import agrees, contradicted, far_places, unsupported_closures, witnessed
 from services.planner.graph import MapGraph, edge_between
 from shared.messages.maps import Edge, Node
 from shared.messages.matching import NodeMatch
@@ -67,6 +67,13 @@ def test_within_three_edges_fewer_matches_do(graph):
 
 def test_a_carried_robot_is_asked_for_none(graph):
     assert unsupported_closures(graph, {7: match(7)}, driven_from=None) == {}
+
+
+def test_places_bear_witness_for_one_another_in_a_chain(graph):
+    seen = {n: match(n) for n in (4, 5, 6)}
+    assert witnessed(graph, seen, {4}) == {5, 6}
+    assert witnessed(graph, seen | {5: match(5, turned_rad=0.3)}, {4}) == set(), "the chain is broken"
+    assert witnessed(graph, seen, set()) == set(), "somebody must be sure"
 
 
 @pytest.mark.parametrize("place", [6, 7, 8])

@@ -1,5 +1,8 @@
 """Which matches become edges of a new place."""
 
+import math
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,7 +11,7 @@ from services.planner.mapping import add_place, judge_edges
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT, OUTDOOR
 from shared.messages.features import Features
-from shared.messages.maps import Node
+from shared.messages.maps import Edge, Node, PutEdge
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
 
@@ -63,3 +66,29 @@ def test_a_strong_edge_needs_no_share():
 
 def test_the_edge_the_robot_drove_is_kept():
     assert edges_of(OUTDOOR, match(0, 35, 80), match(1, 30, 90), driven_from=0) == [0]
+
+
+def test_outdoors_a_weak_edge_needs_ground_seen_free_as_far_as_the_place_may_be():
+    """35 matches agree at 8 m, and at 14 m as well, beyond a hedge."""
+    matches = {0: match(0, 35, 60)}
+    seen = Observation(observation().features, observation().ranges.model_copy(update={"max_range_m": 10.0}))
+    near, far = (
+        replace(seen, ranges=seen.ranges.model_copy(update={"distances_m": (m,) * 12, "max_range_m": 20.0}))
+        for m in (10.0, 16.0)
+    )
+    graph = Memory().graph
+    assert judge_edges(graph, near, matches, OUTDOOR, None).admitted == {}
+    assert set(judge_edges(graph, far, matches, OUTDOOR, None).admitted) == {0}
+
+
+def test_a_place_too_uncertain_for_an_edge_leaves_nothing_unexplored_that_way():
+    maps = Memory()
+    maps.commit(
+        [PutEdge(edge=Edge(a=0, b=1, heading_ab_rad=0.3, heading_ba_rad=0.3 - math.pi, yaw_ab_rad=0.0))]
+    )
+    weak = match(1, 35, 80)
+    edges = judge_edges(maps.graph, observation(), {0: match(0, 90, 120), 1: weak}, OUTDOOR, 0)
+    assert set(edges.admitted) == {0}
+    assert set(edges.covered) == {1}, "its neighbour bears witness"
+    node, _ = add_place(maps, observation(), edges, OUTDOOR, 0)
+    assert maps.graph.neighbours(node) == [0]
