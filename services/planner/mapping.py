@@ -14,7 +14,7 @@ from services.planner.surroundings import is_clear_from, is_surely_clear, openin
 from shared.messages.maps import AddNode, Edge, Node, Operation, PutEdge, UpdateNode
 from shared.messages.matching import NodeMatch
 
-CONFIDENCE_MIN = 0.3
+CONFIDENCE_MIN = 0.5
 """Of the two-view geometry of an edge: below it its two directions are too alike to tell."""
 
 
