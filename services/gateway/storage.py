@@ -12,7 +12,7 @@ from services.gateway.problems import ProblemError
 from services.gateway.state import Gateway
 from shared.openapi import MEDIA_TYPE
 
-SENT_ON = ("accept", "content-type", "if-match", "if-none-match")
+SENT_ON = ("accept", "content-type", "if-match", "if-none-match", "x-topnav-author")
 SENT_BACK = ("content-type", "content-length", "content-disposition", "etag", "cache-control", "location")
 MAX_PROBLEM_BYTES = 64_000
 TIMEOUTS = httpx.Timeout(10.0, connect=2.0)
@@ -51,14 +51,44 @@ async def forward_stream(gateway: Gateway, request: Request, path: str) -> Respo
     return await _answer(gateway, wish)
 
 
-async def _answer(gateway: Gateway, wish: httpx.Request) -> Response:
+async def fetch(store: httpx.AsyncClient, path: str) -> bytes | None:
+    """The body of a short answer of the map store, None where it has nothing.
+
+    Raises:
+        ProblemError: 503 the store is down, 504 too slow, 502 it answered anything else.
+    """
+    answer = await _send(store, store.build_request("GET", path))
     try:
-        answer = await gateway.store.send(wish, stream=True)
+        if answer.status_code == HTTPStatus.NOT_FOUND:
+            return None
+        if answer.status_code != HTTPStatus.OK:
+            raise _nonsense(f"status {answer.status_code} for {path}")
+        return await answer.aread()
+    except httpx.HTTPError as error:
+        raise _nonsense(_name(error)) from error
+    finally:
+        await answer.aclose()
+
+
+async def _answer(gateway: Gateway, wish: httpx.Request) -> Response:
+    answer = await _send(gateway.store, wish)
+    if answer.status_code >= HTTPStatus.BAD_REQUEST:
+        return await _problem(answer)
+    headers = {name: answer.headers[name] for name in SENT_BACK if name in answer.headers}
+    if "content-encoding" in answer.headers:  # unpacked on the way: the length no longer holds
+        headers.pop("content-length", None)
+    ended = BackgroundTask(answer.aclose)
+    return StreamingResponse(answer.aiter_bytes(), answer.status_code, headers, background=ended)
+
+
+async def _send(store: httpx.AsyncClient, wish: httpx.Request) -> httpx.Response:
+    try:
+        return await store.send(wish, stream=True)
     except (httpx.ConnectError, httpx.ConnectTimeout, httpx.RemoteProtocolError, httpx.WriteError) as error:
         raise ProblemError(
             503,
             "service_absent",
-            expected=f"the map store at {gateway.store.base_url}",
+            expected=f"the map store at {store.base_url}",
             got=_name(error),
             next_step="start map_store (see /readyz) and try again",
             service="map_store",
@@ -74,13 +104,6 @@ async def _answer(gateway: Gateway, wish: httpx.Request) -> Response:
         ) from error
     except httpx.HTTPError as error:
         raise _nonsense(_name(error)) from error
-    if answer.status_code >= HTTPStatus.BAD_REQUEST:
-        return await _problem(answer)
-    headers = {name: answer.headers[name] for name in SENT_BACK if name in answer.headers}
-    if "content-encoding" in answer.headers:  # unpacked on the way: the length no longer holds
-        headers.pop("content-length", None)
-    ended = BackgroundTask(answer.aclose)
-    return StreamingResponse(answer.aiter_bytes(), answer.status_code, headers, background=ended)
 
 
 async def _problem(answer: httpx.Response) -> Response:

@@ -12,8 +12,7 @@ from fastapi.responses import StreamingResponse
 
 from services.map_store.archive import Archive, write_archive
 from services.map_store.errors import CorruptError
-from services.map_store.map_routes import AUTHOR
-from services.map_store.names import MapName
+from services.map_store.names import AUTHOR, Author, MapName
 from services.map_store.schemas import MapView, map_view
 from services.map_store.store import MapStore
 
@@ -46,21 +45,21 @@ def build(store: MapStore, write: Sequence[Depends], max_bytes: int) -> APIRoute
         dependencies=write,
         openapi_extra={"requestBody": {"content": {"application/zip": {}}, "required": True}},
     )
-    async def import_map(request: Request, name: NewName = None) -> MapView:
+    async def import_map(request: Request, name: NewName = None, author: Author = AUTHOR) -> MapView:
         """Make a map from an exported file, under its own name or `name`. It must not exist."""
         with tempfile.SpooledTemporaryFile(IN_MEMORY_BYTES) as file:
             async for chunk in request.stream():
                 await run_in_threadpool(file.write, chunk)
-            return await run_in_threadpool(_import, store, file, max_bytes, name)
+            return await run_in_threadpool(_import, store, file, max_bytes, name, author)
 
     return router
 
 
-def _import(store: MapStore, file: IO[bytes], max_bytes: int, name: str | None) -> MapView:
+def _import(store: MapStore, file: IO[bytes], max_bytes: int, name: str | None, author: str) -> MapView:
     file.seek(0)
     archive = Archive(file, max_bytes)
     name = name or archive.index.name
-    store.restore(name, archive.steps, archive.blob, AUTHOR)
+    store.restore(name, archive.steps, archive.blob, author)
     return map_view(store.summary(name))
 
 

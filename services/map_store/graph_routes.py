@@ -7,11 +7,10 @@ from fastapi import APIRouter, Query, Response
 from fastapi.params import Depends
 
 from services.map_store.contents import place_of
-from services.map_store.errors import MissingError
+from services.map_store.errors import CorruptError, MissingError
 from services.map_store.graph import MAX_NODE_ID
-from services.map_store.map_routes import AUTHOR
-from services.map_store.names import MapName, NodeId
-from services.map_store.schemas import Changed, EdgeView, NodeView
+from services.map_store.names import AUTHOR, Author, MapName, NodeId
+from services.map_store.schemas import Changed, EdgeView, KeypointsView, NodeView, keypoints_view
 from services.map_store.store import MapStore
 from services.map_store.views import edge_views, node_views
 from shared.messages.maps import DeleteEdge, DeleteNode
@@ -25,6 +24,7 @@ After = Annotated[int, Query(ge=-1, le=MAX_NODE_ID, description="last node id of
 def build(store: MapStore, write: Sequence[Depends]) -> APIRouter:
     """Routes below /maps/{map}/nodes and /maps/{map}/edges; `write` guards those that change something."""
     router = APIRouter(prefix="/maps/{map}", tags=["graph"])
+    _add_appearance(router, store)
 
     @router.get("/nodes")
     def list_nodes(name: MapName, after: After = -1, limit: Limit = MAX_CONTAINER) -> list[NodeView]:
@@ -39,6 +39,29 @@ def build(store: MapStore, write: Sequence[Depends]) -> APIRouter:
             raise MissingError(f"map {name!r}: node {node_id} does not exist")
         return found[0]
 
+    @router.get("/edges")
+    def list_edges(name: MapName) -> list[EdgeView]:
+        """Edges with their evidence."""
+        return edge_views(store.database, name)
+
+    @router.delete("/nodes/{node_id}", dependencies=write)
+    def delete_node(name: MapName, node_id: NodeId, author: Author = AUTHOR) -> Changed:
+        """Delete a node and its edges, as a new revision."""
+        revision = store.transact(name, [DeleteNode(node_id=node_id)], author)
+        return Changed(map=name, revision=revision)
+
+    @router.delete("/edges/{a}/{b}", dependencies=write)
+    def delete_edge(name: MapName, a: NodeId, b: NodeId, author: Author = AUTHOR) -> Changed:
+        """Delete an edge, as a new revision."""
+        revision = store.transact(name, [DeleteEdge(a=min(a, b), b=max(a, b))], author)
+        return Changed(map=name, revision=revision)
+
+    return router
+
+
+def _add_appearance(router: APIRouter, store: MapStore) -> None:
+    """Routes of what a node looks like."""
+
     @router.get("/nodes/{node_id}/thumbnail", response_class=Response, responses=JPEG)
     def read_thumbnail(name: MapName, node_id: NodeId) -> Response:
         """The small picture of a node."""
@@ -50,21 +73,11 @@ def build(store: MapStore, write: Sequence[Depends]) -> APIRouter:
         headers = {"Cache-Control": "private, no-cache", "X-Content-Type-Options": "nosniff"}
         return Response(data, media_type="image/jpeg", headers=headers)
 
-    @router.get("/edges")
-    def list_edges(name: MapName) -> list[EdgeView]:
-        """Edges with their evidence."""
-        return edge_views(store.database, name)
-
-    @router.delete("/nodes/{node_id}", dependencies=write)
-    def delete_node(name: MapName, node_id: NodeId) -> Changed:
-        """Delete a node and its edges, as a new revision."""
-        revision = store.transact(name, [DeleteNode(node_id=node_id)], AUTHOR)
-        return Changed(map=name, revision=revision)
-
-    @router.delete("/edges/{a}/{b}", dependencies=write)
-    def delete_edge(name: MapName, a: NodeId, b: NodeId) -> Changed:
-        """Delete an edge, as a new revision."""
-        revision = store.transact(name, [DeleteEdge(a=min(a, b), b=max(a, b))], AUTHOR)
-        return Changed(map=name, revision=revision)
-
-    return router
+    @router.get("/nodes/{node_id}/keypoints")
+    def read_keypoints(name: MapName, node_id: NodeId) -> KeypointsView:
+        """Where the features of a node are, and how strong."""
+        _, found = store.contents.features(name, [node_id])
+        if not found:
+            where = f"map {name!r}, node {node_id}"
+            raise CorruptError(f"{where}: features: damaged; delete the node or import a backup")
+        return keypoints_view(found[0].features)

@@ -1,24 +1,33 @@
 """Revisions of a map: what was done, by whom, and which one an undo takes back."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from sqlalchemy import Connection, insert, select
 
 from services.map_store.errors import CorruptError, MissingError
 from services.map_store.graph import Change, Step
-from services.map_store.rows import pack_history, unpack_history
+from services.map_store.rows import pack_history, unpack_inverse
+from services.map_store.summaries import Summaries
 from services.map_store.tables import revisions
 
 
 @dataclass(frozen=True)
 class Revision:
-    """One entry of a map's history; `undoes` is the revision it took back."""
+    """One entry of a map's history.
+
+    Attributes:
+        steps: how many it had.
+        undoes: the revision it took back.
+        summary: what it did, in words; made from its steps when the history is listed.
+    """
 
     revision: int
     author: str
     stamp_ns: int
     steps: int
     undoes: int | None
+    summary: str = ""
 
 
 def record(
@@ -40,16 +49,21 @@ def record(
     )
 
 
-def entries(connection: Connection, map_id: int, before: int, limit: int) -> list[Revision]:
+def entries(
+    connection: Connection, map_id: int, before: int, limit: int, summaries: Summaries
+) -> list[Revision]:
     """Up to `limit` revisions older than `before`, newest first."""
     table = revisions.c
     query = (
-        select(table.revision, table.author, table.stamp_ns, table.steps, table.undoes)
+        select(table.revision, table.author, table.stamp_ns, table.steps, table.undoes, table.sha256)
         .where(table.map_id == map_id, table.revision < before)
         .order_by(table.revision.desc())
         .limit(limit)
     )
-    return [Revision(*row) for row in connection.execute(query)]
+    return [
+        Revision(*row[:-1], summary=summaries.of(connection, map_id, row.revision, row.sha256))
+        for row in connection.execute(query).all()
+    ]
 
 
 def last_standing(connection: Connection, map_id: int) -> int:
@@ -74,8 +88,8 @@ def last_standing(connection: Connection, map_id: int) -> int:
     return int(found)
 
 
-def steps_of(connection: Connection, map_id: int, revision: int) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
-    """The steps of one revision and those that lead back."""
+def inverse_of(connection: Connection, map_id: int, revision: int) -> tuple[Step, ...]:
+    """The steps that lead back over one revision."""
     query = select(revisions.c.content, revisions.c.sha256).where(
         revisions.c.map_id == map_id, revisions.c.revision == revision
     )
@@ -83,6 +97,11 @@ def steps_of(connection: Connection, map_id: int, revision: int) -> tuple[tuple[
     if row is None:
         raise MissingError(f"revision {revision} does not exist")
     try:
-        return unpack_history(row.content, row.sha256)
+        return unpack_inverse(row.content, row.sha256)
     except CorruptError as error:
         raise CorruptError(f"revision {revision}: {error}") from None
+
+
+def inverses(connection: Connection, map_id: int, newer: int, older: int) -> Iterator[tuple[Step, ...]]:
+    """The ways back over all revisions from `newer` to the one after `older`, each read when it is needed."""
+    return (inverse_of(connection, map_id, revision) for revision in range(newer, older, -1))

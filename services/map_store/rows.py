@@ -68,12 +68,17 @@ def pack_history(steps: tuple[Step, ...], inverse: tuple[Step, ...]) -> tuple[by
     return content, checksum(content)
 
 
-def unpack_history(content: bytes, sha256: str) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
-    """The steps and the way back of one revision; CorruptError when the checksum does not match."""
+def read_history(content: bytes, sha256: str) -> dict[str, list[dict[str, Any]]]:
+    """`steps` and `inverse` of one revision as stored; CorruptError when the checksum does not match."""
     if checksum(content) != sha256:
         raise CorruptError("the stored operations do not match their checksum")
-    fields = msgpack.unpackb(content)
-    return STEPS.validate_python(fields["steps"]), STEPS.validate_python(fields["inverse"])
+    fields: dict[str, list[dict[str, Any]]] = msgpack.unpackb(content)
+    return fields
+
+
+def unpack_inverse(content: bytes, sha256: str) -> tuple[Step, ...]:
+    """The steps that lead back over one revision; CorruptError when the checksum does not match."""
+    return STEPS.validate_python(read_history(content, sha256)["inverse"])
 
 
 def _node_row(place: Place) -> dict[str, Any]:

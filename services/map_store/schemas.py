@@ -3,8 +3,8 @@
 from pydantic import BaseModel, ConfigDict
 
 from services.map_store.catalogue import MapSummary
-from services.map_store.history import Revision
 from shared.messages.base import Name
+from shared.messages.features import Features
 from shared.messages.maps import Edge, Node
 
 
@@ -57,16 +57,16 @@ class EdgeView(Edge):
     revision: int
 
 
-class RevisionView(BaseModel):
-    """One entry of the history."""
+class KeypointsView(BaseModel):
+    """The keypoints of a node in the order of its features.
 
-    model_config = ConfigDict(from_attributes=True)
+    Attributes:
+        lonlat_rad: longitude and latitude of each, radians, the node's camera frame.
+        scores: detector response of each, larger is better.
+    """
 
-    revision: int
-    author: str
-    stamp_ns: int
-    steps: int
-    undoes: int | None
+    lonlat_rad: list[tuple[float, float]]
+    scores: list[float]
 
 
 class Changed(BaseModel):
@@ -93,6 +93,6 @@ def map_view(summary: MapSummary) -> MapView:
     return MapView.model_validate(summary)
 
 
-def revision_view(revision: Revision) -> RevisionView:
-    """One line of the history."""
-    return RevisionView.model_validate(revision)
+def keypoints_view(features: Features) -> KeypointsView:
+    """Where the features of a node are."""
+    return KeypointsView(lonlat_rad=features.lonlat_rad.tolist(), scores=features.scores.tolist())

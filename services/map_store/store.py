@@ -15,7 +15,9 @@ from services.map_store.graph import Change, Graph, Step, apply
 from services.map_store.graphs import Graphs
 from services.map_store.history import Revision
 from services.map_store.operations import prepare
+from services.map_store.past import Past
 from services.map_store.rows import write_change
+from services.map_store.summaries import Summaries
 from services.map_store.tables import maps
 from shared.messages.maps import MapDelta, Operation
 
@@ -35,6 +37,8 @@ class MapStore:
         self.database = database
         self._graphs = Graphs()
         self.contents = Contents(database, self._graphs)
+        self.past = Past(database, self._graphs)
+        self._summaries = Summaries()
         self._now_ns, self._changed = now_ns, changed
         self._writing = threading.Lock()
 
@@ -58,7 +62,8 @@ class MapStore:
     def revisions(self, name: str, before: int, limit: int) -> list[Revision]:
         """The newest `limit` revisions older than `before`, newest first."""
         with self.database.read() as connection:
-            return history.entries(connection, catalogue.find(connection, name).map_id, before, limit)
+            found = catalogue.find(connection, name)
+            return history.entries(connection, found.map_id, before, limit, self._summaries)
 
     def create(self, name: str) -> int:
         """Make an empty map; returns its revision, 0. ConflictError when it exists."""
@@ -119,7 +124,7 @@ class MapStore:
             found = catalogue.find(connection, name)
             _check_base(name, found.revision, base_revision)
             undone = history.last_standing(connection, found.map_id)
-            _, steps = history.steps_of(connection, found.map_id, undone)
+            steps = history.inverse_of(connection, found.map_id, undone)
             change = apply(self._graphs.get(connection, found), steps)
             entry = Revision(found.revision + 1, author, self._now_ns(), len(steps), undone)
             self._commit(connection, found.map_id, entry, steps, change)

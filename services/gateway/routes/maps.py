@@ -75,6 +75,12 @@ async def show_thumbnail(request: Request, map_name: MapPath, node_id: int, gate
     return await forward(gateway, request, f"/maps/{map_name}/nodes/{node_id}/thumbnail")
 
 
+@router.get("/api/maps/{map_name}/nodes/{node_id:int}/keypoints")
+async def show_keypoints(request: Request, map_name: MapPath, node_id: int, gateway: GatewayDep) -> Response:
+    """Where the features of a place are, and how strong."""
+    return await forward(gateway, request, f"/maps/{map_name}/nodes/{node_id}/keypoints")
+
+
 @router.get("/api/maps/{map_name}/edges")
 async def list_edges(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
     """Connections of a map with their evidence."""
@@ -91,6 +97,12 @@ async def delete_edge(request: Request, map_name: MapPath, a: int, b: int, gatew
 async def list_revisions(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
     """How a map came to be."""
     return await forward(gateway, request, f"/maps/{map_name}/revisions")
+
+
+@router.get("/api/maps/{map_name}/compare")
+async def compare_revisions(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
+    """What changed between two revisions, `?from=3&to=9`; `to` is the newest when left out."""
+    return await forward(gateway, request, f"/maps/{map_name}/compare")
 
 
 @router.post("/api/maps/{map_name}/undo")

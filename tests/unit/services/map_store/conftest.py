@@ -6,11 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fastapi.testclient import TestClient
 
+from services.map_store.api import create_app
 from services.map_store.database import Database
 from services.map_store.store import MapStore
 from shared.messages import Features, MapDelta
-from shared.messages.maps import AddNode, Node
+from shared.messages.maps import AddNode, Edge, Node, PutEdge
 
 Told = list[MapDelta]
 
@@ -55,3 +57,12 @@ def store(database: Database, told: Told) -> MapStore:
     opened.create("flat")
     told.clear()
     return opened
+
+
+@pytest.fixture
+def client(store: MapStore) -> TestClient:
+    """REST over a map with three nodes and two edges."""
+    links = [PutEdge(edge=Edge(a=a, b=a + 1, raw_matches=60, inliers=40, s_min=30, s_max=60)) for a in (0, 1)]
+    store.transact("flat", [add(0), add(1), add(2)], author="planner")
+    store.transact("flat", links, author="planner")
+    return TestClient(create_app(store), raise_server_exceptions=False)

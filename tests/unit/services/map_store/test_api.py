@@ -7,20 +7,10 @@ from fastapi.testclient import TestClient
 
 from services.map_store.api import MAX_BODY_BYTES, create_app
 from services.map_store.store import MapStore
-from shared.messages.maps import Edge, PutEdge
 from tests.unit.services.map_store.conftest import add, features
 from tests.unit.services.map_store.test_store import damage
 
 PROBLEM = "application/problem+json"
-
-
-@pytest.fixture
-def client(store: MapStore) -> TestClient:
-    """REST over a map with three nodes and two edges."""
-    links = [PutEdge(edge=Edge(a=a, b=a + 1, raw_matches=60, inliers=40, s_min=30, s_max=60)) for a in (0, 1)]
-    store.transact("flat", [add(0), add(1), add(2)], author="planner")
-    store.transact("flat", links, author="planner")
-    return TestClient(create_app(store), raise_server_exceptions=False)
 
 
 def problem(response, status: int) -> str:
@@ -220,5 +210,5 @@ def test_a_fault_inside_is_a_problem_without_its_innards(client: TestClient, mon
 
 def test_openapi_describes_every_route(client: TestClient):
     described = client.get("/openapi.json").json()
-    assert len(described["paths"]) == 13
+    assert len(described["paths"]) == 15
     assert described["paths"]["/maps/import"]["post"]["requestBody"]["content"].keys() == {"application/zip"}
