@@ -1,5 +1,6 @@
 """`topnav explore`: explore a world, keep the map, and say how good it is."""
 
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
 
@@ -12,6 +13,7 @@ from experiments.map_client import delete_map, read_map
 from experiments.output import write_json
 from experiments.plots.plans import draw_map
 from experiments.progress import mission_progress
+from experiments.run_record import explore_figures, keep_run
 from experiments.stack import Stack, StackChoice, open_stack
 from experiments.tables import print_figures, wide_console
 from experiments.truth_file import MapTruth, load_truth, save_truth, truth_path
@@ -38,7 +40,7 @@ def main(
     endpoint: options.Endpoint = None,
 ) -> None:
     """Explore a world and build a map of pictures."""
-    space = free_space(load_world(world))
+    started, space = datetime.now(UTC), free_space(load_world(world))
     choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
     path = truth_path(data_dir, map_name)
     with one_line_errors(), open_stack(choice) as stack:
@@ -49,6 +51,16 @@ def main(
     report = figures(result, space, map_name, seed)
     if json_file is not None:
         write_json(json_file, report)
+    keep_run(
+        data_dir,
+        "explore",
+        started,
+        explore_figures(report),
+        worlds=[world],
+        map_name=map_name,
+        seed=seed,
+        json_file=json_file,
+    )
     if drawing is not None:
         draw_map(drawing, load_world(world), result.truth.poses, result.graph.edges)
     print_figures(f"map {map_name}", report)

@@ -1,5 +1,6 @@
 """`topnav hide-and-seek`: the thesis's evaluation, rounds of finding a hidden robot from its picture."""
 
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,6 +11,7 @@ from experiments.failure import ExperimentError, one_line_errors
 from experiments.output import new_run_folder, write_json
 from experiments.play import Scene, play_rounds
 from experiments.report import report
+from experiments.run_record import keep_run, rounds_figures, suite_figures
 from experiments.stack import StackChoice, open_stack
 from experiments.suites.command import SuiteChoice, run_suite
 from experiments.suites.plan import plan_suite
@@ -59,18 +61,18 @@ def main(
 ) -> None:
     """Find robots that hide at random places, one after the other, from the pictures they send."""
     if suite is not None:
-        with one_line_errors():
-            plans = plan_suite(
-                suite,
-                seed,
-                rounds=rounds or SUITE_ROUNDS,
-                worlds=[name.strip() for name in worlds.split(",") if name.strip()],
-                profiles=[profile or "default", *([compare] if compare else [])],
-                max_steps=max_steps,
-                draw=draw,
-            )
-            run_suite(SuiteChoice(suite, plans, data_dir / "suites", jobs, cluster), json_file)
+        plans = plan_suite(
+            suite,
+            seed,
+            rounds=rounds or SUITE_ROUNDS,
+            worlds=[name.strip() for name in worlds.split(",") if name.strip()],
+            profiles=[profile or "default", *([compare] if compare else [])],
+            max_steps=max_steps,
+            draw=draw,
+        )
+        _play_suite(SuiteChoice(suite, plans, data_dir / "suites", jobs, cluster), data_dir, json_file)
         return
+    started = datetime.now(UTC)
     choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
     scene = Scene(load_world(world), map_name, load_truth(truth_path(data_dir, map_name)))
     folder = (drawings or new_run_folder(options.RUNS_DIR)) if draw else None
@@ -80,7 +82,32 @@ def main(
             played.append(one)
             if json_file is not None:
                 write_json(json_file, report(world, profile or "default", seed, played))
+    keep_run(
+        data_dir,
+        "hide-and-seek",
+        started,
+        rounds_figures(played),
+        worlds=[world],
+        map_name=map_name,
+        seed=seed,
+        json_file=json_file,
+    )
     print_rows(f"hide and seek in {world}, seed {seed}", [{name: r[name] for name in SHOWN} for r in played])
     print_rows("summary", [report(world, profile or "default", seed, played)["summary"]])
     if not any(r["success"] for r in played):
         raise ExperimentError("no round succeeded")
+
+
+def _play_suite(choice: SuiteChoice, data_dir: Path, json_file: Path | None) -> None:
+    started = datetime.now(UTC)
+    with one_line_errors():
+        told = run_suite(choice, json_file)
+    keep_run(
+        data_dir,
+        f"hide-and-seek --suite {choice.suite}",
+        started,
+        suite_figures(told["runs"]),
+        worlds=list(dict.fromkeys(plan.world for plan in choice.plans)),
+        seed=choice.plans[0].seed,
+        json_file=json_file,
+    )

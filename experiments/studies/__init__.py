@@ -2,6 +2,7 @@
 
 import typer
 
+from experiments.run_record import on_record
 from experiments.studies.disturbance import main as run_disturbance
 from experiments.studies.disturbance_matches import main as disturbance_matches
 from experiments.studies.failures import main as failures
@@ -11,13 +12,13 @@ from experiments.studies.matching import main as matching
 from experiments.studies.recovery import main as recovery
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, no_args_is_help=True)
-app.command("heading")(heading)
-app.command("heading-frames")(heading_frames)
-app.command("disturbance")(run_disturbance)
-app.command("disturbance-matches")(disturbance_matches)
-app.command("failures")(failures)
-app.command("matching")(matching)
-app.command("recovery")(recovery)
+app.command("heading")(on_record("study heading", heading))
+app.command("heading-frames")(on_record("study heading-frames", heading_frames))
+app.command("disturbance")(on_record("study disturbance", run_disturbance))
+app.command("disturbance-matches")(on_record("study disturbance-matches", disturbance_matches))
+app.command("failures")(on_record("study failures", failures))
+app.command("matching")(on_record("study matching", matching))
+app.command("recovery")(on_record("study recovery", recovery))
 
 
 @app.callback()

@@ -62,7 +62,7 @@ def main(
     json_file: options.JsonFile = None,
     plot: Annotated[Path | None, typer.Option(help="Draw the curves into this PNG.")] = None,
     data_dir: options.DataDir = options.DATA_DIR,
-) -> None:
+) -> int:
     """Success and SPL against the level of each disturbance; goes on where --json F stopped.
 
     The map must have been made in clean conditions. 0.5 is the middle level. Every level gets a stack of its
@@ -85,6 +85,7 @@ def main(
         f"disturbances in {world}, seed {seed}",
         [{name: row[name] for name in SHOWN} for row in found.results],
     )
+    return len(found.results)
 
 
 def run_level(study: Study, disturbance: str, level: float) -> Row:

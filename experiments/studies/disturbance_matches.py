@@ -38,7 +38,7 @@ def main(
     seed: options.Seed = 1,
     pipeline: options.PipelineName = None,
     json_file: options.JsonFile = None,
-) -> None:
+) -> int:
     """What each disturbance leaves of the verified matches between frames 1 m apart, and what it costs."""
     scene, feature_pipeline = load_world(world), Pipeline(find_profile(pipeline or "sift"))
     poses = poses_apart(free_space(scene), pairs, np.random.default_rng(seed))
@@ -58,6 +58,7 @@ def main(
         if json_file is not None:
             write_json(json_file, {"world": world, "seed": seed, "pairs": pairs, "results": rows})
     print_rows(f"frames {APART_M:g} m apart in {world}", rows)
+    return len(rows)
 
 
 def measure(

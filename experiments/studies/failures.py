@@ -32,7 +32,7 @@ def main(
     seed: options.Seed = 1,
     json_file: options.JsonFile = None,
     data_dir: options.DataDir = options.DATA_DIR,
-) -> None:
+) -> int:
     """Each failure of the thesis: reproduced with its rule, and the same work with ours."""
     studies: dict[str, Callable[[], Row]] = {
         "oscillation": lambda: oscillation(data_dir, "apartment", map_name, rounds, seed),
@@ -59,3 +59,4 @@ def main(
         print_rows(
             f"{row['failure']} ({row['command']})", [{"rule": k, **row[k]} for k in ("thesis", "ours")]
         )
+    return len(rows)

@@ -37,7 +37,7 @@ def main(
     seed: options.Seed = 1,
     json_file: options.JsonFile = None,
     data_dir: options.DataDir = options.DATA_DIR,
-) -> None:
+) -> int:
     """Heading errors (AHAE) and detours (DCPE) of all methods in random scenes.
 
     Finished scenes are kept: a study cut off goes on where it was.
@@ -66,6 +66,7 @@ def main(
     if json_file is not None:
         write_json(json_file, report)
     _show(report)
+    return sum(len(rows) for rows in report.values() if isinstance(rows, list))
 
 
 def _measure(

@@ -32,7 +32,7 @@ def main(
     pipeline: options.PipelineName = None,
     json_file: options.JsonFile = None,
     data_dir: options.DataDir = options.DATA_DIR,
-) -> None:
+) -> int:
     """Heading errors of all seven methods from the same matches, frames 0.3 to 3 m apart."""
     results = measure(world, QUICK_PAIRS if quick else pairs, seed, pipeline or "sift", data_dir)
     verified, raw = method_table(results), method_table(results, raw=True)
@@ -52,6 +52,7 @@ def main(
     for title, table in (("verified matches", verified), ("raw matches", raw)):
         print_rows(f"heading error, {title}", [{"method": name, **row} for name, row in table.items()])
     print_rows("by distance, epipolar", by_distance)
+    return len(results)
 
 
 def measure(

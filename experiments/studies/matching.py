@@ -35,7 +35,7 @@ def main(
     seed: options.Seed = 1,
     json_file: options.JsonFile = None,
     data_dir: options.DataDir = options.DATA_DIR,
-) -> None:
+) -> int:
     """Mean average precision over latitude, longitude, blur, rotation and scale.
 
     Goes on where --json F stopped. Combinations without trained weights are listed, never measured.
@@ -70,6 +70,7 @@ def main(
         _draw_example(plots, sources[0], size.canvas_px)
         _write_page(plots, report)
     _show(report)
+    return len(file.results)
 
 
 def _measure(file: ResultsFile, names: list[str], sources: list[Image], size: plan.Size) -> None:

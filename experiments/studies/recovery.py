@@ -44,7 +44,7 @@ def main(
     seed: options.Seed = 1,
     json_file: options.JsonFile = None,
     data_dir: options.DataDir = options.DATA_DIR,
-) -> None:
+) -> int:
     """Carried robots, pictures from elsewhere, a shut door: each ends well or says by name why not."""
     if only and only not in KINDS:
         raise typer.BadParameter(f"--only must be one of {', '.join(KINDS)}, got {only!r}")
@@ -71,6 +71,7 @@ def main(
                     )
     print_rows("trials", rows)
     print_rows("summary", summary(rows))
+    return len(rows)
 
 
 def carried(game: Game, space: FreeSpace, seed: int, rng: np.random.Generator) -> Row:

@@ -41,7 +41,11 @@ class Metrics:
         self.requests = self._counter("http_requests", "HTTP requests", "method", "route", "status")
         self.sockets_refused = self._counter("sockets_refused", "WebSockets refused", "reason")
         self.sockets_dropped = self._counter("sockets_dropped", "WebSockets closed by the gateway", "reason")
-        self.sockets = Gauge("sockets", "WebSockets open", namespace=NAMESPACE, registry=self._registry)
+        self.records_lost = self._counter("mission_records_lost", "Ended missions that were not written down")
+        self.sockets = self._gauge("sockets", "WebSockets open")
+        self.runs_broken = self._gauge(
+            "runs_broken", "Records of runs that could not be read when last listed"
+        )
         self.asked = Histogram(
             "ask_seconds",
             "Time of questions on the bus",
@@ -53,6 +57,9 @@ class Metrics:
     def text(self) -> bytes:
         """All counts in Prometheus's text format."""
         return generate_latest(self._registry)
+
+    def _gauge(self, name: str, help_text: str) -> Gauge:
+        return Gauge(name, help_text, namespace=NAMESPACE, registry=self._registry)
 
     def _counter(self, name: str, help_text: str, *labels: str) -> Counter:
         return Counter(name, help_text, labels, namespace=NAMESPACE, registry=self._registry)

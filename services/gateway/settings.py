@@ -1,6 +1,7 @@
 """Settings of the gateway, read from GATEWAY_*."""
 
 import ipaddress
+from pathlib import Path
 from typing import Self
 
 from pydantic import Field, HttpUrl, SecretStr, model_validator
@@ -31,6 +32,7 @@ class GatewaySettings(ServiceSettings):
         max_robots: robots followed at once; further names are ignored.
         ask_timeout_s: how long planner and map store may take.
         compute_timeout_s: how long extraction and matching may take.
+        runs_dir: where ended missions are written down and commands leave their figures.
         required_services: readiness needs one living process of each.
     """
 
@@ -53,6 +55,7 @@ class GatewaySettings(ServiceSettings):
     send_timeout_s: float = Field(default=5.0, gt=0.0)
     ask_timeout_s: float = Field(default=5.0, gt=0.0)
     compute_timeout_s: float = Field(default=20.0, gt=0.0)
+    runs_dir: Path = Path("data/runs")
     required_services: tuple[str, ...] = ("features", "map_store", "planner")
 
     @model_validator(mode="after")

@@ -10,9 +10,9 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from services.gateway.bodies import read_json
 from services.gateway.goal import goal_of
 from services.gateway.problems import ProblemError
-from services.gateway.routes.goals import PICTURE_BODY, MapQuery
+from services.gateway.routes.goals import PICTURE_BODY
 from services.gateway.routes.robots import known
-from services.gateway.state import Gateway, GatewayDep, RobotPath
+from services.gateway.state import Gateway, GatewayDep, MapQuery, RobotPath
 from shared.messages.missions import MissionRequest, MissionStatus
 from shared.topics import MISSION
 
@@ -63,7 +63,7 @@ async def start(
     """Start exploring, or drive to a node of the map."""
     wish = await read_json(request, StartMission, gateway.settings.upload_timeout_s)
     response.headers["Location"] = f"/api/robots/{robot}/mission"
-    return _facts(await _ask(gateway, robot, MissionRequest(**wish.model_dump())))
+    return _facts(await _start(gateway, robot, MissionRequest(**wish.model_dump())))
 
 
 @router.post("/api/robots/{robot}/missions/goto", status_code=202, openapi_extra=PICTURE_BODY)
@@ -80,7 +80,7 @@ async def start_goto(
     goal = await goal_of(request, gateway, robot)
     wish = MissionRequest(action="goto", map=map_name, goal=goal.features, seed=seed, max_steps=max_steps)
     response.headers["Location"] = f"/api/robots/{robot}/mission"
-    return _facts(await _ask(gateway, robot, wish))
+    return _facts(await _start(gateway, robot, wish))
 
 
 @router.post("/api/robots/{robot}/missions/{action}")
@@ -147,6 +147,12 @@ async def _ask_patiently(gateway: Gateway, robot: str, deadline_s: float) -> Mis
             if not gone or time.monotonic() + 0.5 > deadline_s:
                 raise
         await asyncio.sleep(0.5)
+
+
+async def _start(gateway: Gateway, robot: str, wish: MissionRequest) -> MissionStatus:
+    status = await _ask(gateway, robot, wish)
+    gateway.missions.ordered(status, wish.seed)
+    return status
 
 
 async def _ask(gateway: Gateway, robot: str, wish: MissionRequest) -> MissionStatus:
