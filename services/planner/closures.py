@@ -4,10 +4,10 @@ Two streets of equal houses give matches that fit one motion of the camera. A ne
 claimed must then fit as well: the turn and the direction it is seen at follow from the edge between the two.
 """
 
-import math
 from collections.abc import Mapping, Set
 
 from services.planner.graph import MapGraph
+from shared.geometry.triangle import Sight, triangle_closes
 from shared.messages.matching import NodeMatch
 
 NEAR_HOPS = 1
@@ -16,9 +16,6 @@ NEAR_HOPS = 1
 FAR_HOPS = 3
 """Beyond so many edges a look-alike is as likely as the place itself: of 153 such edges in a village of equal
 houses 58 were wrong, of 1195 nearer ones 11. None of the wrong ones had more than 106 verified matches."""
-
-YAW_RAD = math.radians(8.0)
-DIRECTION_RAD = math.radians(15.0)
 
 
 def unsupported_closures(
@@ -74,17 +71,24 @@ def witnessed(graph: MapGraph, matches: Mapping[int, NodeMatch], sure: Set[int])
     return known - sure
 
 
-def contradicted(graph: MapGraph, matches: Mapping[int, NodeMatch]) -> dict[int, str]:
+def contradicted(
+    graph: MapGraph, matches: Mapping[int, NodeMatch], voters: Mapping[int, NodeMatch] | None = None
+) -> dict[int, str]:
     """Places that their neighbours in the map outvote, weakest case first.
 
     A wall whose pattern repeats gives a clear motion in a wrong direction; places seen beside it tell. Every
     pair of matched places with an edge between them agrees or not; the votes weigh as many matches as the
     voter has verified.
 
+    Args:
+        graph: the map.
+        matches: the places to judge.
+        voters: all places whose matches count, also those too ambiguous for an edge; None: only the judged.
+
     Returns:
         Place and reason.
     """
-    votes = _votes(graph, matches)
+    votes = _votes(graph, matches, voters if voters is not None else matches)
     refused: dict[int, str] = {}
     while True:
         balance = {
@@ -98,14 +102,17 @@ def contradicted(graph: MapGraph, matches: Mapping[int, NodeMatch]) -> dict[int,
         refused[worst] = f"{-balance[worst]} more matches of its neighbours speak against node {worst}"
 
 
-def _votes(graph: MapGraph, matches: Mapping[int, NodeMatch]) -> dict[int, dict[int, int]]:
+def _votes(
+    graph: MapGraph, matches: Mapping[int, NodeMatch], voters: Mapping[int, NodeMatch]
+) -> dict[int, dict[int, int]]:
     """For each place the neighbours that can judge it: their verified matches, negative against it."""
+    seen = {**voters, **matches}
     votes: dict[int, dict[int, int]] = {}
     for place in sorted(matches):
         votes[place] = {
-            witness: matches[witness].inliers * (1 if agrees(graph, matches, place, witness) else -1)
+            witness: seen[witness].inliers * (1 if agrees(graph, seen, place, witness) else -1)
             for witness in graph.neighbours(place)
-            if witness in matches and _can_judge(graph, matches, place, witness)
+            if witness in seen and _can_judge(graph, seen, place, witness)
         }
     return votes
 
@@ -123,24 +130,16 @@ def agrees(graph: MapGraph, matches: Mapping[int, NodeMatch], place: int, witnes
     opposite of the direction to the place.
     """
     edge, to_place, to_witness = graph.edge(place, witness), matches[place], matches[witness]
-    if edge is None or edge.yaw_ab_rad is None or to_place.yaw_rad is None or to_witness.yaw_rad is None:
+    if edge is None or edge.yaw_ab_rad is None:
         return False
-    turned = edge.yaw_ab_rad if edge.a == place else -edge.yaw_ab_rad
-    if abs(math.remainder(to_place.yaw_rad + turned - to_witness.yaw_rad, math.tau)) > YAW_RAD:
-        return False
-    onward = graph.heading(place, witness)
-    if to_place.heading_rad is None or to_witness.heading_rad is None or onward is None:
-        return True  # one of them is where the frame is: there is no triangle
-    onward_rad = onward + to_place.yaw_rad
-    back_rad = to_place.heading_rad + math.pi
-    detour = _apart(to_witness.heading_rad, onward_rad) + _apart(onward_rad, back_rad)
-    return detour - _apart(to_witness.heading_rad, back_rad) < DIRECTION_RAD
+    turned_rad = edge.yaw_ab_rad if edge.a == place else -edge.yaw_ab_rad
+    return triangle_closes(
+        Sight(to_place.heading_rad, to_place.yaw_rad),
+        Sight(to_witness.heading_rad, to_witness.yaw_rad),
+        Sight(graph.heading(place, witness), turned_rad),
+    )
 
 
 def far_places(graph: MapGraph, matches: Mapping[int, NodeMatch], driven_from: int) -> set[int]:
     """Places of `matches` more than FAR_HOPS edges from where the robot came from."""
     return {n for n in matches if n in graph.nodes} - graph.within(driven_from, FAR_HOPS)
-
-
-def _apart(first_rad: float, second_rad: float) -> float:
-    return abs(math.remainder(first_rad - second_rad, math.tau))

@@ -144,13 +144,18 @@ def edges_to(
 def _refused(
     graph: MapGraph, admitted: dict[int, NodeMatch], profile: Profile, driven_from: int | None
 ) -> dict[int, str]:
-    """Edges that are ambiguous, without a witness or outvoted; raw similarity asks for none of it."""
+    """Edges that are ambiguous, without a witness or outvoted; raw similarity asks for none of it.
+
+    The view of the place the robot came from was followed frame by frame, so it is not ambiguous.
+    """
     if profile.similarity == "raw":
         return {}
-    refused = {n: f"two motions explain the view of node {n}" for n, m in admitted.items() if has_rival(m)}
+    why = "two motions explain the view of node"
+    refused = {n: f"{why} {n}" for n, m in admitted.items() if n != driven_from and has_rival(m)}
     left = {n: m for n, m in admitted.items() if n not in refused}
     refused |= unsupported_closures(graph, left, driven_from, profile.s_far)
-    return refused | contradicted(graph, {n: m for n, m in admitted.items() if n not in refused})
+    left = {n: m for n, m in admitted.items() if n not in refused}
+    return refused | contradicted(graph, left, admitted)
 
 
 def _admitted(match: NodeMatch, profile: Profile) -> bool:

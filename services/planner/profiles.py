@@ -141,7 +141,7 @@ OUTDOOR = DEFAULT.model_copy(
         "robot_slim_m": 0.3,
         "disparity_rad_per_m": math.radians(2.2),
         "similarity_m": 300.0,
-        "unsure_m": 500.0,
+        "unsure_m": 750.0,
         "s_blind_min": 60,
         "far_rad": math.radians(3.5),
         "s_far": 110,

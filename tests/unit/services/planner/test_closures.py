@@ -114,3 +114,11 @@ def test_of_two_that_disagree_the_better_verified_stays(graph):
 
 def test_a_place_without_neighbours_in_view_is_not_judged(graph):
     assert contradicted(graph, {0: match(0, aside_rad=math.pi), 7: match(7)}) == {}
+
+
+def test_a_match_too_ambiguous_for_an_edge_still_votes(graph):
+    """Place 7 seems to lie aside; 6 would tell, though a second motion explains its own view."""
+    aside = match(7, aside_rad=math.radians(25.0))
+    assert contradicted(graph, {7: aside}) == {}
+    assert set(contradicted(graph, {7: aside}, {6: match(6), 7: aside})) == {7}
+    assert contradicted(graph, {7: match(7)}, {6: match(6), 7: match(7)}) == {}

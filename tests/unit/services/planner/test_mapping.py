@@ -73,8 +73,8 @@ def test_outdoors_a_weak_edge_needs_ground_seen_free_as_far_as_the_place_may_be(
     matches = {0: match(0, 35, 60)}
     seen = Observation(observation().features, observation().ranges.model_copy(update={"max_range_m": 10.0}))
     near, far = (
-        replace(seen, ranges=seen.ranges.model_copy(update={"distances_m": (m,) * 12, "max_range_m": 20.0}))
-        for m in (10.0, 16.0)
+        replace(seen, ranges=seen.ranges.model_copy(update={"distances_m": (m,) * 12, "max_range_m": 25.0}))
+        for m in (16.0, 24.0)
     )
     graph = Memory().graph
     assert judge_edges(graph, near, matches, OUTDOOR, None).admitted == {}
