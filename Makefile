@@ -11,7 +11,7 @@ STAMP := $(VENV)/.installed
 INPUTS := pyproject.toml constraints.txt deploy/packaging/opencv-shim/pyproject.toml
 SOURCES := services shared simulator experiments tests
 
-.PHONY: setup demo test check lint types bench clean
+.PHONY: setup demo test check lint types bench screenshots clean
 
 setup: $(STAMP)
 	@bash deploy/setup/vulkan.sh
@@ -42,6 +42,10 @@ types: setup
 
 bench: setup
 	$(BIN)/topnav bench loop
+	$(BIN)/python -m pytest -q -s tests/benchmarks/test_console_graph.py
+
+screenshots: setup
+	$(BIN)/python -m tests.screenshots
 
 clean:
 	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis

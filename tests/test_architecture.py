@@ -18,6 +18,7 @@ PURE = (
     "services/**/core.py",
     "services/**/core/**/*.py",
     "services/**/graph.py",
+    "services/**/comparison.py",
     "services/launcher/plan.py",
     "services/launcher/restart.py",
     "services/launcher/interpolate.py",

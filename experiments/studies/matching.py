@@ -91,6 +91,7 @@ def _time(file: ResultsFile, names: list[str], view: Image) -> None:
     """Extraction times of a 1024 x 2048 picture full of texture: the view, tiled over the sphere."""
     panorama = np.asarray(cv2.resize(np.tile(view, (2, 4)), (TIMED_PX, TIMED_PX // 2)), np.uint8)
     done = {row["descriptor"] for row in file.tables["timing"]}
+    done |= {row["descriptor"] for row in file.results if row["map"] is None}  # no weights here
     for name in names:
         if name in done:
             continue

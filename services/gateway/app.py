@@ -12,8 +12,21 @@ from services.gateway.asking import Asker
 from services.gateway.bridge import BEAT_S, Bridge
 from services.gateway.edge import Edge
 from services.gateway.live import Hub
+from services.gateway.merging.desk import MergeDesk
 from services.gateway.metrics import Metrics
-from services.gateway.routes import goals, health, live, maps, missions, pages, robots
+from services.gateway.mission_log import MissionLog
+from services.gateway.routes import (
+    evidence,
+    goals,
+    health,
+    live,
+    maps,
+    merging,
+    missions,
+    pages,
+    robots,
+    runs,
+)
 from services.gateway.settings import GatewaySettings
 from services.gateway.state import Gateway
 from services.gateway.storage import open_client
@@ -26,10 +39,12 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        hub = Hub(metrics, settings.max_robots)
+        log = MissionLog(settings.runs_dir, metrics)
+        hub = Hub(metrics, settings.max_robots, log.take)
         store = open_client(str(settings.map_store_url), settings.map_store_token.get_secret_value())
-        gateway = Gateway(settings, metrics, Asker(bus, metrics), hub, store)
+        gateway = Gateway(settings, metrics, Asker(bus, metrics), hub, log, store)
         app.state.gateway = gateway
+        app.state.merges = merges = MergeDesk(gateway)
         bridge = Bridge(bus, hub, asyncio.get_running_loop(), settings.robot, settings.max_robots)
         bridge.start()
         beat = asyncio.create_task(_beat(hub))
@@ -38,6 +53,7 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
         finally:
             beat.cancel()
             bridge.stop()
+            await merges.close()
             gateway.asker.close()
             gateway.pictures.shutdown(wait=False, cancel_futures=True)
             await gateway.store.aclose()
@@ -46,7 +62,7 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
     app = FastAPI(title="topnav gateway", version="1", lifespan=lifespan, docs_url=None, redoc_url=None)
     problems.install(app, metrics)
     app.add_middleware(Edge, metrics=metrics)
-    for resource in (goals, missions, maps, robots):
+    for resource in (evidence, goals, missions, maps, merging, robots, runs):
         app.include_router(resource.router, dependencies=[Depends(guard)])
     for resource in (live, health, pages):
         app.include_router(resource.router)

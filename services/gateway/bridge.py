@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from services.gateway.live import Hub
 from shared.bus import Bus
 from shared.messages.base import Message
-from shared.topics import EVENT, FRAME, HEADING, NAME, RANGES, STATUS, TRUTH
+from shared.topics import COMMAND, EVENT, FRAME, HEADING, NAME, RANGES, STATUS, TRUTH
 
 log = logging.getLogger(__name__)
 
@@ -99,6 +99,7 @@ class Bridge:
             self._bus.subscribe(FRAME, robot=robot).take_all,
             self._bus.subscribe(RANGES, robot=robot).take_all,
             self._bus.subscribe(HEADING, robot=robot).take_all,
+            self._bus.subscribe(COMMAND, robot=robot).take_all,
         )
 
     def _deliver(self, messages: list[Message], services: dict[str, int] | None) -> bool:

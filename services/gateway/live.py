@@ -4,14 +4,15 @@ import asyncio
 import json
 import time
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
 from services.gateway.metrics import Metrics
 from services.gateway.outbox import Outbox
+from services.gateway.true_poses import TruePoses
 from shared.messages.base import Message
-from shared.messages.drive import Heading
+from shared.messages.drive import Command, Heading
 from shared.messages.missions import Event, MissionStatus
 from shared.messages.sensors import Frame, Ranges
 from shared.messages.simulation import Truth
@@ -28,18 +29,28 @@ class RobotView:
     frame_s: float = 0.0
     ranges: Ranges | None = None
     heading: Heading | None = None
+    command: Command | None = None
     status: MissionStatus | None = None
     truth: Truth | None = None
+    true_poses: TruePoses = field(default_factory=TruePoses)
     events: deque[Event] = field(default_factory=lambda: deque(maxlen=EVENTS_KEPT))
     changed: asyncio.Event = field(default_factory=asyncio.Event)
     outboxes: set[Outbox] = field(default_factory=set)
 
 
 class Hub:
-    """Keeps one `RobotView` per robot and passes news on to WebSockets and waiting requests."""
+    """Keeps one `RobotView` per robot and passes news on to WebSockets and waiting requests.
 
-    def __init__(self, metrics: Metrics, max_robots: int) -> None:
-        self._metrics, self._max_robots = metrics, max_robots
+    Args:
+        metrics: what to count in.
+        max_robots: further names are ignored.
+        on_status: hears every status of a mission.
+    """
+
+    def __init__(
+        self, metrics: Metrics, max_robots: int, on_status: Callable[[MissionStatus], None] | None = None
+    ) -> None:
+        self._metrics, self._max_robots, self._on_status = metrics, max_robots, on_status
         self.robots: dict[str, RobotView] = {}
         self.services: dict[str, int] = {}
 
@@ -79,7 +90,13 @@ class Hub:
             return None
         outbox = Outbox()
         outbox.offer_newest("services", json.dumps({"type": "services", "data": self.services}))
-        for kind, message in (("status", view.status), ("heading", view.heading), ("ranges", view.ranges)):
+        known = {
+            "status": view.status,
+            "heading": view.heading,
+            "ranges": view.ranges,
+            "command": view.command,
+        }
+        for kind, message in known.items():
             if message is not None:
                 outbox.offer_newest(kind, _text(kind, message.model_dump(mode="json")))
         if view.frame is not None:
@@ -106,11 +123,16 @@ class Hub:
             case Heading():
                 view.heading = message
                 _tell(view, "heading", message.model_dump(mode="json"))
+            case Command():
+                view.command = message
+                _tell(view, "command", message.model_dump(mode="json"))
             case MissionStatus():
                 view.status = message
                 _tell(view, "status", message.model_dump(mode="json"))
                 view.changed.set()
                 view.changed = asyncio.Event()
+                if self._on_status is not None:
+                    self._on_status(message)
             case Event():
                 view.events.append(message)
                 text = _text("event", message.model_dump(mode="json"))
@@ -118,6 +140,7 @@ class Hub:
                     outbox.offer(text)
             case Truth():
                 view.truth = message
+                view.true_poses.take(message)
             case _:
                 raise TypeError(f"message must be one the gateway follows, got {type(message).__name__}")
 

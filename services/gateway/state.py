@@ -8,12 +8,13 @@ from dataclasses import dataclass, field
 from typing import Annotated, TypeVar
 
 import httpx
-from fastapi import Depends, Path
+from fastapi import Depends, Path, Query
 from starlette.requests import HTTPConnection
 
 from services.gateway.asking import Asker
 from services.gateway.live import Hub
 from services.gateway.metrics import Metrics
+from services.gateway.mission_log import MissionLog
 from services.gateway.problems import ProblemError
 from services.gateway.settings import GatewaySettings
 
@@ -25,6 +26,7 @@ class Gateway:
     """Settings and everything that lives as long as the application.
 
     Attributes:
+        missions: record of those that ended.
         store: client of the map store's REST interface.
         pictures: the one thread that decodes and encodes pictures: a large one needs 200 MB while it decodes.
     """
@@ -33,6 +35,7 @@ class Gateway:
     metrics: Metrics
     asker: Asker
     hub: Hub
+    missions: MissionLog
     store: httpx.AsyncClient
     pictures: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1, "pictures"))
     uploading: int = 0
@@ -75,3 +78,6 @@ def gateway_of(connection: HTTPConnection) -> Gateway:
 GatewayDep = Annotated[Gateway, Depends(gateway_of)]
 RobotPath = Annotated[str, Path(pattern=r"^[a-z0-9_-]{1,64}$", description="name of a robot")]
 MapPath = Annotated[str, Path(pattern=r"^[a-z0-9_-]{1,64}$", description="name of a map")]
+NodePath = Annotated[int, Path(ge=0, lt=2**63, description="number of a node")]
+NodeQuery = Annotated[int, Query(ge=0, lt=2**63, description="number of a node")]
+MapQuery = Annotated[str, Query(alias="map", pattern=r"^[a-z0-9_-]{1,64}$", description="name of a map")]

@@ -1,12 +1,12 @@
 """How well a goal picture localises in a map."""
 
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
-from fastapi import APIRouter, Query, Request
+from fastapi import APIRouter, Request
 from pydantic import BaseModel
 
 from services.gateway.goal import Goal, goal_of
-from services.gateway.state import GatewayDep, RobotPath
+from services.gateway.state import GatewayDep, MapQuery, RobotPath
 from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
 from shared.topics import MATCH
 
@@ -34,7 +34,6 @@ PICTURE_BODY: dict[str, Any] = {
         },
     }
 }
-MapQuery = Annotated[str, Query(alias="map", pattern=r"^[a-z0-9_-]{1,64}$", description="name of a map")]
 
 
 class NodeAnswer(BaseModel):

@@ -5,6 +5,7 @@ from pathlib import Path
 from fastapi import APIRouter, FastAPI
 from fastapi.responses import FileResponse
 from fastapi.staticfiles import StaticFiles
+from starlette.middleware.gzip import GZipMiddleware
 
 STATIC = Path(__file__).resolve().parent.parent / "static"
 router = APIRouter(include_in_schema=False)
@@ -17,5 +18,5 @@ async def index() -> FileResponse:
 
 
 def mount_static(app: FastAPI) -> None:
-    """Serve scripts and styles."""
-    app.mount("/static", StaticFiles(directory=STATIC), name="static")
+    """Serve scripts and styles, compressed."""
+    app.mount("/static", GZipMiddleware(StaticFiles(directory=STATIC)), name="static")

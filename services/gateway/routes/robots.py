@@ -4,13 +4,24 @@ import time
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Response
+from pydantic import BaseModel
 
 from services.gateway.live import RobotView, frame_facts
 from services.gateway.problems import ProblemError
 from services.gateway.snapshot import jpeg_of
-from services.gateway.state import Gateway, GatewayDep, RobotPath
+from services.gateway.state import Gateway, GatewayDep, MapQuery, RobotPath
+from services.gateway.true_poses import Position
+from shared.messages.maps import MapRequest
+from shared.topics import MAP
 
 router = APIRouter(tags=["robots"])
+
+
+class TruePositions(BaseModel):
+    """Per node its x and y in metres and the yaw of its camera in radians, frame of the simulated world."""
+
+    map: str
+    positions: dict[int, Position]
 
 
 @router.get("/api/robots")
@@ -72,6 +83,14 @@ async def show_truth(robot: RobotPath, gateway: GatewayDep) -> dict[str, Any]:
             next_step="only the simulator publishes true poses",
         )
     return truth.model_dump(mode="json")
+
+
+@router.get("/api/robots/{robot}/true-positions")
+async def show_true_positions(robot: RobotPath, map_name: MapQuery, gateway: GatewayDep) -> TruePositions:
+    """Debug view of the simulation: where a map's places really are, as far as this gateway saw them made."""
+    view, timeout_s = known(gateway, robot), gateway.settings.compute_timeout_s
+    reply = await gateway.asker.ask("map_store", MAP, MapRequest(action="read"), timeout_s, map=map_name)
+    return TruePositions(map=map_name, positions=view.true_poses.of_nodes(reply.nodes))
 
 
 def known(gateway: Gateway, robot: str) -> RobotView:

@@ -1,6 +1,9 @@
 // Requests to the gateway: one place for the token and for problem documents.
 
+import { TEXT } from "./text.js";
+
 const TOKEN = "topnav-token";
+const AUTHOR = "console";
 
 export class Problem extends Error {
   constructor(status, body) {
@@ -25,7 +28,7 @@ function askForToken() {
 }
 
 async function send(method, path, body, type) {
-  const headers = {};
+  const headers = method === "GET" ? {} : { "X-Topnav-Author": AUTHOR };
   const token = sessionStorage.getItem(TOKEN);
   if (token) headers.Authorization = `Bearer ${token}`;
   if (type) headers["Content-Type"] = type;
@@ -39,7 +42,7 @@ export async function call(method, path, body, type) {
     answer = await send(method, path, body, type);
     if (answer.status === 401 && (await askForToken())) answer = await send(method, path, body, type);
   } catch {
-    throw new Problem(0, { detail: "the gateway does not answer" });
+    throw new Problem(0, { detail: TEXT.gatewaySilent });
   }
   const text = await answer.text();
   let content = {};

@@ -19,6 +19,31 @@ function build(element, attributes, children) {
   return element;
 }
 
+/** Load a classic script once. */
+export function script(src) {
+  const known = document.querySelector(`script[src="${src}"]`);
+  if (known?.dataset.loaded) return Promise.resolve();
+  const element = known || html("script", { src });
+  const done = new Promise((resolve, reject) => {
+    element.addEventListener("load", () => { element.dataset.loaded = "yes"; resolve(); });
+    element.addEventListener("error", () => reject(new Error(`${src} does not load`)));
+  });
+  if (!known) document.head.append(element);
+  return done;
+}
+
+/** Load a style sheet once. */
+export function style(href) {
+  if (!document.querySelector(`link[href="${href}"]`)) document.head.append(html("link", { rel: "stylesheet", href }));
+}
+
+/** A table with its head. Rows are arrays of texts or elements. */
+export function table(titles, rows, attributes = {}) {
+  const head = titles.map((title) => html("th", { scope: "col" }, title));
+  const body = rows.map((row) => html("tr", {}, ...row.map((cell) => html("td", {}, cell))));
+  return html("table", attributes, html("thead", {}, html("tr", {}, ...head)), html("tbody", {}, ...body));
+}
+
 export const degrees = (rad) => (rad === null || rad === undefined ? "–" : `${Math.round((rad * 180) / Math.PI)}°`);
 
 /** Which way a heading points, in words; counter-clockwise is left. */

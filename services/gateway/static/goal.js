@@ -1,13 +1,8 @@
 // Goal pictures: choose or drop one, see how well the map knows it, drive there.
 
 import { upload } from "./api.js";
-import { $, html, side } from "./dom.js";
-
-const WORDS = {
-  found: "The map knows this place.",
-  weak: "The map may know this place, but is not sure.",
-  not_found: "The map does not know this place.",
-};
+import { $, html, side, table } from "./dom.js";
+import { TEXT } from "./text.js";
 
 export class Goal {
   /** `where()` gives robot and map, `found(ids)` hears which places match, `started(status)` of the mission. */
@@ -18,6 +13,7 @@ export class Goal {
     this.file = null;
     $("picture").addEventListener("change", (event) => this.take(event.target.files[0]));
     $("go").addEventListener("click", () => this.go());
+    $("from-here").addEventListener("click", () => this.fromHere());
     const drop = $("drop");
     for (const kind of ["dragenter", "dragover"]) drop.addEventListener(kind, (event) => this.over(event, true));
     for (const kind of ["dragleave", "drop"]) drop.addEventListener(kind, (event) => this.over(event, false));
@@ -38,6 +34,13 @@ export class Goal {
     await this.check();
   }
 
+  /** What the robot sees now, as a goal for later. */
+  async fromHere() {
+    const answer = await fetch(`/api/robots/${this.where().robot}/frame.jpg`, { cache: "no-store" }).catch(() => null);
+    if (!answer?.ok) return this.say(TEXT.noLivePicture, "bad");
+    return this.take(new File([await answer.blob()], "here.jpg", { type: "image/jpeg" }));
+  }
+
   async preview(file) {
     const canvas = $("preview");
     try {
@@ -56,8 +59,8 @@ export class Goal {
     const { robot, map } = this.where();
     const file = this.file;
     if (!file) return;
-    if (!map) return this.say("There is no map yet: explore first.", "bad");
-    this.say("Comparing with the map …");
+    if (!map) return this.say(TEXT.noMap, "bad");
+    this.say(TEXT.comparing);
     try {
       const answer = await upload(`/api/robots/${robot}/goal-check?map=${map}`, file);
       if (file === this.file) this.show(answer, map);
@@ -83,19 +86,18 @@ export class Goal {
   }
 
   show(answer, map) {
-    const rows = answer.nodes.map((node) => html("tr", {},
-      html("td", {}, html("img", { src: `/api/maps/${map}/nodes/${node.node_id}/thumbnail`, alt: "", width: 74, height: 37,
-        onerror: (event) => event.target.remove() }), ` ${node.node_id}`),
-      html("td", {}, `${node.inliers} of ${answer.max_similarity || node.raw_matches}`),
-      html("td", {}, node.status === "no_baseline" ? "same spot" : html("meter", { min: 0, max: 1, low: 0.25, high: 0.5, optimum: 1, value: node.confidence,
-        "aria-label": `confidence ${node.confidence.toFixed(2)}` })),
-      html("td", {}, node.status === "no_baseline" ? "here" : node.heading_rad === null ? "–" : side(node.heading_rad))));
-    const head = ["place", "agree", "trust", "direction"].map((text) => html("th", { scope: "col" }, text));
+    const rows = answer.nodes.map((node) => {
+      const same = node.status === "no_baseline";
+      const trust = html("meter", { min: 0, max: 1, low: 0.25, high: 0.5, optimum: 1, value: node.confidence,
+        "aria-label": `confidence ${node.confidence.toFixed(2)}` });
+      const picture = html("img", { src: `/api/maps/${map}/nodes/${node.node_id}/thumbnail`, alt: "", width: 74, height: 37,
+        onerror: (event) => event.target.remove() });
+      return [html("span", {}, picture, ` ${node.node_id}`), `${node.inliers} of ${answer.max_similarity || node.raw_matches}`,
+        same ? TEXT.sameSpot : trust, same ? TEXT.here : node.heading_rad === null ? "–" : side(node.heading_rad)];
+    });
     $("goal-answer").replaceChildren(
-      html("p", { class: `verdict ${answer.verdict}` }, WORDS[answer.verdict]),
-      rows.length
-        ? html("table", {}, html("thead", {}, html("tr", {}, ...head)), html("tbody", {}, ...rows))
-        : html("p", { class: "answer" }, "No place to compare with."),
+      html("p", { class: `verdict ${answer.verdict}` }, TEXT.verdict[answer.verdict]),
+      rows.length ? table(["place", "agree", "trust", "direction"], rows) : html("p", { class: "answer" }, TEXT.noPlace),
     );
     $("go").disabled = false;
     this.found(answer.nodes.filter((node) => node.status === "ok" || node.status === "no_baseline").map((node) => node.node_id));

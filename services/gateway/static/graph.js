@@ -1,35 +1,42 @@
-// The map as a drawing: pan by dragging, zoom by wheel, choose a place by click or Enter.
+// The map as a drawing (cytoscape): drag to pan, wheel to zoom, click a place or a connection.
 
 import { get } from "./api.js";
-import { $, svg } from "./dom.js";
+import { $ } from "./dom.js";
+import { look } from "./graph_style.js";
 import { place } from "./layout.js";
+import { TEXT } from "./text.js";
+import cytoscape from "./vendor/cytoscape.esm.min.js";
 
 const GOAL = -1;
 const POLL_MS = 5000;
 const EACH_MS = 1200;
+const UNIT_PX = 70;
+const MANY = 1500;
+const KEY_PAN_PX = 60;
+const DARK = matchMedia("(prefers-color-scheme: dark)");
 
 export class Graph {
+  /** `chosen({node})` or `chosen({edge: [a, b]})` hears of clicks. */
   constructor(chosen) {
-    this.root = $("graph");
-    this.chosenTell = chosen;
-    this.clear("");
-    this.root.addEventListener("wheel", (event) => this.zoomBy(event), { passive: false });
-    this.root.addEventListener("pointerdown", (event) => this.grab(event));
-    new ResizeObserver(() => this.draw()).observe(this.root);
+    this.cy = cytoscape({
+      container: $("graph"), style: look(), minZoom: 0.03, maxZoom: 4, autoungrabify: true, boxSelectionEnabled: false,
+      textureOnViewport: true, pixelRatio: Math.min(devicePixelRatio, 2),
+    });
+    this.cy.on("tap", "node", (event) => event.target.id() !== "goal" && chosen({ node: event.target.data("number") }));
+    this.cy.on("tap", "edge", (event) => event.target.data("ends") && chosen({ edge: event.target.data("ends") }));
+    this.cy.on("dragpan scrollzoom pinchzoom", () => { this.moved = true; });
+    DARK.addEventListener("change", () => this.cy.style(look()));
+    $("graph").addEventListener("keydown", (event) => this.key(event));
+    new ResizeObserver(() => this.resized()).observe($("graph"));
     setInterval(() => this.load(), POLL_MS);
+    this.clear("");
   }
 
   clear(map) {
-    this.map = map;
-    this.nodes = [];
-    this.edges = [];
-    this.spots = new Map();
-    this.revision = null;
-    this.chosen = null;
+    Object.assign(this, { map, nodes: [], edges: [], spots: new Map(), revision: null, truth: null, moved: false });
     this.seen = new Set();
-    this.zoom = 1;
-    this.pan = { x: 0, y: 0 };
-    this.draw();
+    this.cy.elements().remove();
+    $("no-graph").hidden = false;
   }
 
   show(map) {
@@ -37,17 +44,70 @@ export class Graph {
     return this.load();
   }
 
+  resized() {
+    this.cy.resize();
+    if (!this.moved) this.fit();
+  }
+
+  fit() {
+    if (!this.nodes.length || !$("graph").clientWidth) return;
+    this.cy.fit(undefined, 40);
+    if (this.cy.zoom() > 1.4) { this.cy.zoom(1.4); this.cy.center(); }
+    this.moved = false;
+  }
+
+  zoomBy(factor) {
+    this.moved = true;
+    const box = $("graph").getBoundingClientRect();
+    this.cy.zoom({ level: this.cy.zoom() * factor, renderedPosition: { x: box.width / 2, y: box.height / 2 } });
+  }
+
+  panBy(right, down) {
+    this.moved = true;
+    this.cy.panBy({ x: right * KEY_PAN_PX, y: down * KEY_PAN_PX });
+  }
+
+  key(event) {
+    const pans = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+    const pan = pans[event.key];
+    if (pan) this.panBy(...pan);
+    else if (event.key === "+") this.zoomBy(1.25);
+    else if (event.key === "-") this.zoomBy(0.8);
+    else if (event.key === "0") this.fit();
+    else return;
+    event.preventDefault();
+  }
+
   takeStatus(status) {
     const changed = this.status && (status.nodes !== this.status.nodes || status.edges !== this.status.edges);
     this.status = status;
-    this.draw();
+    this.paint();
     if (changed && status.map === this.map) this.loadSoon();
   }
 
   /** Halo the places a goal picture resembles. */
   highlight(ids) {
     this.seen = new Set(ids);
-    this.draw();
+    this.paint();
+  }
+
+  /** Mark a place or a connection and bring it into sight. */
+  choose({ node, edge }) {
+    this.cy.elements(".chosen").removeClass("chosen");
+    const id = node !== undefined ? `n${node}` : edge ? `e${edge[0]}-${edge[1]}` : null;
+    const element = id ? this.cy.getElementById(id) : null;
+    if (!element?.length) return;
+    element.addClass("chosen");
+    const box = this.cy.extent();
+    const at = element.boundingBox();
+    if (at.x1 < box.x1 || at.x2 > box.x2 || at.y1 < box.y1 || at.y2 > box.y2) this.cy.center(element);
+  }
+
+  /** True positions instead of the drawing made from bearings; null goes back. */
+  place(truth) {
+    this.truth = truth;
+    this.arrange();
+    this.fit();
   }
 
   loadSoon() {
@@ -57,121 +117,109 @@ export class Graph {
 
   async load() {
     const map = this.map;
-    if (!map || document.hidden) return;
+    if (!map || document.hidden || this.loading === map) return;
+    this.loading = map;
     try {
       const facts = await get(`/api/maps/${map}`);
       if (map !== this.map || facts.revision === this.revision) return;
       const [nodes, edges] = await Promise.all([get(`/api/maps/${map}/nodes`), get(`/api/maps/${map}/edges`)]);
       if (map !== this.map) return;
-      this.revision = facts.revision;
-      this.nodes = nodes;
-      this.edges = edges;
-      this.spots = place(nodes, edges, this.spots);
-      $("graph-facts").textContent = `${nodes.length} places, ${edges.length} connections, revision ${facts.revision}`;
+      const spots = await this.layOut(nodes, edges);
+      if (map !== this.map) return;
+      Object.assign(this, { revision: facts.revision, nodes, edges, spots });
+      this.draw();
+      $("graph-facts").textContent = TEXT.graphFacts(nodes.length, edges.length, facts.revision);
     } catch (problem) {
-      $("graph-facts").textContent = problem.status === 404 ? "not made yet" : problem.message;
+      $("graph-facts").textContent = problem.status === 404 ? TEXT.graphNone : problem.message;
       if (problem.status === 404 && this.nodes.length) this.clear(map);
+    } finally {
+      if (this.loading === map) this.loading = null;
     }
-    this.draw();
+  }
+
+  /** A large map takes seconds: a worker does it, one map at a time. */
+  layOut(nodes, edges) {
+    if (nodes.length <= MANY) return place(nodes, edges, this.spots);
+    this.worker?.terminate();
+    this.worker = new Worker("/static/layout_worker.js", { type: "module" });
+    return new Promise((resolve) => {
+      this.worker.addEventListener("message", ({ data }) => resolve(data), { once: true });
+      this.worker.postMessage({ nodes, edges, before: this.spots });
+    });
   }
 
   draw() {
     $("no-graph").hidden = this.nodes.length > 0;
-    const box = this.root.getBoundingClientRect();
-    if (!this.nodes.length || !box.width) return this.root.replaceChildren();
-    const focused = document.activeElement?.dataset?.node;
-    const at = this.fit(box);
+    $("graph").dataset.nodes = this.nodes.length;
+    $("graph").dataset.edges = this.edges.length;
+    this.cy.renderer().hideEdgesOnViewport = this.nodes.length > MANY;
+    const known = new Set(this.nodes.map((node) => node.node_id));
+    const drawn = this.edges.filter((edge) => known.has(edge.a) && known.has(edge.b));
+    const wanted = new Map([
+      ...this.nodes.map(({ node_id: id }) => [`n${id}`, { group: "nodes", data: { id: `n${id}`, number: id, label: String(id) } }]),
+      ...drawn.map(({ a, b }) => [`e${a}-${b}`, { group: "edges", data: { id: `e${a}-${b}`, source: `n${a}`, target: `n${b}`, ends: [a, b] } }]),
+    ]);
+    this.cy.batch(() => {
+      this.cy.elements().filter((element) => !wanted.has(element.id()) && element.id() !== "goal").remove();
+      this.cy.add([...wanted.values()].filter((element) => !this.cy.getElementById(element.data.id).length));
+      for (const { a, b, suspended } of drawn) this.cy.getElementById(`e${a}-${b}`).toggleClass("suspended", suspended);
+      this.cy.elements().toggleClass("many", this.nodes.length > MANY);
+    });
+    this.arrange();
+    this.paint();
+    if (!this.moved) this.fit();
+  }
+
+  arrange() {
+    const at = (id) => {
+      const [x, y] = this.truth?.[id] || [];
+      if (this.truth) return x === undefined ? null : { x: x * UNIT_PX * 1.5, y: -y * UNIT_PX * 1.5 };
+      const spot = this.spots.get(id);
+      return { x: spot.x * UNIT_PX, y: -spot.y * UNIT_PX };
+    };
+    this.cy.batch(() => this.nodes.forEach(({ node_id: id }) => {
+      const spot = at(id);
+      const element = this.cy.getElementById(`n${id}`);
+      element.toggleClass("unplaced", !spot);
+      if (spot) element.position(spot);
+    }));
+  }
+
+  /** Colours of the path, the robot's nearest place and the goal. */
+  paint() {
     const path = this.path();
-    const shapes = [...this.drawEdges(at, path), ...this.drawNodes(at, path)];
-    this.root.replaceChildren(...shapes);
-    if (focused !== undefined) this.root.querySelector(`[data-node="${focused}"]`)?.focus();
+    this.cy.getElementById("goal").remove();
+    this.cy.batch(() => {
+      this.cy.elements().removeClass("start via path near seen");
+      path.nodes.forEach((id, index) => this.cy.getElementById(`n${id}`).addClass(index ? "via" : "start"));
+      path.nodes.slice(1).forEach((id, index) => {
+        const [a, b] = [path.nodes[index], id].sort((one, two) => one - two);
+        this.cy.getElementById(`e${a}-${b}`).addClass("path");
+      });
+      for (const id of this.seen) this.cy.getElementById(`n${id}`).addClass("seen");
+      if (path.nearest !== null) this.cy.getElementById(`n${path.nearest}`).addClass("near");
+    });
+    if (path.goal) this.addGoal(path.nodes.at(-1) ?? path.nearest);
+    const text = TEXT.path(path);
+    if ($("path-text").textContent !== text) $("path-text").textContent = text;
+  }
+
+  addGoal(last) {
+    const from = this.cy.getElementById(`n${last}`);
+    if (!from.length) return;
+    const { x, y } = from.position();
+    const spot = { x: x + UNIT_PX * 0.5, y: y - UNIT_PX * 0.5 };
+    this.cy.add([
+      { group: "nodes", data: { id: "goal", label: TEXT.goal }, classes: "target", position: spot },
+      { group: "edges", data: { id: "to-goal", source: `n${last}`, target: "goal" }, classes: "guess" },
+    ]);
   }
 
   path() {
     const status = this.status;
     const running = status && status.map === this.map && ["running", "paused"].includes(status.state);
     const via = running ? status.via_points : [];
-    return { nodes: via.filter((id) => id !== GOAL), goal: via.includes(GOAL), nearest: running ? status.nearest_node : null };
-  }
-
-  /** From layout units to pixels. */
-  fit(box) {
-    const spots = [...this.spots.values()];
-    const xs = spots.map((spot) => spot.x);
-    const ys = spots.map((spot) => spot.y);
-    const [left, right, low, high] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-    const scale = Math.min(110, (box.width - 80) / Math.max(0.5, right - left), (box.height - 80) / Math.max(0.5, high - low));
-    this.scale = scale * this.zoom;
-    return (spot) => [
-      box.width / 2 + (spot.x - (left + right) / 2) * this.scale + this.pan.x,
-      box.height / 2 - (spot.y - (low + high) / 2) * this.scale + this.pan.y,
-    ];
-  }
-
-  drawEdges(at, path) {
-    const pairs = new Set(path.nodes.slice(1).map((id, index) => [path.nodes[index], id].sort((a, b) => a - b).join()));
-    const lines = this.edges.filter((edge) => this.spots.has(edge.a) && this.spots.has(edge.b)).map((edge) => {
-      const [x1, y1] = at(this.spots.get(edge.a));
-      const [x2, y2] = at(this.spots.get(edge.b));
-      const kinds = `${pairs.has(`${edge.a},${edge.b}`) ? " path" : ""}${edge.suspended ? " suspended" : ""}`;
-      const title = `${edge.a} to ${edge.b}: ${edge.inliers} inliers${edge.suspended ? ", suspended" : ""}`;
-      return svg("line", { class: `edge${kinds}`, x1, y1, x2, y2 }, svg("title", {}, title));
-    });
-    const goal = this.goalSpot(path);
-    if (goal) {
-      const [x1, y1] = at(goal.from);
-      const [x2, y2] = at(goal);
-      lines.push(svg("line", { class: "edge guess", x1, y1, x2, y2 }));
-    }
-    return lines;
-  }
-
-  goalSpot(path) {
-    const last = path.nodes.at(-1) ?? path.nearest;
-    const from = path.goal ? this.spots.get(last) : undefined;
-    return from ? { x: from.x + 0.35, y: from.y + 0.35, from } : null;
-  }
-
-  drawNodes(at, path) {
-    const marks = this.nodes.map((node) => this.mark(node.node_id, at(this.spots.get(node.node_id)), path));
-    const goal = this.goalSpot(path);
-    if (goal) {
-      const [x, y] = at(goal);
-      const dot = svg("circle", { class: "dot", r: 9 });
-      marks.push(svg("g", { class: "node-mark target", transform: `translate(${x} ${y})` }, dot, svg("text", { y: 22 }, "goal")));
-    }
-    return marks;
-  }
-
-  mark(id, [x, y], path) {
-    const index = path.nodes.indexOf(id);
-    const kind = index === 0 ? " start" : index > 0 ? " via" : "";
-    const more = `${id === this.chosen ? " chosen" : ""}${this.seen.has(id) ? " seen" : ""}`;
-    const role = ["", ", start of the path", ", via point"][index === 0 ? 1 : index > 0 ? 2 : 0];
-    const near = id === path.nearest ? ", nearest to the robot" : "";
-    const choose = () => { this.chosen = id; this.draw(); this.chosenTell(id); };
-    return svg("g", {
-      class: `node-mark${kind}${more}`, transform: `translate(${x} ${y})`, tabindex: 0, role: "button",
-      "data-node": id, "aria-label": `Place ${id}${role}${near}`, onclick: choose,
-      onkeydown: (event) => { if (event.key === "Enter" || event.key === " ") { event.preventDefault(); choose(); } },
-    },
-    this.seen.has(id) ? svg("circle", { class: "halo", r: 19 }) : null,
-    id === path.nearest ? svg("circle", { class: "ring", r: 13 }) : null,
-    svg("circle", { class: "dot", r: 8.5 }), svg("text", { y: 22 }, String(id)));
-  }
-
-  zoomBy(event) {
-    event.preventDefault();
-    this.zoom = Math.min(8, Math.max(0.3, this.zoom * Math.exp(-event.deltaY * 0.0015)));
-    this.draw();
-  }
-
-  grab(event) {
-    if (event.target.closest(".node-mark")) return;
-    const from = { x: event.clientX - this.pan.x, y: event.clientY - this.pan.y };
-    const move = (next) => { this.pan = { x: next.clientX - from.x, y: next.clientY - from.y }; this.draw(); };
-    const end = () => { removeEventListener("pointermove", move); removeEventListener("pointerup", end); };
-    addEventListener("pointermove", move);
-    addEventListener("pointerup", end);
+    const nearest = running ? (status.nearest_node ?? null) : null;
+    return { nodes: via.filter((id) => id !== GOAL), goal: via.includes(GOAL), nearest };
   }
 }

@@ -4,9 +4,11 @@
 // direction a's camera looks to, b lies at theta_a + heading_ab and looks to theta_a + yaw_ab. Lengths are unknown: 1.
 
 const ROUNDS = 120;
+const FEW_ROUNDS = 25;
 const PULL = 0.18;
 const PUSH = 0.035;
 const CLOSE = 0.8;
+const AROUND = [-1, 0, 1].flatMap((i) => [-1, 0, 1].map((j) => [i, j]));
 
 /** Returns Map id -> {x, y}, y up; `before` keeps a growing map from jumping. */
 export function place(nodes, edges, before = new Map()) {
@@ -16,7 +18,9 @@ export function place(nodes, edges, before = new Map()) {
   const views = orient(ids, links);
   const spots = new Map();
   for (const id of ids) spots.set(id, { ...(before.get(id) || first(id, views, spots)) });
-  for (let round = 0; round < ROUNDS; round += 1) relax(ids, links, views, spots, 1 - round / ROUNDS);
+  const grown = ids.filter((id) => !before.has(id)).length;
+  const rounds = grown * 10 < ids.length ? FEW_ROUNDS : ROUNDS; // a map that grew a little hardly moves
+  for (let round = 0; round < rounds; round += 1) relax(ids, links, views, spots, 1 - round / rounds);
   return spots;
 }
 
@@ -74,9 +78,21 @@ const spread = (id) => (id * 2.399963) % (2 * Math.PI); // golden angle: even, a
 
 function relax(ids, links, views, spots, heat) {
   for (const edge of links) pull(edge, views, spots);
-  for (let i = 0; i < ids.length; i += 1) {
-    const one = spots.get(ids[i]);
-    for (let j = i + 1; j < ids.length; j += 1) push(one, spots.get(ids[j]), heat);
+  for (const [one, two] of closePairs(ids, spots)) push(one, two, heat);
+}
+
+/** Pairs of spots in the same or neighbouring cells of a grid: nothing farther apart is pushed. */
+function* closePairs(ids, spots) {
+  const cells = new Map();
+  for (const id of ids) {
+    const spot = spots.get(id);
+    const [column, row] = [Math.floor(spot.x / CLOSE), Math.floor(spot.y / CLOSE)];
+    for (const [i, j] of AROUND) {
+      for (const other of cells.get(`${column + i},${row + j}`) || []) yield [other, spot];
+    }
+    const own = `${column},${row}`;
+    if (cells.has(own)) cells.get(own).push(spot);
+    else cells.set(own, [spot]);
   }
 }
 

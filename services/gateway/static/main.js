@@ -5,12 +5,18 @@ import { $, html } from "./dom.js";
 import { Events } from "./events.js";
 import { Goal } from "./goal.js";
 import { Graph } from "./graph.js";
+import { History } from "./history.js";
+import { Inspector } from "./inspector.js";
 import { Live } from "./live.js";
+import { MapTable } from "./map_table.js";
 import { Maps } from "./maps.js";
+import { Matches } from "./matches.js";
 import { Mission } from "./mission.js";
-import { hideNode, showNode } from "./node.js";
 import { Panorama } from "./panorama.js";
 import { Polar } from "./polar.js";
+import { Runs } from "./runs.js";
+import { TEXT } from "./text.js";
+import { Views } from "./views.js";
 
 const SERVICES = ["simulator", "features", "map_store", "planner", "drive", "gateway"];
 const DEFAULT_ROBOT = "r1";
@@ -18,48 +24,82 @@ const ROBOTS_MS = 5000;
 
 let robot = "";
 let connected = false;
+let shownMap = "";
 
 const where = () => ({ robot, map: maps.name });
 const panorama = new Panorama();
 const polar = new Polar();
-const events = new Events();
-const graph = new Graph((id) => showNode(graph, maps.name, id, (node) => mission.goToNode(node), closeNode));
+const history = new History();
+const events = new Events(showMoment);
+const matches = new Matches(where, (match) => polar.takeMatch(match));
+const graph = new Graph((what) => inspector.open(what));
+const inspector = new Inspector(graph, (node) => mission.goToNode(node), () => graph.load(), (text, bad) => mission.say(text, bad));
 const mission = new Mission(where, (status) => maps.want(status.map));
 const goal = new Goal(where, (ids) => graph.highlight(ids), (status) => mission.take(status));
-const maps = new Maps(showMap, (text, bad) => mission.say(text, bad));
+const maps = new Maps(showMap, () => views.name === "maps" && mapTable.show());
+const mapTable = new MapTable(maps);
+const runs = new Runs();
 const live = new Live(heard, changed);
+const views = new Views(viewChanged);
 
-let shownMap = "";
+function viewChanged(view) {
+  if (view === "drive") panorama.resume();
+  else if (view === "why") history.open();
+  else if (view === "maps") maps.refresh().then(() => mapTable.show());
+  else if (view === "runs") runs.show();
+}
+
 function showMap(name) {
   graph.show(name);
   if (name === shownMap) return;
   shownMap = name;
-  closeNode();
+  $("true-positions").checked = false;
+  inspector.close();
   if (name) goal.check();
 }
 
-function closeNode() {
-  graph.chosen = null;
-  graph.draw();
-  hideNode();
+/** A decision in the timeline: its step in the charts, its places in the map. */
+function showMoment(event) {
+  if (views.name !== "why") views.go("why");
+  history.mark(event.step);
+  const value = (name) => event.values.find((entry) => entry.name === name)?.value;
+  const [node, a, b] = [value("node"), value("a"), value("b")];
+  if (a !== undefined && b !== undefined) inspector.open({ edge: [Math.min(a, b), Math.max(a, b)] });
+  else if (typeof node === "number" && node >= 0) inspector.open({ node });
+}
+
+async function placeTruly(wanted) {
+  if (!wanted) return graph.place(null);
+  try {
+    const { positions } = await get(`/api/robots/${robot}/true-positions?map=${maps.name}`);
+    if (Object.keys(positions).length) return graph.place(positions);
+    mission.say(TEXT.noTruth, true);
+  } catch (problem) {
+    mission.say(problem.message, true);
+  }
+  $("true-positions").checked = false;
+  return undefined;
 }
 
 function heard(type, data) {
   if (type === "frame") panorama.take(robot, data);
   else if (type === "ranges") polar.takeRanges(data);
-  else if (type === "heading") { polar.takeHeading(data); panorama.mark(data); }
+  else if (type === "heading") { polar.takeHeading(data); panorama.mark(data); history.takeHeading(data); }
+  else if (type === "command") { polar.takeCommand(data); history.takeCommand(data); }
   else if (type === "event") events.take(data);
   else if (type === "services") showServices(data);
   else if (type === "status") {
     mission.take(data);
     graph.takeStatus(data);
+    matches.takeStatus(data);
+    history.takeStatus(data);
     if (data.state === "running" && data.map !== maps.name && !maps.names.includes(data.map)) maps.want(data.map);
   }
 }
 
 function changed(up) {
   connected = up;
-  $("connection").textContent = up ? "live" : "reconnecting";
+  $("connection").textContent = up ? TEXT.live : TEXT.reconnecting;
   $("connection").classList.toggle("up", up);
   if (!up) showServices(null);
 }
@@ -70,23 +110,21 @@ function showServices(counts) {
     const count = counts?.[name] || 0;
     const state = counts === null ? "unknown" : count ? "alive" : "missing";
     const label = `${name.replace("_", " ")}${count > 1 ? ` × ${count}` : ""}`;
-    return html("li", { class: state, "aria-label": `${label}: ${state}`, title: state }, label);
+    return html("li", { class: state, title: state }, label, html("span", { class: "hidden" }, ` ${state}`));
   }));
 }
 
 /** Say what on the page is old. */
 function checkAge() {
-  const age = panorama.stale();
-  let text = "";
-  if (!connected) text = "Connection to the gateway lost. What you see is old; trying again …";
-  else if (age) text = `No new picture for ${Math.round(age / 1000)} s: what you see is old.`;
+  const age = panorama.stale(mission.status?.state === "running");
+  const text = !connected ? TEXT.lost : age ? TEXT.old(Math.round(age / 1000)) : "";
   if ($("notice").textContent !== text) $("notice").textContent = text;
   $("notice").hidden = !text;
 }
 
 function follow(name) {
   robot = name;
-  for (const part of [panorama, polar, events, mission]) part.clear();
+  for (const part of [panorama, polar, events, mission, history, matches]) part.clear();
   graph.status = null;
   live.follow(name);
 }
@@ -108,6 +146,10 @@ async function listRobots() {
 }
 
 $("robot").addEventListener("change", (event) => follow(event.target.value));
+$("fit").addEventListener("click", () => graph.fit());
+$("zoom-in").addEventListener("click", () => graph.zoomBy(1.25));
+$("zoom-out").addEventListener("click", () => graph.zoomBy(0.8));
+$("true-positions").addEventListener("change", (event) => placeTruly(event.target.checked));
 showServices(null);
 setInterval(checkAge, 1000);
 setInterval(() => document.hidden || listRobots(), ROBOTS_MS);

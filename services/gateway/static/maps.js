@@ -1,26 +1,27 @@
-// Choosing a map, and what can be done to one.
+// Which maps there are and which one is shown.
 
-import { call, get } from "./api.js";
+import { get } from "./api.js";
 import { $, html } from "./dom.js";
 
 const POLL_MS = 5000;
 
 export class Maps {
-  constructor(chosen, say) {
+  /** `chosen(name)` hears which map is shown, `listed()` that some map changed. */
+  constructor(chosen, listed) {
     this.chosen = chosen;
-    this.say = say;
-    this.names = [];
+    this.listed = listed;
+    this.all = [];
     this.wanted = "";
     $("map").addEventListener("change", (event) => this.choose(event.target.value));
-    $("undo").addEventListener("click", () => this.act("POST", "/undo"));
-    $("rename").addEventListener("click", () => this.rename());
-    $("delete").addEventListener("click", () => this.remove());
-    $("import").addEventListener("change", (event) => this.load(event.target));
     setInterval(() => document.hidden || this.refresh(), POLL_MS);
   }
 
   get name() {
     return $("map").value;
+  }
+
+  get names() {
+    return this.all.map((map) => map.name);
   }
 
   /** Show this map, now or as soon as it exists. */
@@ -31,68 +32,23 @@ export class Maps {
   }
 
   async refresh() {
-    let maps;
+    const [before, told] = [this.names.join(), JSON.stringify(this.all)];
     try {
-      maps = await get("/api/maps");
+      this.all = await get("/api/maps");
     } catch {
       return; // the graph says what is wrong
     }
-    const names = maps.map((map) => map.name);
-    const same = names.join() === this.names.join();
-    if (!same) {
-      this.names = names;
-      const before = this.name;
-      $("map").replaceChildren(...names.map((name) => html("option", { value: name }, name)));
-      $("map-names").replaceChildren(...names.map((name) => html("option", { value: name })));
-      const next = names.includes(this.wanted) ? this.wanted : names.includes(before) ? before : names[0] || "";
-      this.choose(next);
-    }
+    if (JSON.stringify(this.all) !== told) this.listed();
+    if (this.names.join() === before) return;
+    const shown = this.name;
+    $("map").replaceChildren(...this.names.map((name) => html("option", { value: name }, name)));
+    $("map-names").replaceChildren(...this.names.map((name) => html("option", { value: name })));
+    this.choose([this.wanted, shown].find((name) => this.names.includes(name)) ?? this.names[0] ?? "");
   }
 
   choose(name) {
     if (this.names.includes(this.wanted)) this.wanted = "";
     $("map").value = name;
-    for (const id of ["undo", "rename", "delete"]) $(id).disabled = !name;
-    $("export").classList.toggle("off", !name);
-    if (name) $("export").href = `/api/maps/${name}/export`;
-    else $("export").removeAttribute("href");
     this.chosen(name);
   }
-
-  async act(method, path, content) {
-    try {
-      const url = `/api/maps/${this.name}${path}`;
-      await (content ? call(method, url, JSON.stringify(content), "application/json") : call(method, url));
-      this.say("");
-    } catch (problem) {
-      this.say(problem.message, true);
-    }
-    await this.refresh();
-    this.chosen(this.name);
-  }
-
-  rename() {
-    const name = prompt(`New name of ${this.name} (a to z, 0 to 9, _ and -)`, this.name);
-    if (!name || name === this.name) return undefined;
-    this.wanted = name;
-    return this.act("PATCH", "", { name });
-  }
-
-  remove() {
-    if (!confirm(`Delete the map ${this.name} with all its places? Export it first if in doubt.`)) return undefined;
-    return this.act("DELETE", "");
-  }
-
-  async load(input) {
-    const file = input.files[0];
-    if (!file) return;
-    try {
-      const made = await call("POST", "/api/maps/import", file, "application/zip");
-      this.want(made.name);
-    } catch (problem) {
-      this.say(problem.message, true);
-    }
-    input.value = "";
-  }
 }
-

@@ -2,6 +2,7 @@
 
 import { post } from "./api.js";
 import { $, html } from "./dom.js";
+import { TEXT } from "./text.js";
 
 const BUSY = ["running", "paused"];
 
@@ -18,7 +19,7 @@ export class Mission {
     this.status = null;
     $("state").textContent = "unknown";
     $("state").className = "state";
-    $("mission-facts").textContent = "Nothing heard of the planner yet.";
+    $("mission-facts").textContent = TEXT.missionUnheard;
     this.enable();
   }
 
@@ -31,12 +32,9 @@ export class Mission {
   }
 
   facts(status) {
-    if (!status.mission_id) return ["No mission yet."];
-    const what = status.action === "explore" ? "Exploring" : status.action === "goto" ? "Driving to a place" : "Mission";
-    const via = status.via_points.length ? `, via ${status.via_index + 1} of ${status.via_points.length}` : "";
-    const counts = `step ${status.step}, ${status.nodes} places, ${status.edges} connections, ` +
-      `${status.open_directions} directions open, similarity ${status.similarity}${via}`;
-    return [html("b", {}, `${what} in ${status.map}`), html("br"), counts, html("br"),
+    if (!status.mission_id) return [TEXT.missionNone];
+    const what = TEXT.missionWhat[status.action] || TEXT.missionAny;
+    return [html("b", {}, `${what} in ${status.map}`), html("br"), TEXT.missionFacts(status), html("br"),
       html("span", { class: "quiet" }, status.reason || ""), ];
   }
 

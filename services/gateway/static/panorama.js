@@ -1,6 +1,8 @@
 // The live panorama. A new picture is fetched when the last one has arrived, so slow links just see fewer.
 
 import { $, svg } from "./dom.js";
+import { LookAround } from "./look_around.js";
+import { TEXT } from "./text.js";
 
 const WIDTH_PX = 1280;
 const STALE_MS = 4000;
@@ -8,8 +10,10 @@ const STALE_MS = 4000;
 export class Panorama {
   constructor() {
     this.image = $("frame");
+    this.around = new LookAround();
     this.image.addEventListener("load", () => this.arrived());
     this.image.addEventListener("error", () => this.arrived());
+    $("look-around").addEventListener("change", (event) => this.turn(event.target.checked));
     this.clear();
   }
 
@@ -18,19 +22,30 @@ export class Panorama {
     this.shown = null;
     this.loading = false;
     this.at = 0;
+    this.rate = 0;
     this.image.hidden = true;
     $("no-frame").hidden = false;
     $("frame-facts").textContent = "";
+    $("frame-matches").replaceChildren();
     this.mark(null);
   }
 
   take(robot, facts) {
+    const now = performance.now();
+    if (this.facts && facts.seq > this.facts.seq) {
+      const rate = (1000 * (facts.seq - this.facts.seq)) / Math.max(1, now - this.at);
+      this.rate = this.rate ? 0.9 * this.rate + 0.1 * rate : rate;
+    }
     this.robot = robot;
     this.facts = facts;
-    this.at = performance.now();
-    $("frame-facts").textContent =
-      `frame ${facts.seq}, ${facts.width_px} × ${facts.height_px}${facts.lockstep ? ", lockstep" : ""}`;
-    if (!this.loading) this.load();
+    this.at = now;
+    $("frame-facts").textContent = TEXT.frame(facts, this.rate);
+    if (!this.loading && document.body.dataset.view === "drive") this.load();
+  }
+
+  /** The card shows again. */
+  resume() {
+    if (this.facts && !this.loading) this.load();
   }
 
   load() {
@@ -45,8 +60,16 @@ export class Panorama {
     if (this.image.naturalWidth) {
       this.image.hidden = false;
       $("no-frame").hidden = true;
+      if ($("look-around").checked) this.around.draw(this.image);
     }
     if (this.facts && this.facts.seq !== this.shown) setTimeout(() => this.facts && !this.loading && this.load(), 60);
+  }
+
+  turn(around) {
+    $("flat").classList.toggle("under", around);
+    $("compass").hidden = around;
+    if (around) this.around.open(this.image);
+    else this.around.close();
   }
 
   /** Draw left, ahead, right, and where the robot is heading. Longitude grows to the left. */
@@ -60,11 +83,12 @@ export class Panorama {
     $("frame-marks").replaceChildren(...lines);
   }
 
-  /** Milliseconds since the last new picture when that is too long, else 0. */
-  stale() {
-    const age = this.facts ? performance.now() - this.at : 0;
+  /** Milliseconds since the last new picture when that is too long, else 0. In lockstep time stands while nothing runs. */
+  stale(running) {
+    const due = this.facts && (running || !this.facts.lockstep);
+    const age = due ? performance.now() - this.at : 0;
     const old = age > STALE_MS;
-    this.image.parentElement.classList.toggle("stale", old);
+    $("flat").classList.toggle("stale", old);
     return old ? age : 0;
   }
 }

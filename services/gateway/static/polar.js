@@ -1,9 +1,12 @@
-// Twelve distances seen from above, ahead is up, counter-clockwise is left; the arrow is the heading.
+// Twelve distances seen from above, ahead is up, counter-clockwise is left; the arrow is the heading. Outside: where
+// the bearings point that match the nearest place.
 
 import { $, degrees, side, svg } from "./dom.js";
 
 const RADIUS = 92;
 const NEAR_M = 0.5;
+const BINS = 36;
+const BAR = 14;
 
 const point = (rad, radius) => [-Math.sin(rad) * radius, -Math.cos(rad) * radius];
 
@@ -15,6 +18,18 @@ export class Polar {
   clear() {
     this.ranges = null;
     this.heading = null;
+    this.match = null;
+    this.command = null;
+    this.draw();
+  }
+
+  takeCommand(command) {
+    this.command = command;
+    $("polar-facts").textContent = this.words();
+  }
+
+  takeMatch(match) {
+    this.match = match;
     this.draw();
   }
 
@@ -31,9 +46,10 @@ export class Polar {
   draw() {
     const shapes = [0.25, 0.5, 0.75, 1].map((part) => svg("circle", { class: "ring", r: RADIUS * part }));
     if (this.ranges) shapes.push(...this.sectors());
+    if (this.match) shapes.push(...this.histogram());
     shapes.push(svg("path", { class: "body", d: "M0 -9 L7 8 L0 4 L-7 8 Z" }));
     if (this.heading && this.heading.action === "go") shapes.push(...this.arrow());
-    const labels = [["ahead", 0, -102], ["left", -104, 3], ["right", 104, 3], ["behind", 0, 110]];
+    const labels = [["ahead", 0, -76], ["left", -72, 3], ["right", 72, 3], ["behind", 0, 82]];
     shapes.push(...labels.map(([text, x, y]) => svg("text", { x, y }, text)));
     $("polar").replaceChildren(...shapes);
     $("polar-facts").textContent = this.words();
@@ -52,6 +68,21 @@ export class Polar {
     });
   }
 
+  /** How many matches that agree lie in each direction, as bars round the ring. */
+  histogram() {
+    const counts = new Array(BINS).fill(0);
+    this.match.matches_rad.forEach(([lon], index) => {
+      if (this.match.inlier[index]) counts[Math.floor(((lon / (2 * Math.PI)) * BINS + BINS) % BINS) % BINS] += 1;
+    });
+    const most = Math.max(1, ...counts);
+    const wide = (2 * Math.PI) / BINS;
+    return counts.map((count, bin) => {
+      const [inner, outer] = [RADIUS + 1, RADIUS + 1 + (BAR * count) / most];
+      const corners = [point(bin * wide, inner), point((bin + 0.9) * wide, inner), point((bin + 0.9) * wide, outer), point(bin * wide, outer)];
+      return svg("polygon", { class: "bar", points: corners.join(" ") }, svg("title", {}, `${count}`));
+    });
+  }
+
   arrow() {
     const [x, y] = point(this.heading.heading_rad, 58);
     const tip = point(this.heading.heading_rad, 76);
@@ -67,6 +98,7 @@ export class Polar {
     const parts = [];
     if (this.ranges) parts.push(`nearest ${Math.min(...this.ranges.distances_m).toFixed(2)} m`);
     if (this.heading) parts.push(this.heading.action === "hold" ? "holding" : `going ${side(this.heading.heading_rad)}`);
+    if (this.command) parts.push(`${this.command.wheel_speed_radps.toFixed(1)} rad/s${this.command.avoiding ? ", avoiding" : ""}`);
     return parts.join(", ");
   }
 }

@@ -1,8 +1,10 @@
 """A router, stand-in neighbours and the gateway itself on free ports."""
 
 import socket
+import tempfile
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 
 import httpx
 import pytest
@@ -82,7 +84,12 @@ def http(gateway: str) -> Iterator[httpx.Client]:
 
 
 def serve_gateway(endpoint: str, **changes: object) -> Iterator[str]:
-    """Run the real service loop on a thread."""
+    """Run the real service loop on a thread; runs go to a folder of its own unless one is named."""
+    with tempfile.TemporaryDirectory() as folder:
+        yield from _serve(endpoint, **{"runs_dir": Path(folder), **changes})
+
+
+def _serve(endpoint: str, **changes: object) -> Iterator[str]:
     port, stop = int(str(changes.pop("port", 0))) or free_port(), threading.Event()
     settings = GatewaySettings(endpoint=endpoint, port=port, **changes)  # type: ignore[arg-type]
 

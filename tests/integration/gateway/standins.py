@@ -160,6 +160,8 @@ def _stored(path: str, nodes: int, body: bytes) -> Response:
         return JSONResponse([{"name": "flat", "revision": 9, "nodes": nodes, "edges": nodes}])
     if path.endswith("/thumbnail"):
         return Response(b"jpeg", media_type="image/jpeg", headers={"Cache-Control": "private, no-cache"})
+    if path.endswith("/keypoints"):
+        return JSONResponse({"lonlat_rad": [[0.1, 0.2]], "scores": [1.0]})
     if path == "maps/flat/export":
         name = {"Content-Disposition": 'attachment; filename="flat.zip"'}
         return Response(b"PK" + bytes(3_000_000), media_type="application/zip", headers=name)

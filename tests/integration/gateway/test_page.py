@@ -1,8 +1,8 @@
 """The page in a real browser: it loads offline, uploads a picture, shows the answer, steers the robot."""
 
 import io
-import shutil
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -12,42 +12,29 @@ from shared.bus import Bus, wait_until
 from shared.messages.missions import Event, MissionStatus
 from shared.messages.sensors import Frame
 from shared.topics import EVENT, FRAME, STATUS
+from tests.browser import WAIT_MS, chromium, listen, needs_chromium
 from tests.integration.gateway.conftest import free_port, serve_gateway
 from tests.integration.gateway.standins import Planner
 
-sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium in PATH")
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
 
-FLAGS = [
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
-WAIT_MS = 15_000
+pytestmark = needs_chromium
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator["sync_api.Browser"]:
+def browser() -> Iterator["Browser"]:
     """A headless Chromium."""
-    with sync_api.sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield chromium
-        chromium.close()
+    with chromium() as opened:
+        yield opened
 
 
 @pytest.fixture
-def page(browser: "sync_api.Browser", gateway: str) -> Iterator["sync_api.Page"]:
+def page(browser: "Browser", gateway: str) -> Iterator["Page"]:
     """The page, with everything it complains about or fetches from elsewhere collected."""
     opened = browser.new_page(viewport={"width": 1400, "height": 1000})
     faults: list[str] = []
-    opened.on("pageerror", lambda error: faults.append(str(error)))
-    opened.on("console", lambda message: faults.append(message.text) if message.type == "error" else None)
-    opened.on("request", lambda request: faults.append(request.url) if gateway not in request.url else None)
+    listen(opened, gateway, faults)
     opened.goto(gateway)
     yield opened
     opened.close()
@@ -60,8 +47,8 @@ def picture() -> bytes:
     return out.getvalue()
 
 
-def test_an_uploaded_picture_is_localised_and_driven_to(page: "sync_api.Page", planner: Planner) -> None:
-    page.wait_for_selector('#graph [data-node="3"]', timeout=WAIT_MS)
+def test_an_uploaded_picture_is_localised_and_driven_to(page: "Page", planner: Planner) -> None:
+    page.wait_for_selector('#graph[data-nodes="5"]', timeout=WAIT_MS)
     goal = {"name": "goal.png", "mimeType": "image/png", "buffer": picture()}
     page.set_input_files("#picture", files=[goal])
     page.wait_for_selector("#goal-answer .verdict.found", timeout=WAIT_MS)
@@ -75,7 +62,7 @@ def test_an_uploaded_picture_is_localised_and_driven_to(page: "sync_api.Page", p
     page.wait_for_selector("#state.cancelled", timeout=WAIT_MS)
 
 
-def test_a_broken_picture_is_explained(page: "sync_api.Page") -> None:
+def test_a_broken_picture_is_explained(page: "Page") -> None:
     page.wait_for_selector("#map option", state="attached", timeout=WAIT_MS)
     goal = {"name": "goal.gif", "mimeType": "image/gif", "buffer": b"GIF89a"}
     with page.expect_response(lambda response: "goal-check" in response.url) as answer:
@@ -86,9 +73,7 @@ def test_a_broken_picture_is_explained(page: "sync_api.Page") -> None:
     assert page.is_disabled("#go")
 
 
-def test_picture_status_and_decisions_are_live(
-    page: "sync_api.Page", robot_bus: Bus, planner: Planner
-) -> None:
+def test_picture_status_and_decisions_are_live(page: "Page", robot_bus: Bus, planner: Planner) -> None:
     frames, events = robot_bus.publisher(FRAME, robot="r1"), robot_bus.publisher(EVENT, robot="r1")
     statuses = robot_bus.publisher(STATUS, robot="r1")
     pixels = np.full((128, 256, 3), 90, np.uint8).tobytes()
@@ -115,28 +100,21 @@ def test_picture_status_and_decisions_are_live(
         nearest_node=1,
     )
     statuses.put(planner.status)
-    page.wait_for_selector("#graph .node-mark.start[data-node='0']", timeout=WAIT_MS)
-    assert (
-        page.get_attribute("#graph .node-mark.via", "aria-label")
-        == "Place 1, via point, nearest to the robot"
-    )
-    assert page.locator("#graph .node-mark.target").count() == 1
+    page.wait_for_selector("#path-text:text-is('path 0 → 1 → goal; robot near place 1')", timeout=WAIT_MS)
 
 
-def test_a_place_shows_its_connections_and_takes_the_robot_there(
-    page: "sync_api.Page", planner: Planner
-) -> None:
+def test_a_place_shows_its_connections_and_takes_the_robot_there(page: "Page", planner: Planner) -> None:
     planner.status = MissionStatus(robot="r1")
-    page.wait_for_selector('#graph [data-node="2"]', timeout=WAIT_MS)
-    page.focus('#graph [data-node="2"]')
-    page.keyboard.press("Enter")
-    page.wait_for_selector("#node table", timeout=WAIT_MS)
-    assert "suspended" in page.inner_text("#node")
+    page.wait_for_selector('#graph[data-nodes="5"]', timeout=WAIT_MS)
+    page.fill("#find", "2")
+    page.press("#find", "Enter")
+    page.wait_for_selector("#inspector table", timeout=WAIT_MS)
+    assert "suspended" in page.inner_text("#inspector")
     page.click("#go-there")
     assert wait_until(lambda: any(wish.goal_node == 2 for wish in planner.asked[-1:]), 10.0)
 
 
-def test_a_lost_gateway_is_said_and_found_again(browser: "sync_api.Browser", endpoint: str) -> None:
+def test_a_lost_gateway_is_said_and_found_again(browser: "Browser", endpoint: str) -> None:
     port = free_port()
     running = serve_gateway(endpoint, port=port)
     page = browser.new_page()
@@ -154,7 +132,7 @@ def test_a_lost_gateway_is_said_and_found_again(browser: "sync_api.Browser", end
     assert next(again, None) is None
 
 
-def test_positions_follow_the_headings(page: "sync_api.Page") -> None:
+def test_positions_follow_the_headings(page: "Page") -> None:
     """An L of three places: ahead, then left, though the second camera looks backwards."""
     spots = page.evaluate(
         """async () => {

@@ -32,6 +32,8 @@ def ask(address: str, method: str, path: str, **headers: str) -> httpx.Response:
         ("POST", "/api/maps"),
         ("POST", "/api/maps/import"),
         ("POST", "/api/maps/flat/undo"),
+        ("POST", "/api/maps/flat/merge"),
+        ("DELETE", "/api/maps/flat/merge"),
         ("PATCH", "/api/maps/flat"),
         ("DELETE", "/api/maps/flat"),
         ("DELETE", "/api/maps/flat/nodes/1"),

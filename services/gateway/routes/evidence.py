@@ -1,0 +1,86 @@
+"""Evidence for people: the matches behind an edge, and those between the live picture and a place."""
+
+from fastapi import APIRouter
+
+from services.gateway.problems import ProblemError
+from services.gateway.routes.goals import NodeAnswer
+from services.gateway.routes.robots import known
+from services.gateway.state import Gateway, GatewayDep, MapPath, MapQuery, NodePath, NodeQuery, RobotPath
+from shared.messages.maps import MapRequest
+from shared.messages.matching import MatchRequest, NodeMatch
+from shared.topics import MAP, MATCH
+
+router = APIRouter(tags=["evidence"])
+
+
+class Matches(NodeAnswer):
+    """How a picture relates to a node, with every match.
+
+    Attributes:
+        picture: "node 3" or "frame 512": whose bearings come first.
+        matches_rad: longitude and latitude in the picture, then in the node.
+        inlier: per match, whether it agrees with one motion of the camera.
+    """
+
+    picture: str
+    matches_rad: list[tuple[float, float, float, float]]
+    inlier: list[bool]
+
+
+@router.get("/api/maps/{map_name}/edges/{a:int}/{b:int}/matches")
+async def show_edge_matches(map_name: MapPath, a: NodePath, b: NodePath, gateway: GatewayDep) -> Matches:
+    """Compare the pictures of two places again: what speaks for an edge between them."""
+    settings = gateway.settings
+    wish = MapRequest(action="read_features", node_ids=(a,))
+    reply = await gateway.asker.ask("map_store", MAP, wish, settings.compute_timeout_s, map=map_name)
+    if not reply.features:
+        raise ProblemError(
+            404,
+            "no_features",
+            expected=f"node {a} of {map_name} with its features",
+            got="none",
+            next_step="see /api/maps/{map}/nodes",
+        )
+    question = MatchRequest(map=map_name, features=reply.features[0].features, node_ids=(b,))
+    return await _matches(gateway, settings.robot, question, f"node {a}")
+
+
+@router.get("/api/robots/{robot}/matches")
+async def show_live_matches(
+    robot: RobotPath, map_name: MapQuery, node: NodeQuery, gateway: GatewayDep
+) -> Matches:
+    """Compare the newest picture with a place."""
+    frame = known(gateway, robot).frame
+    if frame is None:
+        raise ProblemError(
+            404,
+            "no_frame",
+            expected=f"a frame of {robot}",
+            got="none since the gateway started",
+            next_step="see whether its camera or the simulator runs (/readyz)",
+        )
+    question = MatchRequest(seq=frame.seq, stamp_ns=frame.stamp_ns, map=map_name, node_ids=(node,))
+    return await _matches(gateway, robot, question, f"frame {frame.seq}")
+
+
+async def _matches(gateway: Gateway, robot: str, question: MatchRequest, picture: str) -> Matches:
+    timeout_s = gateway.settings.compute_timeout_s
+    reply = await gateway.asker.ask("features", MATCH, question, timeout_s, robot=robot)
+    match = next((found for found in reply.results if found.node_id in question.node_ids), None)
+    if match is None:
+        raise ProblemError(
+            502,
+            "bad_answer",
+            expected=f"matches of node {question.node_ids[0]}",
+            got=f"{len(reply.results)} others",
+            next_step="see the log of the feature service; run the same version of every service",
+            service="features",
+        )
+    return _answer(match, picture)
+
+
+def _answer(match: NodeMatch, picture: str) -> Matches:
+    bearings = [] if match.matches_rad is None else match.matches_rad.astype(float).round(5).tolist()
+    inlier = [] if match.inlier_mask is None else match.inlier_mask.astype(bool).tolist()
+    fields = {name: getattr(match, name) for name in NodeAnswer.model_fields}
+    return Matches(**fields, picture=picture, matches_rad=bearings, inlier=inlier)

@@ -1,0 +1,214 @@
+"""The console in a real browser, on real processes and the simulator: what a team does with it all day."""
+
+import io
+import re
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import httpx
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from PIL import Image
+
+from services.recorder.player import Player, play
+from services.recorder.recorder import record
+from services.recorder.recording import RecordingWriter, read
+from shared.bus import open_bus
+from shared.messages.sensors import Frame
+from tests.browser import WAIT_MS, chromium, listen, needs_chromium
+from tests.e2e.conftest import MAP, Explored
+from tests.e2e.near_node import hiding_place_near_a_node
+
+pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(600), needs_chromium]
+
+VIEWS = ("drive", "map", "why", "maps", "runs")
+MISSION_MS = 240_000
+RECORDED_S = 4.0
+COLOURS = """() => {
+    const context = document.querySelector(".pair").getContext("2d");
+    return new Set(context.getImageData(0, 0, 720, 740).data).size;
+}"""
+SERIOUS = {"serious", "critical"}
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """A headless Chromium."""
+    with chromium() as opened:
+        yield opened
+
+
+@pytest.fixture
+def page(browser: Any, explored: Explored) -> Iterator[Any]:
+    """The opened page; at the end nothing may have been wrong with it."""
+    opened, faults = browser.new_page(viewport={"width": 1440, "height": 900}), []
+    listen(opened, str(explored.stack.gateway_url), faults)
+    opened.goto(str(explored.stack.gateway_url))
+    opened.wait_for_selector("#connection.up", timeout=WAIT_MS)
+    yield opened
+    opened.close()
+    assert faults == []
+
+
+@pytest.fixture
+def copy_of_map(explored: Explored) -> Iterator[str]:
+    """Another map with the same places, to be changed."""
+    with httpx.Client(base_url=str(explored.stack.gateway_url), trust_env=False, timeout=30.0) as http:
+        archive = http.get(f"/api/maps/{MAP}/export").content
+        assert http.patch(f"/api/maps/{MAP}", json={"name": "kept"}).status_code == 200
+        answer = http.post("/api/maps/import", content=archive, headers={"Content-Type": "application/zip"})
+        assert answer.status_code == 201, answer.text
+        assert http.patch(f"/api/maps/{MAP}", json={"name": "copied"}).status_code == 200
+        assert http.patch("/api/maps/kept", json={"name": MAP}).status_code == 200
+        yield "copied"
+        http.delete("/api/maps/copied")
+
+
+def test_from_the_opened_page_to_a_robot_at_an_uploaded_picture(page: Any, explored: Explored) -> None:
+    """A stranger needs two clicks: choose the picture, drive there."""
+    game = explored.game
+    start = game.begin(seed=1).pose
+    hider = hiding_place_near_a_node(explored.result, explored.space, start)
+    page.wait_for_selector("#frame:visible", timeout=WAIT_MS)
+    goal = {"name": "goal.png", "mimeType": "image/png", "buffer": png_of(game.hide(hider))}
+    page.set_input_files("#picture", files=[goal])
+    page.wait_for_selector("#goal-answer .verdict.found", timeout=WAIT_MS)
+    page.check("#show-matches")
+    page.click("#go")
+    page.wait_for_selector("#frame-matches circle.inlier", state="attached", timeout=WAIT_MS)
+    assert page.locator("#polar .bar").count() > 0
+    page.wait_for_selector("#state.succeeded", timeout=MISSION_MS)
+    page.wait_for_selector("#events li.good", timeout=WAIT_MS)
+
+
+def test_a_decision_leads_to_its_moment_and_the_charts(page: Any) -> None:
+    page.goto(f"{page.url}#why")
+    page.wait_for_selector("#charts .uplot", timeout=WAIT_MS)
+    assert page.locator("#charts .uplot").count() == 3
+    page.select_option("#kind", "succeeded")
+    page.wait_for_selector("#events:not(:has(li:nth-child(2))) li.good", timeout=WAIT_MS)
+    page.fill("#event-text", "no such words")
+    page.wait_for_selector("#events li.quiet", timeout=WAIT_MS)
+
+
+def test_an_edge_shows_both_pictures_and_its_matches(page: Any, explored: Explored) -> None:
+    page.goto(f"{page.url}#map")
+    page.wait_for_selector(f'#graph[data-nodes="{len(explored.result.truth.poses)}"]', timeout=WAIT_MS)
+    page.fill("#find", "0-1")
+    page.press("#find", "Enter")
+    page.wait_for_selector("#pair-answer[data-drawn]", timeout=WAIT_MS)
+    assert re.search(r"\d+ of \d+ matches agree", page.inner_text("#pair-answer"))
+    assert page.evaluate(COLOURS) > 100
+    page.click("#inspector button:text-is('Place 1')")
+    page.wait_for_selector("#inspector figure canvas", timeout=WAIT_MS)
+    page.check("#true-positions")
+    page.wait_for_timeout(500)
+    assert page.is_checked("#true-positions"), page.inner_text("#answer")
+
+
+def test_a_deleted_place_comes_back_by_undo_and_the_history_says_who(page: Any, copy_of_map: str) -> None:
+    page.goto(f"{page.url}#maps")
+    page.click(f"#maps-table button:text-is('{copy_of_map}')", timeout=WAIT_MS)
+    before = int(page.inner_text(f"#maps-table tr:has(button:text-is('{copy_of_map}')) td:nth-child(2)"))
+    page.click("nav a[data-view=map]")
+    page.fill("#find", "1")
+    page.press("#find", "Enter")
+    page.click("#remove")
+    page.click("#confirm-yes")
+    page.wait_for_selector(f'#graph[data-nodes="{before - 1}"]', timeout=WAIT_MS)
+    page.click("nav a[data-view=maps]")
+    page.wait_for_selector("#revisions td:text-is('console')", timeout=WAIT_MS)
+    page.click("#undo")
+    page.click("#confirm-yes")
+    page.click("nav a[data-view=map]")
+    page.wait_for_selector(f'#graph[data-nodes="{before}"]', timeout=WAIT_MS)
+    page.click("nav a[data-view=maps]")
+    page.locator("#revisions input[type=checkbox]").nth(0).check()
+    page.locator("#revisions input[type=checkbox]").nth(1).check()
+    page.click("#compare")
+    page.wait_for_selector("#comparison:has-text('1 places added')", timeout=WAIT_MS)
+
+
+def test_a_recording_plays_as_if_live(page: Any, explored: Explored, tmp_path: Any) -> None:
+    file = tmp_path / "ghost.mcap"
+    game, stop = explored.game, threading.Event()
+    with RecordingWriter(file) as writer, open_bus(explored.stack.endpoint) as bus:
+        turning = threading.Thread(target=lambda: game.begin(seed=3))
+        turning.start()
+        record(bus, writer, frozenset(), stop, RECORDED_S)
+        turning.join()
+    with open_bus(explored.stack.endpoint) as bus:
+        player = Player(bus, {"r1": "ghost"}, frozenset({"delta"}))
+        player_thread = threading.Thread(
+            target=lambda: [play(read(file), player.put, 1.0, stop) for _ in range(6)]
+        )
+        player_thread.start()
+        page.wait_for_selector("#robot option[value=ghost]", state="attached", timeout=WAIT_MS)
+        page.select_option("#robot", "ghost")
+        page.wait_for_selector("#frame:visible", timeout=WAIT_MS)
+        assert "frame" in page.inner_text("#frame-facts")
+        stop.set()
+        player_thread.join()
+
+
+def test_every_view_is_accessible_and_well_behaved(page: Any) -> None:
+    axe = Axe()
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        for view in VIEWS:
+            page.click(f"nav a[data-view={view}]")
+            page.wait_for_timeout(400)
+            found = axe.run(page).response["violations"]
+            bad = [
+                (v["id"], [n["html"][:120] for n in v["nodes"]][:3]) for v in found if v["impact"] in SERIOUS
+            ]
+            assert bad == [], f"{view}, {scheme}"
+
+
+def test_the_policy_allows_no_inline_scripts_and_the_page_is_small(browser: Any, explored: Explored) -> None:
+    sizes: dict[str, int] = {}
+    address = str(explored.stack.gateway_url)
+    with browser.new_page() as page:
+        session = page.context.new_cdp_session(page)
+        session.send("Network.enable")
+        urls: dict[str, str] = {}
+        session.on(
+            "Network.requestWillBeSent", lambda e: urls.__setitem__(e["requestId"], e["request"]["url"])
+        )
+        session.on(
+            "Network.loadingFinished",
+            lambda e: sizes.__setitem__(urls.get(e["requestId"], ""), int(e["encodedDataLength"])),
+        )
+        for view in VIEWS:
+            page.goto(f"{address}/#{view}")
+            page.wait_for_timeout(600)
+        page.goto(f"{address}/#drive")
+        page.check("#look-around")
+        page.wait_for_selector("#around canvas", timeout=WAIT_MS)
+    policy = httpx.get(address, trust_env=False).headers["Content-Security-Policy"]
+    assert "unsafe" not in policy
+    assert sum(size for url, size in sizes.items() if "/static/" in url) <= 400_000
+
+
+def test_the_page_finds_a_gateway_again_that_was_killed(browser: Any, explored: Explored) -> None:
+    launcher = explored.stack.launcher
+    assert launcher is not None
+    page = browser.new_page()
+    page.goto(str(explored.stack.gateway_url))
+    page.wait_for_selector("#connection.up", timeout=WAIT_MS)
+    before = launcher.kill("gateway")
+    page.wait_for_selector("#notice:not([hidden])", timeout=WAIT_MS)
+    assert "lost" in page.inner_text("#notice")
+    launcher.wait_healthy("gateway", 30.0, other_than=before)
+    page.wait_for_selector("#connection.up", timeout=WAIT_MS)
+    page.wait_for_selector("#notice", state="hidden", timeout=WAIT_MS)
+    page.close()
+
+
+def png_of(frame: Frame) -> bytes:
+    """A frame of the bus as a file."""
+    out = io.BytesIO()
+    image = Image.frombuffer("RGB", (frame.width_px, frame.height_px), frame.data, "raw", "BGR", 0, 1)
+    image.save(out, "PNG")
+    return out.getvalue()
