@@ -22,6 +22,7 @@ COMMANDS: dict[str, LazyCommand] = {
     ),
     "explore": LazyCommand("experiments.explore", "Explore a world and build a map of pictures."),
     "goto": LazyCommand("experiments.goto", "Drive to where a picture was taken."),
+    "estop": LazyCommand("experiments.estop", "Stop a robot at once; only a person lets it go again."),
     "hide-and-seek": LazyCommand("experiments.hide_and_seek", "The thesis's evaluation: find hidden robots."),
     "study": LazyCommand("experiments.studies", "Experiments on headings, matching, disturbances and scale."),
     "calibrate": LazyCommand("experiments.calibrate", "Measure the thresholds of a pipeline."),
@@ -31,6 +32,7 @@ COMMANDS: dict[str, LazyCommand] = {
     "record": LazyCommand("experiments.recordings.record", "Write what the bus says into an MCAP file."),
     "replay": LazyCommand("experiments.recordings.replay", "Play a recording, as if live."),
     "recover": LazyCommand("experiments.recordings.recover", "Save what is in a broken recording."),
+    "foxglove": LazyCommand("experiments.recordings.foxglove", "Convert a recording for Foxglove."),
     "map": LazyCommand("experiments.maps", "List, export, import, rename and delete maps."),
 }
 

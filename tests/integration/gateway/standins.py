@@ -11,9 +11,10 @@ from fastapi.responses import JSONResponse, Response
 
 from shared.bus import Bus, open_bus, wait_until
 from shared.messages.features import ExtractRequest, Features
+from shared.messages.maps import MapReply, NodeFeatures
 from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
 from shared.messages.missions import MissionRequest, MissionStatus
-from shared.topics import EXTRACT, MATCH, MISSION, STATUS
+from shared.topics import EXTRACT, MAP, MATCH, MISSION, STATUS
 
 PIPELINE = "standin/1"
 KEYPOINTS = 40
@@ -98,6 +99,22 @@ class FeatureService:
         return turn
 
 
+class MapStore:
+    """Answers MAP with the features of whatever is asked for."""
+
+    def setup(self, bus: Bus) -> Callable[[], None]:
+        requests = bus.requests(MAP, map="*")
+
+        def turn() -> None:
+            while (asked := requests.take()) is not None:
+                found = tuple(
+                    NodeFeatures(node_id=node, features=features_of()) for node in asked.message.node_ids
+                )
+                asked.reply(MapReply(map="flat", revision=9, features=found))
+
+        return turn
+
+
 class Planner:
     """Answers MISSION and publishes the status."""
 
@@ -168,6 +185,7 @@ def _stored(path: str, nodes: int, body: bytes) -> Response:
     ring = [sorted((node, (node + 1) % nodes)) for node in range(nodes)]
     known: dict[str, object] = {
         "maps/flat": {"name": "flat", "revision": 9, "sent": body.decode()},
+        "maps/flat/compare": {"map": "flat", "from": 5, "to": 9, "nodes_added": [3]},
         "maps/flat/undo": {"map": "flat", "revision": 10, "undone": 9},
         "maps/flat/nodes": [{"node_id": node, "thumbnail": True} for node in range(nodes)],
         "maps/flat/edges": [

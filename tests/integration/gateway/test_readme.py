@@ -3,12 +3,14 @@
 import os
 import shutil
 import subprocess
+from collections.abc import Iterator
 
 import httpx
 import pytest
 
 from shared.bus import Bus, wait_until
 from shared.topics import FRAME
+from tests.integration.gateway.standins import MapStore, Peer
 from tests.integration.gateway.test_robots import frame
 from tests.readme import examples
 
@@ -17,6 +19,14 @@ pytestmark = pytest.mark.skipif(shutil.which("curl") is None, reason="the exampl
 STRICT = 'set -euo pipefail; curl() { command curl --silent --show-error --fail-with-body "$@"; }\n'
 
 
+@pytest.fixture
+def map_store(endpoint: str) -> Iterator[None]:
+    """The map store on the bus."""
+    with Peer(endpoint, "map_store", MapStore().setup):
+        yield
+
+
+@pytest.mark.usefixtures("map_store")
 def test_every_line_answers(http: httpx.Client, gateway: str, robot_bus: Bus, tmp_path) -> None:
     publisher = robot_bus.publisher(FRAME, robot="r1")
 
