@@ -70,6 +70,11 @@ class MissionControl:
             self._change(request.action)
         return self.status()
 
+    def pause(self, reason: str) -> None:
+        """Pause a running mission for a reason that the status then gives."""
+        self._reason = reason
+        self._change("pause")
+
     def step(self, observation: Observation) -> Decision:
         """Decide for one frame of a running mission."""
         assert self._mission is not None

@@ -50,11 +50,8 @@ class MapGraph:
 
     def neighbours(self, node_id: int) -> list[int]:
         """Nodes an edge leads to, suspended ones excluded, in ascending order."""
-        return sorted(
-            b if a == node_id else a
-            for (a, b), edge in self.edges.items()
-            if node_id in (a, b) and not edge.suspended
-        )
+        links = self._links()
+        return sorted(links[node_id]) if node_id in links else []
 
     def heading(self, node_id: int, neighbour: int) -> float | None:
         """Direction to a neighbour in the node's camera frame, radians; None when unknown."""

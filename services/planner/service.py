@@ -9,10 +9,10 @@ from services.planner.ports import Decision, Observation
 from services.planner.profiles import Profile
 from services.planner.settings import PlannerSettings
 from shared.bus import Bus
-from shared.messages import Event, Features, Heading, MissionRequest, MissionStatus, Ranges
+from shared.messages import EStopState, Event, Features, Heading, MissionRequest, MissionStatus, Ranges
 from shared.messages.missions import EventValue
 from shared.queries import QueryError, Request
-from shared.topics import EVENT, FEATURES, HEADING, MAP_DELTA, MISSION, RANGES, STATUS
+from shared.topics import EVENT, FEATURES, HEADING, MAP_DELTA, MISSION, RANGES, STATUS, STOPPED
 from shared.wire import WireError
 
 log = logging.getLogger(__name__)
@@ -31,11 +31,13 @@ class Planner:
         self._features_in = bus.subscribe(FEATURES, robot=robot)
         self._ranges_in = bus.subscribe(RANGES, robot=robot)
         self._deltas = bus.subscribe(MAP_DELTA, map="*")
+        self._stops = bus.subscribe(STOPPED, robot=robot)
         self._requests = bus.requests(MISSION, robot=robot)
         self._headings = bus.publisher(HEADING, robot=robot)
         self._statuses = bus.publisher(STATUS, robot=robot)
         self._events = bus.publisher(EVENT, robot=robot)
         self.control = MissionControl(settings, self._profile, bus)
+        self._stopped: EStopState | None = None
         self._features: Features | None = None
         self._ranges: Ranges | None = None
         self._answered: Heading | None = None
@@ -44,8 +46,12 @@ class Planner:
 
     def turn(self, now_s: float) -> None:
         """Requests first, then the newest frame."""
+        self._stopped = self._stops.take() or self._stopped
         while (request := self._requests.take()) is not None:
             self._handle(request)
+        if self._stopped is not None and self._stopped.engaged and self.control.state == "running":
+            self.control.pause(f"emergency stop: {self._stopped.why}".rstrip(": "))
+            self._publish_status(now_s)
         for delta in self._deltas.take_all():
             if self.control.map is not None and delta.map == self.control.map.name:
                 self.control.follow_store(delta.revision, "" if delta.reset else delta.author)
