@@ -66,9 +66,9 @@ def judge_edges(
         for n, m in similar.items()
         if n == driven_from
         or (
-            _enough_agree(m, profile)
-            and not _far(m, profile)
-            and (n in clear or similarity(m, profile) >= profile.s_blind_min)
+            not _far(m, profile)
+            and (n in clear or _enough_for_blind(m, profile))
+            and _enough_agree(m, profile)
         )
     }
     refused = _refused(graph, enough, profile, driven_from)
@@ -171,6 +171,15 @@ def _enough_agree(match: NodeMatch, profile: Profile) -> bool:
     """Whether so many of the raw matches are verified that a look-alike place is no explanation."""
     sure = similarity(match, profile) >= profile.s_sure
     return sure or match.inliers >= profile.share_min * match.raw_matches
+
+
+def _enough_for_blind(match: NodeMatch, profile: Profile) -> bool:
+    """Whether a place is so surely there that an edge needs no free ground seen.
+
+    Of 238 such edges of three explorations of a village two had a smaller share than 0.5; one was wrong.
+    """
+    share = match.inliers / max(match.raw_matches, 1)
+    return similarity(match, profile) >= profile.s_blind_min and share >= profile.share_min
 
 
 def _far(match: NodeMatch, profile: Profile) -> bool:

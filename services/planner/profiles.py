@@ -18,8 +18,9 @@ class Profile(BaseModel):
         similarity: S counts verified matches (inliers) or raw ones (thesis).
         s_edge_min, s_node_max: map thresholds of equations 4.1 and 4.2.
         s_sure: S from which an edge needs no further proof.
-        share_min: share of the raw matches that must be verified for an edge with S below s_sure; look-alike
-            places agree in less. The edge to the place the robot came from needs no more than s_edge_min.
+        share_min: share of the raw matches that must be verified for an edge with S below s_sure, or without
+            free ground seen; look-alike places agree in less. The edge to the place the robot came from needs
+            no more than s_edge_min.
         edge_window: so many of the newest places may get an edge to a new one; 0: the most similar of all.
         s_explored: an edge this similar leaves nothing unexplored in its direction.
         s_via_min, s_via_max: thresholds of equation 4.3; s_final ends a mission by count alone.

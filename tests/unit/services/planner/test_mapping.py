@@ -64,6 +64,15 @@ def test_a_strong_edge_needs_no_share():
     assert edges_of(OUTDOOR, match(0, 60, 150)) == [0]
 
 
+def test_outdoors_a_place_behind_an_obstacle_must_agree_in_most():
+    blocked = Observation(
+        observation().features, observation().ranges.model_copy(update={"distances_m": (0.5,) * 12})
+    )
+    graph = Memory().graph
+    assert set(judge_edges(graph, blocked, {0: match(0, 71, 120)}, OUTDOOR, None).admitted) == {0}
+    assert judge_edges(graph, blocked, {0: match(0, 71, 160)}, OUTDOOR, None).admitted == {}
+
+
 def test_the_edge_the_robot_drove_is_kept():
     assert edges_of(OUTDOOR, match(0, 35, 80), match(1, 30, 90), driven_from=0) == [0]
 
