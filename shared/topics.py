@@ -7,6 +7,8 @@ from typing import Generic, TypeVar
 
 from shared.messages import (
     Command,
+    EStopRequest,
+    EStopState,
     Event,
     ExtractRequest,
     Features,
@@ -86,6 +88,8 @@ RANGES = Topic("topnav/{robot}/ranges", Ranges, Delivery.DATA, 10_000)
 FEATURES = Topic("topnav/{robot}/features", Features, Delivery.DATA, 8 * MB)
 HEADING = Topic("topnav/{robot}/heading", Heading, Delivery.COMMAND, 10_000)
 COMMAND = Topic("topnav/{robot}/command", Command, Delivery.COMMAND, 10_000)
+STOPPED = Topic("topnav/{robot}/stopped", EStopState, Delivery.COMMAND, 10_000)
+STANDING = Topic("topnav/{robot}/standing", EStopState, Delivery.COMMAND, 10_000)
 STATUS = Topic("topnav/{robot}/status", MissionStatus, Delivery.LOG, 1 * MB)
 EVENT = Topic("topnav/{robot}/event", Event, Delivery.LOG, 100_000)
 TRUTH = Topic("topnav/{robot}/truth", Truth, Delivery.LOG, 10_000)
@@ -94,6 +98,7 @@ MAP_DELTA = Topic("topnav/maps/{map}/delta", MapDelta, Delivery.RECOVERED, 64 * 
 MATCH = Query("topnav/{robot}/match", MatchRequest, MatchReply, 32 * MB)
 EXTRACT = Query("topnav/features/extract", ExtractRequest, Features, 64 * MB)
 MISSION = Query("topnav/{robot}/mission", MissionRequest, MissionStatus, 8 * MB)
+ESTOP = Query("topnav/{robot}/estop", EStopRequest, EStopState, 10_000)
 MAP = Query("topnav/maps/{map}/graph", MapRequest, MapReply, 512 * MB)
 MISSION_RECORD = Query("topnav/missions/{robot}", MissionRecordRequest, MissionRecord, 8 * MB)
 SIMULATION = Query("topnav/{robot}/simulation", SimulationRequest, SimulationReply, 64 * MB)
@@ -104,12 +109,22 @@ TOPICS: tuple[Topic[Message], ...] = (
     FEATURES,
     HEADING,
     COMMAND,
+    STOPPED,
+    STANDING,
     STATUS,
     EVENT,
     TRUTH,
     MAP_DELTA,
 )  # type: ignore[assignment]
-QUERIES: tuple[Query[Message, Message], ...] = (MATCH, EXTRACT, MISSION, MAP, MISSION_RECORD, SIMULATION)  # type: ignore[assignment]
+QUERIES: tuple[Query[Message, Message], ...] = (
+    MATCH,
+    EXTRACT,
+    MISSION,
+    ESTOP,
+    MAP,
+    MISSION_RECORD,
+    SIMULATION,
+)  # type: ignore[assignment]
 
 
 def alive_key(service: str, instance: str) -> str:

@@ -3,10 +3,13 @@
 import logging
 import threading
 import time
+from pathlib import Path
 
 from shared.bus import Bus
+from shared.estop.sides import StopFollower
 from shared.messages import Command, Frame, Ranges, Truth
 from shared.topics import COMMAND, FRAME, RANGES, SIMULATION, TRUTH
+from simulator.command_age import CommandAge
 from simulator.experimenter import Experimenter, RequestError
 from simulator.outbox import MessageMaker
 from simulator.service_settings import SimulatorSettings
@@ -22,12 +25,13 @@ CATCH_UP_S = 0.5  # time lost beyond this (a suspended process) is dropped, not 
 class Ports:
     """Everything the loop sends and receives."""
 
-    def __init__(self, bus: Bus, robot: str) -> None:
+    def __init__(self, bus: Bus, robot: str, state_dir: Path) -> None:
         self._frames = bus.publisher(FRAME, robot=robot)
         self._ranges = bus.publisher(RANGES, robot=robot)
         self._truth = bus.publisher(TRUTH, robot=robot)
         self._commands = bus.subscribe(COMMAND, robot=robot)
         self.requests = bus.requests(SIMULATION, robot=robot)
+        self.stop = StopFollower(bus, robot, state_dir)
 
     def send(self, *messages: Frame | Ranges | Truth) -> None:
         """Publish in the order given."""
@@ -76,7 +80,10 @@ class Loop:
 
 
 class LockstepLoop(Loop):
-    """Frame k, command k, control_period_s of physics, frame k + 1. Without a command nothing moves."""
+    """Frame k, command k, control_period_s of physics, frame k + 1. Without a command nothing moves.
+
+    While the emergency stop is engaged time goes on with wheels that stand, commanded or not.
+    """
 
     def start(self) -> None:
         """Send the first frame."""
@@ -85,18 +92,24 @@ class LockstepLoop(Loop):
     def turn(self, now_s: float) -> None:
         """Advance if the awaited command came; send the frame again if none came for a while."""
         command = self.ports.newest_command()
+        answered = command is not None and command.seq == self.seq
+        late = now_s - self._sent_s > self.settings.repeat_s
         if self.serve_requests():
             self.seq += 1
             self._send()
-        elif command is not None and command.seq == self.seq:
-            self.simulation.command(
-                command.steer_rad, command.wheel_speed_radps, self.settings.control_period_s
-            )
-            self.simulation.step(self.settings.control_period_s)
-            self.seq += 1
-            self._send()
-        elif now_s - self._sent_s > self.settings.repeat_s:
+        elif self.ports.stop.engaged():
+            if answered or late:
+                self._advance(0.0, 0.0)
+        elif command is not None and answered:
+            self._advance(command.steer_rad, command.wheel_speed_radps)
+        elif late:
             self._repeat(now_s)
+
+    def _advance(self, steer_rad: float, wheel_speed_radps: float) -> None:
+        self.simulation.command(steer_rad, wheel_speed_radps, self.settings.control_period_s)
+        self.simulation.step(self.settings.control_period_s)
+        self.seq += 1
+        self._send()
 
     def _send(self) -> None:
         self._pending = self.sense()
@@ -114,12 +127,15 @@ class RealTimeLoop(Loop):
         """Start the clocks; a command from before is too old to obey."""
         self.ports.newest_command()
         self._physics_s = self._frame_s = self._ranges_s = time.monotonic()
+        self._age = CommandAge()
 
     def turn(self, now_s: float) -> None:
         """Obey the newest command, let physics catch up, send what is due."""
         self.serve_requests()
         command = self.ports.newest_command()
-        if command is not None:
+        if self.ports.stop.engaged():
+            self.simulation.stop()
+        elif command is not None and self._age.recent(command.seq, now_s):
             self.simulation.command(command.steer_rad, command.wheel_speed_radps, command.ttl_ms / 1000.0)
         self._catch_up(now_s)
         if now_s >= self._ranges_s:
@@ -131,6 +147,7 @@ class RealTimeLoop(Loop):
             self.seq += 1
             self.stamp_ns = time.time_ns()
             self.ports.send(self.maker.frame(self.seq, self.stamp_ns))
+            self._age.sent(self.seq, now_s)
 
     def _catch_up(self, now_s: float) -> None:
         self._physics_s = max(self._physics_s, now_s - CATCH_UP_S)
@@ -144,7 +161,7 @@ class RealTimeLoop(Loop):
 def run(settings: SimulatorSettings, world: WorldFile, bus: Bus, stop: threading.Event) -> None:
     """Build the world and serve until `stop`."""
     simulation = Simulation(world, settings.simulation(), settings.seed)
-    ports = Ports(bus, settings.robot)
+    ports = Ports(bus, settings.robot, settings.state_dir)
     loop = (LockstepLoop if settings.lockstep else RealTimeLoop)(simulation, settings, ports)
     bus.announce("simulator")
     log.info("world %s, %s", settings.world, "lockstep" if settings.lockstep else "real time")
@@ -154,3 +171,4 @@ def run(settings: SimulatorSettings, world: WorldFile, bus: Bus, stop: threading
     while not stop.is_set():
         bus.wait(settings.repeat_s / 4 if settings.lockstep else REAL_TIME_TURN_S)
         loop.turn(time.monotonic())
+        ports.stop.tell(time.monotonic())

@@ -39,6 +39,7 @@ class SimulatorSettings(ServiceSettings):
         cache_limit_mb: size of that folder, see SimulationSettings.
         disturbance: levels from 0 to 1 of what disturbs camera and world, as "fog=0.5,noise=0.3".
         polite_people: see SimulationSettings.
+        state_dir: where the robot keeps an emergency stop across restarts.
     """
 
     model_config = SettingsConfigDict(env_prefix="SIMULATOR_")
@@ -60,6 +61,7 @@ class SimulatorSettings(ServiceSettings):
     cache_limit_mb: PositiveInt = SimulationSettings().cache_limit_mb
     disturbance: Annotated[Disturbances, NoDecode] = Disturbances()
     polite_people: bool = True
+    state_dir: Path = Path("data/robot-state")
 
     def simulation(self) -> SimulationSettings:
         """The part that the simulation itself needs."""

@@ -9,7 +9,8 @@ COPY shared shared
 COPY services/__init__.py services/__init__.py
 COPY services/drive services/drive
 
-RUN useradd --system --uid 10001 topnav
+RUN useradd --system --uid 10001 topnav \
+    && install --directory --owner topnav /var/lib/topnav/drive-state
 USER topnav
 # The root file system is read-only: caches go to the tmpfs.
 ENV HOME=/tmp PYTHONDONTWRITEBYTECODE=1 PYTHONUNBUFFERED=1

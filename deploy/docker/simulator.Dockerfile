@@ -17,7 +17,7 @@ COPY simulator simulator
 RUN python -m compileall -q shared simulator
 
 RUN useradd --system --uid 10001 topnav \
-    && install --directory --owner topnav /var/lib/topnav/simulator-cache
+    && install --directory --owner topnav /var/lib/topnav/simulator-cache /var/lib/topnav/robot-state
 USER topnav
 # The root file system is read-only: caches go to the tmpfs.
 ENV HOME=/tmp PYTHONDONTWRITEBYTECODE=1 PYTHONUNBUFFERED=1

@@ -13,6 +13,8 @@ from shared.geometry.clearance import Obstacles
 from shared.messages import Command, Heading, Ranges
 
 SLOWEST = 0.25
+DECIDING_S = 2.0
+"""The longest that features and planner may take from a frame to its heading."""
 
 
 class DriveLimits(BaseModel):
@@ -71,6 +73,12 @@ def stop_command(heading: Heading, why: str, limits: DriveLimits) -> Command:
         ttl_ms=limits.command_ttl_ms,
         why=why,
     )
+
+
+def is_stale(heading: Heading, ranges: Ranges) -> bool:
+    """Whether a heading outlived its ttl on its way, by the robot's clock: both stamps are the robot's."""
+    age_s = (ranges.stamp_ns - heading.stamp_ns) / 1e9
+    return age_s > DECIDING_S + heading.ttl_ms / 1000.0
 
 
 def _steer(

@@ -1,15 +1,17 @@
 """Drive loop: one command for each frame in lockstep, a steady stream with a watchdog in real time."""
 
 import logging
+import math
 import threading
 import time
 
 import numpy as np
 
-from services.drive.core import compute_command, stop_command
+from services.drive.core import compute_command, is_stale, stop_command
 from services.drive.passing import Passing
 from services.drive.settings import DriveSettings
 from shared.bus import Bus
+from shared.estop.sides import StopDesk
 from shared.messages import Command, Heading, Ranges
 from shared.topics import COMMAND, HEADING, RANGES
 
@@ -18,6 +20,10 @@ log = logging.getLogger(__name__)
 PERIOD_S = 0.05
 RANGES_TTL_S = 0.4
 EXPIRED_S = -1.0e9
+SUSPENDED_S = 0.5
+"""A loop that turns 20 times a second and missed this long stood still itself, with everything it heard."""
+BURST_S = 0.2
+"""After that, what had piled up arrives within this."""
 HEADINGS_NEED = ("planner", "features")
 
 
@@ -37,28 +43,50 @@ class Drive:
         self._moving = False
         self._counters = bus.counters
         self._bereft, self._wake = threading.Event(), bus.wake
+        self._desk = StopDesk(bus, settings.robot, settings.state_dir)
+        self._turned_s, self._deaf_until_s = math.inf, EXPIRED_S
         for service in HEADINGS_NEED:
             bus.watch_alive(self._watch, service)
 
     def turn(self, now_s: float) -> None:
         """Read what came and send what follows from it."""
+        self._desk.turn(now_s)
         if self._bereft.is_set():
             self._bereft.clear()
             self._heading_s = EXPIRED_S
-        fresh_ranges = self._ranges_in.take()
-        if fresh_ranges is not None:
-            self._ranges, self._ranges_s = fresh_ranges, now_s
-        fresh_heading = self._headings.take()
-        if fresh_heading is not None and self._accept(fresh_heading):
-            self._heading, self._heading_s = fresh_heading, now_s
-        if self._heading is None or self._ranges is None:
+        fresh = self._listen(now_s)
+        if self._heading is None:
+            return
+        if self._desk.state.engaged and self._moving:
+            self._stop(self._heading, "emergency stop")
+        if self._ranges is None:
             return
         if self._ranges.lockstep:
             self._answer_once(self._heading, self._ranges)
         elif now_s - self._heading_s > self._heading.ttl_ms / 1000.0 or now_s - self._ranges_s > RANGES_TTL_S:
-            self._stop(self._heading)
-        elif fresh_ranges is not None or fresh_heading is not None:
+            self._stop(self._heading, "inputs too old")
+        elif fresh:
             self._answer(self._heading, self._ranges)
+
+    def _listen(self, now_s: float) -> bool:
+        """Take the newest heading and distances; whether there was news.
+
+        What waited while this process was suspended may be as old as the suspension, and looks fresh when it
+        is read: it is thrown away.
+        """
+        if now_s - self._turned_s > SUSPENDED_S:
+            log.warning("suspended for %.1f s: what came meanwhile is thrown away", now_s - self._turned_s)
+            self._heading_s, self._deaf_until_s = EXPIRED_S, now_s + BURST_S
+        self._turned_s = now_s
+        ranges, heading = self._ranges_in.take(), self._headings.take()
+        if now_s < self._deaf_until_s:
+            return False
+        if ranges is not None:
+            self._ranges, self._ranges_s = ranges, now_s
+        if heading is None or not self._accept(heading):
+            return ranges is not None
+        self._heading, self._heading_s = heading, now_s
+        return True
 
     def _watch(self, _service: str, _instance: str, alive: bool) -> None:
         """A service that headings come from is gone: they expire at once. Called on Zenoh's thread."""
@@ -67,10 +95,15 @@ class Drive:
             self._wake.set()
 
     def _accept(self, heading: Heading) -> bool:
-        """Refuse headings of a planner that has been replaced."""
+        """Refuse headings of a planner that has been replaced, and those that were held up on their way."""
         if self._heading is not None and heading.epoch < self._heading.epoch:
             self._counters.count(
                 "old_epoch", f"heading of epoch {heading.epoch}, newest is {self._heading.epoch}"
+            )
+            return False
+        if self._ranges is not None and is_stale(heading, self._ranges):
+            self._counters.count(
+                "stale", f"heading of frame {heading.seq}, the robot is at {self._ranges.seq}"
             )
             return False
         if self._heading is None or heading.mission_id != self._heading.mission_id:
@@ -81,24 +114,27 @@ class Drive:
         """Lockstep: pair heading and distances of one frame; repeat the same answer when asked again."""
         if heading.seq != ranges.seq:
             return
-        answered = self._answered
-        if answered is not None and (answered.seq, answered.stamp_ns) == (heading.seq, heading.stamp_ns):
-            self._commands.put(answered)
-        else:
+        answered, frame = self._answered, (heading.seq, heading.stamp_ns)
+        if self._desk.state.engaged or answered is None or (answered.seq, answered.stamp_ns) != frame:
             self._answer(heading, ranges)
+        else:
+            self._commands.put(answered)
         self._ranges = None
 
     def _answer(self, heading: Heading, ranges: Ranges) -> None:
-        rng = np.random.default_rng((self._settings.seed, heading.seq))
-        self._answered, self._memory = compute_command(heading, ranges, self._memory, rng, self._limits)
+        if self._desk.state.engaged:
+            self._answered = stop_command(heading, "emergency stop", self._limits)
+        else:
+            rng = np.random.default_rng((self._settings.seed, heading.seq))
+            self._answered, self._memory = compute_command(heading, ranges, self._memory, rng, self._limits)
         self._moving = self._answered.wheel_speed_radps != 0.0
         self._commands.put(self._answered)
 
-    def _stop(self, heading: Heading) -> None:
-        """Once the inputs are too old: zero command; the robot's own time-out covers a lost one."""
+    def _stop(self, heading: Heading, why: str) -> None:
+        """Zero command, once; the robot's own time-out covers a lost one."""
         if self._moving:
-            self._commands.put(stop_command(heading, "inputs too old", self._limits))
-            log.warning("inputs too old: wheels stopped")
+            self._commands.put(stop_command(heading, why, self._limits))
+            log.warning("%s: wheels stopped", why)
             self._moving = False
 
     def close(self) -> None:

@@ -1,5 +1,6 @@
 """Settings of the drive service, from DRIVE_* variables."""
 
+from pathlib import Path
 from typing import Literal
 
 from pydantic_settings import SettingsConfigDict
@@ -22,12 +23,14 @@ class DriveSettings(ServiceSettings):
         profile: default and outdoor pass obstacles with memory, thesis and thesis_outdoor by the momentary
             rule; the outdoor ones drive at the thesis's outdoor speeds and look further ahead.
         seed: of the random weights of the momentary rule.
+        state_dir: where an emergency stop is kept across restarts, the one thing this service remembers.
     """
 
     model_config = SettingsConfigDict(env_prefix="DRIVE_")
 
     profile: ProfileName = "default"
     seed: int = 0
+    state_dir: Path = Path("data/drive-state")
 
     def limits(self) -> DriveLimits:
         """The limits of the chosen profile."""

@@ -16,6 +16,7 @@ from services.gateway.merging.desk import MergeDesk
 from services.gateway.metrics import Metrics
 from services.gateway.mission_log import MissionLog
 from services.gateway.routes import (
+    estop,
     evidence,
     goals,
     health,
@@ -62,7 +63,7 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
     app = FastAPI(title="topnav gateway", version="1", lifespan=lifespan, docs_url=None, redoc_url=None)
     problems.install(app, metrics)
     app.add_middleware(Edge, metrics=metrics)
-    for resource in (evidence, goals, missions, maps, merging, robots, runs):
+    for resource in (estop, evidence, goals, missions, maps, merging, robots, runs):
         app.include_router(resource.router, dependencies=[Depends(guard)])
     for resource in (live, health, pages):
         app.include_router(resource.router)

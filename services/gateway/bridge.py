@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from services.gateway.live import Hub
 from shared.bus import Bus
 from shared.messages.base import Message
-from shared.topics import COMMAND, EVENT, FRAME, HEADING, NAME, RANGES, STATUS, TRUTH
+from shared.topics import COMMAND, EVENT, FRAME, HEADING, NAME, RANGES, STATUS, STOPPED, TRUTH
 
 log = logging.getLogger(__name__)
 
@@ -56,7 +56,7 @@ class Bridge:
             bus.subscribe(EVENT, robot="*").take_all,
             bus.subscribe(TRUTH, robot="*").take_all,
         )
-        self._discovery = bus.subscribe(RANGES, robot="*")
+        self._sensing, self._stopping = bus.subscribe(RANGES, robot="*"), bus.subscribe(STOPPED, robot="*")
         self._follow(robot)
         bus.watch_alive(self._alive.change)
         self._thread = threading.Thread(target=self._run, name="bridge", daemon=True)
@@ -82,8 +82,10 @@ class Bridge:
                 self._deliver(messages, None)
 
     def _collect(self) -> list[Message]:
-        for ranges in self._discovery.take_all():
+        for ranges in self._sensing.take_all():
             self._follow(ranges.robot)
+        for stopped in self._stopping.take_all():
+            self._follow(stopped.robot)
         messages = [message for take in self._everyone for message in take()]
         for message in messages:
             self._follow(str(getattr(message, "robot", "")))
@@ -100,6 +102,7 @@ class Bridge:
             self._bus.subscribe(RANGES, robot=robot).take_all,
             self._bus.subscribe(HEADING, robot=robot).take_all,
             self._bus.subscribe(COMMAND, robot=robot).take_all,
+            self._bus.subscribe(STOPPED, robot=robot).take_all,
         )
 
     def _deliver(self, messages: list[Message], services: dict[str, int] | None) -> bool:

@@ -6,6 +6,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from typing import Any
 
 from services.gateway.metrics import Metrics
@@ -13,11 +14,14 @@ from services.gateway.outbox import Outbox
 from services.gateway.true_poses import TruePoses
 from shared.messages.base import Message
 from shared.messages.drive import Command, Heading
+from shared.messages.estop import EStopState
 from shared.messages.missions import Event, MissionStatus
 from shared.messages.sensors import Frame, Ranges
 from shared.messages.simulation import Truth
 
 EVENTS_KEPT = 200
+STATES: dict[type[Message], str] = {Ranges: "ranges", Heading: "heading", Command: "command"}
+"""What is kept and told as it is: the field of `RobotView`, and the name towards pages."""
 
 
 @dataclass
@@ -30,6 +34,7 @@ class RobotView:
     ranges: Ranges | None = None
     heading: Heading | None = None
     command: Command | None = None
+    estop: EStopState | None = None
     status: MissionStatus | None = None
     truth: Truth | None = None
     true_poses: TruePoses = field(default_factory=TruePoses)
@@ -99,6 +104,8 @@ class Hub:
         for kind, message in known.items():
             if message is not None:
                 outbox.offer_newest(kind, _text(kind, message.model_dump(mode="json")))
+        if view.estop is not None:
+            outbox.offer_newest("estop", _text("estop", estop_facts(view.estop)))
         if view.frame is not None:
             outbox.offer_newest("frame", _text("frame", frame_facts(view.frame)))
         for event in view.events:
@@ -112,20 +119,18 @@ class Hub:
             self.robots[robot].outboxes.discard(outbox)
 
     def _store(self, robot: str, view: RobotView, message: Message) -> None:
+        if (kind := STATES.get(type(message))) is not None:
+            setattr(view, kind, message)
+            _tell(view, kind, message.model_dump(mode="json"))
+            return
         match message:
             case Frame():
                 view.frame, view.frame_s = message, view.seen_s
                 self._metrics.frames.labels(robot).inc()
                 _tell(view, "frame", frame_facts(message))
-            case Ranges():
-                view.ranges = message
-                _tell(view, "ranges", message.model_dump(mode="json"))
-            case Heading():
-                view.heading = message
-                _tell(view, "heading", message.model_dump(mode="json"))
-            case Command():
-                view.command = message
-                _tell(view, "command", message.model_dump(mode="json"))
+            case EStopState():
+                view.estop = message
+                _tell(view, "estop", estop_facts(message))
             case MissionStatus():
                 view.status = message
                 _tell(view, "status", message.model_dump(mode="json"))
@@ -153,6 +158,18 @@ def frame_facts(frame: Frame) -> dict[str, Any]:
         "width_px": frame.width_px,
         "height_px": frame.height_px,
         "lockstep": frame.lockstep,
+    }
+
+
+def estop_facts(state: EStopState) -> dict[str, Any]:
+    """An emergency stop as pages want it: the time as text, null while there never was a change."""
+    since = datetime.fromtimestamp(state.since_ns / 1e9, UTC).isoformat(timespec="milliseconds")
+    return {
+        "robot": state.robot,
+        "engaged": state.engaged,
+        "who": state.who,
+        "why": state.why,
+        "since": since if state.since_ns else None,
     }
 
 

@@ -33,7 +33,7 @@ COMMANDS: dict[str, LazyCommand] = {
     "replay": LazyCommand("experiments.recordings.replay", "Play a recording, as if live."),
     "recover": LazyCommand("experiments.recordings.recover", "Save what is in a broken recording."),
     "foxglove": LazyCommand("experiments.recordings.foxglove", "Convert a recording for Foxglove."),
-    "map": LazyCommand("experiments.maps", "List, export, import, rename and delete maps."),
+    "map": LazyCommand("experiments.maps", "List, move, check, mend and keep maps."),
 }
 
 

@@ -2,6 +2,7 @@
 
 from shared.messages.base import Message
 from shared.messages.drive import Command, Heading
+from shared.messages.estop import EStopRequest, EStopState
 from shared.messages.features import ExtractRequest, Features
 from shared.messages.maps import MapDelta, MapReply, MapRequest, MissionRecord, MissionRecordRequest
 from shared.messages.matching import MatchReply, MatchRequest
@@ -18,6 +19,8 @@ ALL: tuple[type[Message], ...] = (
     MatchReply,
     Heading,
     Command,
+    EStopRequest,
+    EStopState,
     MissionRequest,
     MissionStatus,
     Event,
@@ -35,6 +38,8 @@ ALL: tuple[type[Message], ...] = (
 __all__ = [
     "ALL",
     "Command",
+    "EStopRequest",
+    "EStopState",
     "Event",
     "ExtractRequest",
     "Features",

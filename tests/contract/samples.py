@@ -7,6 +7,8 @@ import numpy as np
 
 from shared.messages import (
     Command,
+    EStopRequest,
+    EStopState,
     Event,
     ExtractRequest,
     Features,
@@ -211,6 +213,8 @@ def samples() -> dict[type[Message], Message]:
             method="epipolar",
         ),
         Command(**drive, steer_rad=0.25, wheel_speed_radps=4.0, avoiding=True),
+        EStopRequest(**at, action="clear", who="anna", why="the floor is free"),
+        EStopState(**at, robot="r1", engaged=True, who="anna", why="a child", since_ns=STAMP_NS),
         MissionRequest(
             **at,
             action="goto",

@@ -104,7 +104,7 @@ def test_an_edge_shows_both_pictures_and_its_matches(page: Any, explored: Explor
     page.wait_for_selector("#inspector figure canvas", timeout=WAIT_MS)
     page.check("#true-positions")
     page.wait_for_timeout(500)
-    assert page.is_checked("#true-positions"), page.inner_text("#answer")
+    assert page.is_checked("#true-positions"), page.inner_text("#said")
 
 
 def test_a_deleted_place_comes_back_by_undo_and_the_history_says_who(page: Any, copy_of_map: str) -> None:
@@ -128,6 +128,17 @@ def test_a_deleted_place_comes_back_by_undo_and_the_history_says_who(page: Any, 
     page.locator("#revisions input[type=checkbox]").nth(1).check()
     page.click("#compare")
     page.wait_for_selector("#comparison:has-text('1 places added')", timeout=WAIT_MS)
+
+
+def test_the_stop_button_stops_until_a_person_lets_the_robot_go(page: Any) -> None:
+    page.click("#estop")
+    page.wait_for_selector("#estop-notice:not([hidden])", timeout=WAIT_MS)
+    page.reload()
+    page.wait_for_selector("#estop-notice:has-text('Emergency stop by console')", timeout=WAIT_MS)
+    page.click("#estop-clear")
+    page.fill("#ask-value", "ada")
+    page.click("#ask-yes")
+    page.wait_for_selector("#estop-notice", state="hidden", timeout=WAIT_MS)
 
 
 def test_a_recording_plays_as_if_live(page: Any, explored: Explored, tmp_path: Any) -> None:

@@ -42,6 +42,10 @@ class Watch:
         rest = [time_s for time_s, speed in self.speeds if time_s >= since_s and speed < STILL_MPS]
         return rest[0] - since_s if rest else None
 
+    def fastest_mps(self, since_s: float) -> float:
+        """Highest true speed from `since_s` on; infinite when nothing was heard: silence proves nothing."""
+        return max((speed for time_s, speed in self.speeds if time_s >= since_s), default=float("inf"))
+
     def back_after_s(self, service: str, since_s: float, quiet_s: float = 0.05) -> float | None:
         """Time from `since_s` to the service's first message; those already under way do not count."""
         later = [time_s for time_s in self.arrivals.get(service, []) if time_s > since_s + quiet_s]

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel
 
-from services.gateway.live import RobotView, frame_facts
+from services.gateway.live import RobotView, estop_facts, frame_facts
 from services.gateway.problems import ProblemError
 from services.gateway.snapshot import jpeg_of
 from services.gateway.state import Gateway, GatewayDep, MapQuery, RobotPath
@@ -120,6 +120,7 @@ def _facts(robot: str, view: RobotView) -> dict[str, Any]:
         "frame": None
         if view.frame is None
         else {**frame_facts(view.frame), "age_s": round(now_s - view.frame_s, 3)},
+        "estop": None if view.estop is None else estop_facts(view.estop),
         "mission": None if view.status is None else view.status.model_dump(mode="json"),
         "heading": None if view.heading is None else view.heading.model_dump(mode="json"),
         "ranges": None if view.ranges is None else view.ranges.model_dump(mode="json"),

@@ -9,11 +9,14 @@ export function confirmed(question, yes) {
   return open($("confirm-dialog")).then((answer) => answer === "yes");
 }
 
-/** Resolves to the text, or null. */
-export async function asked(question, value, hint) {
+/** Resolves to the text, or null. `pattern` is what the text must match. */
+export async function asked(question, value, hint, yes, pattern = "") {
   $("ask-text").textContent = question;
   $("ask-hint").textContent = hint;
   $("ask-value").value = value;
+  $("ask-yes").textContent = yes;
+  if (pattern) $("ask-value").pattern = pattern;
+  else $("ask-value").removeAttribute("pattern");
   return (await open($("ask-dialog"))) === "yes" ? $("ask-value").value.trim() : null;
 }
 

@@ -97,7 +97,7 @@ export class Goal {
     });
     $("goal-answer").replaceChildren(
       html("p", { class: `verdict ${answer.verdict}` }, TEXT.verdict[answer.verdict]),
-      rows.length ? table(["place", "agree", "trust", "direction"], rows) : html("p", { class: "answer" }, TEXT.noPlace),
+      rows.length ? table(TEXT.goalColumns, rows) : html("p", { class: "answer" }, TEXT.noPlace),
     );
     $("go").disabled = false;
     this.found(answer.nodes.filter((node) => node.status === "ok" || node.status === "no_baseline").map((node) => node.node_id));

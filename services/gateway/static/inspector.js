@@ -7,7 +7,7 @@ import { drawPair } from "./pair.js";
 import { TEXT } from "./text.js";
 
 export class Inspector {
-  /** `goThere(node)` starts a mission, `changed()` hears that the map was edited, `say(text, bad)` of refusals. */
+  /** `goThere(node)` starts a mission, `changed()` hears that the map was edited, `say(text)` of refusals. */
   constructor(graph, goThere, changed, say) {
     Object.assign(this, { graph, goThere, changed, say, shown: {} });
     $("find-form").addEventListener("submit", (event) => { event.preventDefault(); this.find($("find").value.trim()); });
@@ -27,7 +27,7 @@ export class Inspector {
     const edge = b !== undefined && this.graph.edges.find((one) => one.a === Math.min(a, b) && one.b === Math.max(a, b));
     if (edge) this.open({ edge: [edge.a, edge.b] });
     else if (b === undefined && this.graph.nodes.some((node) => node.node_id === a)) this.open({ node: a });
-    else this.say(TEXT.unknownPlace(text), true);
+    else this.say(TEXT.unknownPlace(text));
   }
 
   open(what) {
@@ -88,7 +88,7 @@ export class Inspector {
       const walk = html("button", { type: "button", class: "link", onclick: () => this.open({ edge: [edge.a, edge.b] }) }, String(there));
       return [walk, `${side(heading)}${edge.suspended ? `, ${TEXT.suspended}` : ""}`, String(edge.inliers ?? "–"), (edge.confidence ?? 0).toFixed(2)];
     });
-    return html("div", { class: "scroll", tabindex: 0 }, table(["to", "direction", "inliers", "trust"], rows));
+    return html("div", { class: "scroll", tabindex: 0 }, table(TEXT.edgeColumns, rows));
   }
 
   edge(a, b) {
@@ -102,7 +102,7 @@ export class Inspector {
     const ends = [a, b].map((id) => html("button", { type: "button", onclick: () => this.open({ node: id }) }, TEXT.place(id)));
     return [canvas, answer,
       html("p", {}, `${TEXT.headings(side(edge.heading_ab_rad), side(edge.heading_ba_rad))}${edge.suspended ? `; ${TEXT.suspended}` : ""}`),
-      table(["evidence", ""], facts),
+      table(TEXT.evidenceColumns, facts),
       html("div", { class: "row" }, ...ends, this.deleter(TEXT.deleteEdge(a, b), `edges/${a}/${b}`))];
   }
 
@@ -127,7 +127,7 @@ export class Inspector {
         this.say("");
         this.close();
       } catch (problem) {
-        this.say(problem.message, true);
+        this.say(problem.message);
       }
       this.changed();
     };

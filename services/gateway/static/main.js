@@ -2,6 +2,7 @@
 
 import { get } from "./api.js";
 import { $, html } from "./dom.js";
+import { EStop } from "./estop.js";
 import { Events } from "./events.js";
 import { Goal } from "./goal.js";
 import { Graph } from "./graph.js";
@@ -21,10 +22,12 @@ import { Views } from "./views.js";
 const SERVICES = ["simulator", "features", "map_store", "planner", "drive", "gateway"];
 const DEFAULT_ROBOT = "r1";
 const ROBOTS_MS = 5000;
+const SAID_MS = 8000;
 
 let robot = "";
 let connected = false;
 let shownMap = "";
+let saying = 0;
 
 const where = () => ({ robot, map: maps.name });
 const panorama = new Panorama();
@@ -33,12 +36,13 @@ const history = new History();
 const events = new Events(showMoment);
 const matches = new Matches(where, (match) => polar.takeMatch(match));
 const graph = new Graph((what) => inspector.open(what));
-const inspector = new Inspector(graph, (node) => mission.goToNode(node), () => graph.load(), (text, bad) => mission.say(text, bad));
+const inspector = new Inspector(graph, (node) => mission.goToNode(node), () => graph.load(), say);
 const mission = new Mission(where, (status) => maps.want(status.map));
 const goal = new Goal(where, (ids) => graph.highlight(ids), (status) => mission.take(status));
 const maps = new Maps(showMap, () => views.name === "maps" && mapTable.show());
 const mapTable = new MapTable(maps);
 const runs = new Runs();
+const estop = new EStop(where, say);
 const live = new Live(heard, changed);
 const views = new Views(viewChanged);
 
@@ -73,12 +77,20 @@ async function placeTruly(wanted) {
   try {
     const { positions } = await get(`/api/robots/${robot}/true-positions?map=${maps.name}`);
     if (Object.keys(positions).length) return graph.place(positions);
-    mission.say(TEXT.noTruth, true);
+    say(TEXT.noTruth);
   } catch (problem) {
-    mission.say(problem.message, true);
+    say(problem.message);
   }
   $("true-positions").checked = false;
   return undefined;
+}
+
+/** A refusal, in every view, for a while; an empty text takes it back. */
+function say(text) {
+  clearTimeout(saying);
+  $("said").textContent = text;
+  $("said").hidden = !text;
+  if (text) saying = setTimeout(() => say(""), SAID_MS);
 }
 
 function heard(type, data) {
@@ -86,6 +98,7 @@ function heard(type, data) {
   else if (type === "ranges") polar.takeRanges(data);
   else if (type === "heading") { polar.takeHeading(data); panorama.mark(data); history.takeHeading(data); }
   else if (type === "command") { polar.takeCommand(data); history.takeCommand(data); }
+  else if (type === "estop") estop.take(data);
   else if (type === "event") events.take(data);
   else if (type === "services") showServices(data);
   else if (type === "status") {
@@ -124,7 +137,7 @@ function checkAge() {
 
 function follow(name) {
   robot = name;
-  for (const part of [panorama, polar, events, mission, history, matches]) part.clear();
+  for (const part of [panorama, polar, events, mission, history, matches, estop]) part.clear();
   graph.status = null;
   live.follow(name);
 }

@@ -42,12 +42,12 @@ export class MapTable {
       String(map.nodes), String(map.edges), String(map.revision),
       html("time", {}, new Date(map.changed_ns / 1e6).toLocaleString()),
       html("span", { class: "row" },
-        html("button", { type: "button", onclick: () => this.rename(map.name) }, "Rename"),
-        html("a", { class: "button", href: `/api/maps/${map.name}/export`, download: "" }, "Export"),
+        html("button", { type: "button", onclick: () => this.rename(map.name) }, TEXT.rename),
+        html("a", { class: "button", href: `/api/maps/${map.name}/export`, download: "" }, TEXT.export),
         html("button", { type: "button", class: "danger", onclick: () => this.remove(map.name) }, TEXT.confirmDelete)),
     ]);
     $("maps-table").replaceChildren(rows.length
-      ? table(["map", "places", "connections", "revision", "changed", ""], rows)
+      ? table(TEXT.mapColumns, rows)
       : html("p", { class: "quiet" }, TEXT.noMaps));
     for (const id of ["merge-into", "merge-other"]) {
       const chosen = $(id).value;
@@ -65,7 +65,7 @@ export class MapTable {
 
   async revisions() {
     const { name } = this.maps;
-    $("revisions-title").textContent = name ? `History of ${name}` : "History";
+    $("revisions-title").textContent = TEXT.historyOf(name);
     for (const id of ["undo", "compare"]) $(id).disabled = !name;
     if (!name) return $("revisions").replaceChildren();
     let revisions = [];
@@ -81,7 +81,7 @@ export class MapTable {
       String(revision.revision), revision.author || "–", html("time", {}, new Date(revision.stamp_ns / 1e6).toLocaleString()),
       revision.undoes ? TEXT.undoes(revision.undoes) : TEXT.revision(revision),
     ]);
-    return $("revisions").replaceChildren(table(["", "revision", "by", "when", "what"], rows));
+    return $("revisions").replaceChildren(table(TEXT.revisionColumns, rows));
   }
 
   pick(revision, on) {
@@ -95,7 +95,7 @@ export class MapTable {
   }
 
   async rename(name) {
-    const next = await asked(TEXT.renameMap(name), name, TEXT.mapName);
+    const next = await asked(TEXT.renameMap(name), name, TEXT.mapName, TEXT.rename, TEXT.mapPattern);
     if (!next || next === name) return;
     await this.act(async () => {
       await call("PATCH", `/api/maps/${name}`, JSON.stringify({ name: next }), "application/json");

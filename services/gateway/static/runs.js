@@ -22,7 +22,7 @@ export class Runs {
       Object.entries(run.figures).map(([name, value]) => `${name.replaceAll("_", " ")} ${number(value)}`).join(", "),
     ]);
     $("runs").replaceChildren(rows.length
-      ? table(["ended", "run", "map", "outcome", "figures"], rows)
+      ? table(TEXT.runColumns, rows)
       : html("p", { class: "quiet" }, TEXT.noRuns));
   }
 }

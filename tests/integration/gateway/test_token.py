@@ -28,6 +28,8 @@ def ask(address: str, method: str, path: str, **headers: str) -> httpx.Response:
         ("POST", "/api/robots/r1/missions"),
         ("POST", "/api/robots/r1/missions/goto?map=flat"),
         ("POST", "/api/robots/r1/missions/cancel"),
+        ("POST", "/api/robots/r1/estop"),
+        ("DELETE", "/api/robots/r1/estop?who=anna"),
         ("POST", "/api/robots/r1/goal-check?map=flat"),
         ("POST", "/api/maps"),
         ("POST", "/api/maps/import"),

@@ -9,10 +9,10 @@ import time
 import pytest
 
 from shared.bus import Bus, open_bus, wait_until
-from shared.messages import Command, SimulationRequest
+from shared.messages import Command, EStopState, SimulationRequest
 from shared.messages.simulation import Pose
 from shared.queries import RefusedError
-from shared.topics import COMMAND, FRAME, RANGES, SIMULATION, TRUTH
+from shared.topics import COMMAND, FRAME, RANGES, SIMULATION, STANDING, STOPPED, TRUTH
 
 pytestmark = pytest.mark.render
 START_S = 90.0
@@ -25,6 +25,8 @@ class Peer:
         self.bus = bus
         self._in = [bus.subscribe(topic, robot="r1") for topic in (FRAME, RANGES, TRUTH)]
         self._commands = bus.publisher(COMMAND, robot="r1")
+        self._stopped = bus.publisher(STOPPED, robot="r1")
+        self.standing = bus.subscribe(STANDING, robot="r1")
         self.frame = self.ranges = self.truth = None
         self.frames = 0
 
@@ -52,6 +54,9 @@ class Peer:
             )
         )
 
+    def drive_says(self, seq, engaged, who=""):
+        self._stopped.put(EStopState(robot="r1", seq=seq, engaged=engaged, who=who))
+
     def ask(self, **request):
         return self.bus.ask(SIMULATION, SimulationRequest(**request), timeout_s=20.0, robot="r1")
 
@@ -71,6 +76,7 @@ def start(router_endpoint, room_file, tmp_path):
             "SIMULATOR_LOCKSTEP": str(lockstep).lower(),
             "SIMULATOR_REPEAT_S": "0.3",
             "SIMULATOR_CACHE_DIR": str(tmp_path / "cache"),
+            "SIMULATOR_STATE_DIR": str(tmp_path / "state"),
         }
         manager = open_bus(router_endpoint)
         peer = Peer(manager.__enter__())
@@ -135,7 +141,7 @@ def test_real_time_runs_by_itself_and_stops_when_commands_end(start):
     peer = start(lockstep=False)
     assert not peer.frame.lockstep
     peer.wait_for(lambda: peer.truth is not None and peer.frame.seq > 3)
-    peer.command(0, steer_rad=1.0, wheel_speed_radps=5.0, ttl_ms=300)
+    peer.command(peer.frame.seq, steer_rad=1.0, wheel_speed_radps=5.0, ttl_ms=300)
     peer.wait_for(lambda: peer.truth.speed_mps > 0.1)
     moving_s = time.monotonic()
     peer.wait_for(lambda: peer.truth.speed_mps < 0.01)
@@ -154,3 +160,64 @@ def test_a_killed_simulator_finds_its_textures_and_light_again(start, tmp_path):
     assert len(before) > 5
     assert kept() == before
     assert second.frame.data == first.frame.data
+
+
+def stands(peer):
+    """Whether the robot says that its emergency stop is engaged; it repeats its state each second."""
+    news = peer.standing.take_all()
+    return bool(news) and news[-1].engaged
+
+
+def test_while_the_emergency_stop_is_engaged_lockstep_goes_on_and_commands_move_nothing(start):
+    peer = start(lockstep=True)
+    peer.wait_for(lambda: peer.complete(0))
+    peer.drive_says(1, engaged=True)
+    peer.wait_for(lambda: stands(peer))
+    before = peer.truth
+    peer.wait_for(lambda: peer.truth.seq >= before.seq + 2)  # nobody commands: time goes on all the same
+    for _ in range(4):
+        seq = peer.frame.seq
+        peer.command(seq)
+        peer.wait_for(lambda: peer.complete(seq + 1))  # noqa: B023
+    assert peer.truth.sim_time_s >= 6 * 0.3 - 1e-6
+    assert peer.truth.pose.x_m == pytest.approx(before.pose.x_m, abs=1e-3)
+    peer.drive_says(2, engaged=False, who="anna")
+    peer.wait_for(lambda: peer.standing.take_all()[-1:] and not stands(peer))
+    x_m, seq = peer.truth.pose.x_m, peer.truth.seq
+    for seq in range(peer.frame.seq, peer.frame.seq + 4):
+        peer.command(seq)
+        peer.wait_for(lambda: peer.complete(seq + 1))  # noqa: B023
+    assert peer.truth.pose.x_m > x_m + 0.2
+
+
+def test_a_robot_that_was_killed_still_stands_and_ignores_commands(start):
+    first = start(lockstep=False)
+    first.drive_says(1, engaged=True, who="anna")
+    first.wait_for(lambda: stands(first))
+    first.process.kill()
+    first.process.wait()
+    second = start(lockstep=False)
+    second.wait_for(lambda: stands(second))
+
+    def insist():
+        second.command(second.frame.seq)
+        return second.truth.sim_time_s > 1.0
+
+    second.wait_for(insist)
+    assert second.truth.speed_mps < 0.01
+    assert second.truth.pose.x_m == pytest.approx(first.truth.pose.x_m, abs=0.01)
+
+
+def test_in_real_time_a_command_for_a_frame_of_long_ago_moves_nothing(start):
+    peer = start(lockstep=False)
+    peer.wait_for(lambda: peer.truth is not None and peer.truth.sim_time_s > 4.5)
+    for seq in (1, peer.frame.seq + 1000):  # held up on its way; from before the robot was restarted
+        until_s = peer.truth.sim_time_s + 0.5
+
+        def insist():
+            peer.command(seq)  # noqa: B023
+            return peer.truth.sim_time_s > until_s  # noqa: B023
+
+        peer.wait_for(insist)
+        assert peer.truth.speed_mps < 0.01
+    peer.wait_for(lambda: (peer.command(peer.frame.seq), peer.truth.speed_mps > 0.1)[1])

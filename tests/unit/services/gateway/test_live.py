@@ -7,6 +7,7 @@ import pytest
 from services.gateway.live import Hub
 from services.gateway.metrics import Metrics
 from shared.messages.drive import Heading
+from shared.messages.estop import EStopState
 from shared.messages.missions import Event, MissionStatus
 from shared.messages.sensors import Frame
 
@@ -34,6 +35,26 @@ async def test_who_joins_late_hears_what_is_known() -> None:
     assert "data" not in newest["frame"]
     assert newest["status"]["state"] == "running"
     assert newest["services"] == {"planner": 1}
+
+
+@pytest.mark.asyncio
+async def test_who_joins_late_hears_of_an_emergency_stop_and_of_its_end() -> None:
+    mine = hub()
+    at = {"who": "anna", "why": "a child", "since_ns": 1_700_000_000_500_000_000}
+    mine.take([EStopState(seq=1, robot="r1", engaged=True, **at)])
+    outbox = mine.join("r1")
+    assert outbox is not None
+    heard = {item["type"]: item["data"] for item in map(json.loads, await outbox.take())}
+    assert heard["estop"] == {
+        "robot": "r1",
+        "engaged": True,
+        "who": "anna",
+        "why": "a child",
+        "since": "2023-11-14T22:13:20.500+00:00",
+    }
+    mine.take([EStopState(seq=2, robot="r1", engaged=False)])
+    (news,) = map(json.loads, await outbox.take())
+    assert (news["type"], news["data"]["engaged"], news["data"]["since"]) == ("estop", False, None)
 
 
 @pytest.mark.asyncio

@@ -1,0 +1,92 @@
+"""The emergency stop: anybody who may write engages it, a person with a name clears it."""
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
+
+from services.gateway.bodies import read_json
+from services.gateway.live import estop_facts
+from services.gateway.problems import ProblemError
+from services.gateway.state import Gateway, GatewayDep, RobotPath
+from shared.messages import EStopRequest
+from shared.topics import ESTOP
+
+router = APIRouter(tags=["robots"])
+
+TIMEOUT_S = 2.0
+LONGEST_WHO, LONGEST_WHY = 64, 400
+
+Who = Annotated[str, Query(max_length=LONGEST_WHO, description="name of the person who looked")]
+
+
+class Engage(BaseModel):
+    """Body of a stop, which may be left out. Long texts are cut: a stop is never refused for its reason."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    who: str = "gateway"
+    why: str = ""
+
+
+class Clear(BaseModel):
+    """Body of a clearance."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    who: str = Field(default="", max_length=LONGEST_WHO)
+    why: str = Field(default="", max_length=LONGEST_WHY)
+
+
+class EStopAnswer(BaseModel):
+    """How it stands; `since` is the time of the last change by the robot's drive service, null before any."""
+
+    robot: str
+    engaged: bool
+    who: str
+    why: str
+    since: AwareDatetime | None
+
+
+def _body(kind: type[BaseModel]) -> dict[str, Any]:
+    content = {"application/json": {"schema": kind.model_json_schema()}}
+    return {"requestBody": {"required": False, "content": content}}
+
+
+@router.get("/api/robots/{robot}/estop")
+async def show_estop(robot: RobotPath, gateway: GatewayDep) -> EStopAnswer:
+    """Whether the emergency stop is engaged, by whom and why."""
+    return await _ask(gateway, robot, EStopRequest(action="status"))
+
+
+@router.post("/api/robots/{robot}/estop", openapi_extra=_body(Engage))
+async def engage_estop(request: Request, robot: RobotPath, gateway: GatewayDep) -> EStopAnswer:
+    """Stop the robot now; it stands until a person clears the stop, whatever restarts."""
+    wish = Engage()
+    if "content-type" in request.headers:
+        wish = await read_json(request, Engage, gateway.settings.upload_timeout_s)
+    engage = EStopRequest(action="engage", who=wish.who[:LONGEST_WHO], why=wish.why[:LONGEST_WHY])
+    return await _ask(gateway, robot, engage)
+
+
+@router.delete("/api/robots/{robot}/estop", openapi_extra=_body(Clear))
+async def clear_estop(request: Request, robot: RobotPath, gateway: GatewayDep, who: Who = "") -> EStopAnswer:
+    """Let the robot go: `who` names the person who saw that it may. A paused mission stays paused."""
+    wish = Clear(who=who)
+    if "content-type" in request.headers:
+        wish = await read_json(request, Clear, gateway.settings.upload_timeout_s)
+    name = (wish.who or who).strip()
+    if not name:
+        raise ProblemError(
+            422,
+            "who_required",
+            expected="the name of the person who clears the stop, in the body or as ?who=",
+            got="none",
+            next_step="look whether the robot may move, then clear it in your name",
+        )
+    return await _ask(gateway, robot, EStopRequest(action="clear", who=name, why=wish.why))
+
+
+async def _ask(gateway: Gateway, robot: str, request: EStopRequest) -> EStopAnswer:
+    state = await gateway.asker.ask("drive", ESTOP, request, TIMEOUT_S, robot=robot)
+    return EStopAnswer(**estop_facts(state))

@@ -1,0 +1,88 @@
+"""A drive process on a bus of its own, and the planner and robot it talks to."""
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from shared.bus import Bus, open_bus, wait_until
+from shared.messages import Command, EStopRequest, EStopState, Heading, Ranges
+from shared.topics import COMMAND, ESTOP, HEADING, RANGES, STANDING, STOPPED
+
+START_S = 20.0
+
+
+class Neighbours:
+    """Planner, robot and person in one session."""
+
+    def __init__(self, bus: Bus) -> None:
+        self.bus = bus
+        self._headings, self._ranges = bus.publisher(HEADING, robot="r1"), bus.publisher(RANGES, robot="r1")
+        self.standing = bus.publisher(STANDING, robot="r1")
+        self._commands = bus.subscribe(COMMAND, robot="r1")
+        self.stopped = bus.subscribe(STOPPED, robot="r1")
+
+    def see(self, seq: int, *, stamp_ns: int = 0, lockstep: bool = False) -> None:
+        """Distances of frame `seq`, measured now unless a time is given; nothing is near."""
+        angles = tuple(k * 0.5 for k in range(12))
+        self._ranges.put(
+            Ranges(
+                seq=seq, stamp_ns=stamp_ns or time.time_ns(), robot="r1", lockstep=lockstep,
+                angles_rad=angles, distances_m=(4.0,) * 12, max_range_m=4.0,
+            )
+        )  # fmt: skip
+
+    def wish(
+        self, seq: int, *, stamp_ns: int = 0, epoch: int = 1, age_s: float = 0.0, heading_rad: float = 0.5
+    ) -> None:
+        """A heading from frame `seq`, taken `age_s` ago."""
+        self._headings.put(
+            Heading(
+                seq=seq, stamp_ns=stamp_ns or time.time_ns() - int(age_s * 1e9), robot="r1", epoch=epoch,
+                heading_rad=heading_rad,
+            )
+        )  # fmt: skip
+
+    def commands(self, during_s: float, act: Callable[[], None] = lambda: None) -> list[Command]:
+        """All commands of a while in which `act` is done again and again."""
+        deadline_s, came = time.monotonic() + during_s, []
+        while time.monotonic() < deadline_s:
+            act()
+            time.sleep(0.03)
+            came += self._commands.take_all()
+        return came
+
+    def drives(self, act: Callable[[], None]) -> bool:
+        """Whether `act`, repeated, makes drive turn the wheels."""
+        return wait_until(lambda: any(c.wheel_speed_radps for c in self.commands(0.1, act)), 10.0)
+
+    def estop(self, action: str, who: str = "", why: str = "") -> EStopState:
+        return self.bus.ask(ESTOP, EStopRequest(action=action, who=who, why=why), 5.0, robot="r1")
+
+
+@pytest.fixture
+def neighbours(router_endpoint: str) -> Iterator[Neighbours]:
+    with open_bus(router_endpoint) as bus:
+        yield Neighbours(bus)
+
+
+@pytest.fixture
+def start(router_endpoint: str, tmp_path: Path, neighbours: Neighbours) -> Iterator[Callable[[], object]]:
+    """Start a drive process with the same state folder each time; returns it once it is alive."""
+    processes: list[subprocess.Popen[bytes]] = []
+
+    def launch() -> subprocess.Popen[bytes]:
+        state = {"TOPNAV_ENDPOINT": router_endpoint, "DRIVE_STATE_DIR": str(tmp_path / "state")}
+        before = len(neighbours.bus.alive("drive"))
+        processes.append(subprocess.Popen([sys.executable, "-m", "services.drive"], env=os.environ | state))
+        assert wait_until(lambda: len(neighbours.bus.alive("drive")) > before, START_S)
+        return processes[-1]
+
+    yield launch
+    for process in processes:
+        process.kill()
+        process.wait()

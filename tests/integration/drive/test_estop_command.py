@@ -1,0 +1,39 @@
+"""`topnav estop` at the shell, against a drive process and against nobody."""
+
+import pytest
+from typer.testing import CliRunner
+
+from experiments.estop import app
+
+
+@pytest.fixture
+def topnav_estop(router_endpoint):
+    def run(*words):
+        return CliRunner().invoke(app, [*words, "--endpoint", router_endpoint])
+
+    return run
+
+
+def test_engage_status_and_clear(start, topnav_estop):
+    start()
+    assert topnav_estop("--status").exit_code == 0
+    engaged = topnav_estop("--why", "a child")
+    assert engaged.exit_code == 0
+    assert "r1: engaged since" in engaged.output
+    status = topnav_estop("--status")
+    assert status.exit_code == 1
+    assert "a child" in status.output
+    nobody = topnav_estop("--clear")
+    assert nobody.exit_code == 2
+    assert "--who NAME" in nobody.output
+    cleared = topnav_estop("--clear", "--who", "anna")
+    assert cleared.exit_code == 0
+    assert "by anna" in cleared.output
+    assert topnav_estop("--status").exit_code == 0
+
+
+@pytest.mark.parametrize("words", [[], ["--status"], ["--clear", "--who", "anna"]])
+def test_without_a_drive_service_it_says_what_stops_the_robot(topnav_estop, words):
+    answer = topnav_estop(*words)
+    assert answer.exit_code == 2
+    assert "no drive service answers: the robot's own time-out stops it" in answer.output

@@ -1,0 +1,87 @@
+"""The emergency stop over HTTP, and what pages hear of it."""
+
+import json
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+from websockets.sync.client import connect
+
+from shared.bus import Bus, wait_until
+from shared.estop.sides import StopDesk
+from tests.integration.gateway.standins import Peer
+
+PATH = "/api/robots/e1/estop"
+
+
+@pytest.fixture(scope="module")
+def drive(endpoint: str) -> Iterator[None]:
+    """A drive service that only knows the emergency stop."""
+
+    def setup(bus: Bus) -> Callable[[], None]:
+        desk = StopDesk(bus, "e1", Path(folder))
+        return lambda: desk.turn(time.monotonic())
+
+    with tempfile.TemporaryDirectory() as folder, Peer(endpoint, "drive", setup):
+        yield
+
+
+@pytest.fixture
+def clear(http: httpx.Client, drive: None) -> Iterator[httpx.Client]:  # noqa: ARG001
+    """A client; the stop is clear before and after."""
+    yield http
+    assert http.delete(PATH, params={"who": "test"}).status_code == 200
+
+
+def test_engage_look_and_clear(clear: httpx.Client) -> None:
+    engaged = clear.post(PATH, json={"why": "a child", "who": "anna"})
+    assert engaged.status_code == 200
+    assert engaged.json() | {"since": None} == {
+        "robot": "e1",
+        "engaged": True,
+        "who": "anna",
+        "why": "a child",
+        "since": None,
+    }
+    assert clear.get(PATH).json() == engaged.json()
+    cleared = clear.request("DELETE", PATH, json={"who": "bert", "why": "looked"})
+    assert cleared.status_code == 200
+    assert (cleared.json()["engaged"], cleared.json()["who"]) == (False, "bert")
+    assert cleared.json()["since"] > engaged.json()["since"]
+
+
+def test_a_stop_needs_no_body_and_no_reason_is_too_long_for_it(clear: httpx.Client) -> None:
+    assert clear.post(PATH).json()["engaged"]
+    clear.delete(PATH, params={"who": "anna"})
+    assert clear.post(PATH, json={"why": "x" * 1000}).json()["why"] == "x" * 400
+
+
+@pytest.mark.parametrize("who", [None, "", "  "])
+def test_clearing_needs_a_name(clear: httpx.Client, who: str | None) -> None:
+    clear.post(PATH)
+    answer = clear.delete(PATH, params={} if who is None else {"who": who})
+    assert (answer.status_code, answer.json()["title"]) == (422, "who required")
+    assert clear.get(PATH).json()["engaged"]
+
+
+def test_without_drive_it_says_so(http: httpx.Client) -> None:
+    answer = http.post("/api/robots/nobody/estop")
+    assert (answer.status_code, answer.json()["service"]) == (503, "drive")
+
+
+def test_pages_hear_of_it_on_joining_and_on_change(clear: httpx.Client, gateway: str) -> None:
+    def heard(socket: object, engaged: bool) -> bool:
+        message = json.loads(socket.recv(timeout=10.0))  # type: ignore[attr-defined]
+        return message["type"] == "estop" and message["data"]["engaged"] is engaged
+
+    clear.post(PATH, json={"why": "a child"})
+    known = lambda: (clear.get("/api/robots/e1").json().get("estop") or {}).get("engaged")  # noqa: E731
+    assert wait_until(lambda: bool(known()), 10.0)
+    url = gateway.replace("http", "ws", 1) + "/api/robots/e1/live"
+    with connect(url, proxy=None) as socket:
+        assert wait_until(lambda: heard(socket, True), 10.0)
+        clear.delete(PATH, params={"who": "anna"})
+        assert wait_until(lambda: heard(socket, False), 10.0)
