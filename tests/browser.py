@@ -23,7 +23,8 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
-WAIT_MS = 20_000
+WAIT_MS = 60_000
+"""Long, for machines that render and drive meanwhile; a condition that holds is not waited for."""
 
 
 @contextmanager

@@ -87,7 +87,7 @@ def test_a_decision_leads_to_its_moment_and_the_charts(page: Any) -> None:
     page.wait_for_selector("#charts .uplot", timeout=WAIT_MS)
     assert page.locator("#charts .uplot").count() == 3
     page.select_option("#kind", "succeeded")
-    page.wait_for_selector("#events:not(:has(li:nth-child(2))) li.good", timeout=WAIT_MS)
+    page.wait_for_selector("#events:not(:has(li:not(.good))) li.good b:text-is('succeeded')", timeout=WAIT_MS)
     page.fill("#event-text", "no such words")
     page.wait_for_selector("#events li.quiet", timeout=WAIT_MS)
 
