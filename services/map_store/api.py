@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from fastapi import APIRouter, Depends, FastAPI
 
-from services.map_store import archive_routes, graph_routes, history_routes, map_routes, problems
+from services.map_store import archive_routes, care_routes, graph_routes, history_routes, map_routes, problems
 from services.map_store.body_limit import BodyLimit
 from services.map_store.errors import UnavailableError
 from services.map_store.guard import writer_guard
@@ -41,6 +41,7 @@ def create_app(
         map_routes.build(store, write),
         history_routes.build(store, write),
         graph_routes.build(store, write),
+        care_routes.build(store, write),
         archive_routes.build(store, write, max_archive_bytes),
     ):
         app.include_router(router)

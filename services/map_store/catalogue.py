@@ -1,11 +1,14 @@
 """Maps by name: find, list, create, rename, delete. Every function works inside the caller's transaction."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
 
-from sqlalchemy import Connection, Row, delete, func, insert, select, update
+from sqlalchemy import Connection, Row, delete, insert, select, update
 
 from services.map_store import blobs
-from services.map_store.errors import ConflictError, InvalidError, MissingError
+from services.map_store.errors import ConflictError, CorruptError, InvalidError, MissingError
+from services.map_store.seals import intact, sealed
 from services.map_store.tables import edges, maps, nodes, revisions
 from shared.topics import NAME
 
@@ -14,15 +17,16 @@ LISTED = 20
 
 
 @dataclass(frozen=True)
-class MapSummary:
+class MapRecord:
     """One line of the list of maps; times are nanoseconds since the Unix epoch."""
 
+    map_id: int
     name: str
     revision: int
-    nodes: int
-    edges: int
     created_ns: int
     changed_ns: int
+    node_count: int = 0
+    edge_count: int = 0
 
 
 def check_name(name: str) -> str:
@@ -32,51 +36,73 @@ def check_name(name: str) -> str:
     return name
 
 
-def find(connection: Connection, name: str) -> Row[int, int]:
-    """`map_id` and `revision` of a map; MissingError lists what there is."""
+def label(row: Row[Any]) -> str:
+    """What a map is called, even where damage made its name one that nobody can ask for."""
+    good = isinstance(row.name, str) and NAME.match(row.name) is not None
+    return str(row.name) if good else f"damaged-{row.map_id}"
+
+
+def rows(connection: Connection) -> Sequence[Row[Any]]:
+    """The records of all maps by number. There are few, and no index that may be damaged is asked."""
+    return connection.execute(select(maps).order_by(maps.c.map_id)).all()
+
+
+def find(connection: Connection, name: str) -> MapRecord:
+    """The record of a map; MissingError lists what there is, CorruptError says that it is damaged."""
     check_name(name)
-    query = select(maps.c.map_id, maps.c.revision).where(maps.c.name == name)
-    row = connection.execute(query).first()
-    if row is None:
-        names = connection.execute(select(maps.c.name).order_by(maps.c.name).limit(LISTED)).scalars().all()
-        raise MissingError(f"no map {name!r}; maps: {list(names)}")
-    return row
+    found = rows(connection)
+    for row in found:
+        if label(row) == name:
+            return record_of(row)
+    damaged = sum(not intact(maps, row) for row in found)
+    if damaged:
+        raise CorruptError(f"no map {name!r}, and {damaged} records of maps are damaged; 'topnav map check'")
+    raise missing(connection, name)
+
+
+def missing(connection: Connection, name: str) -> MissingError:
+    """The error that lists what there is."""
+    names = sorted(label(row) for row in rows(connection))
+    return MissingError(f"no map {name!r}; maps: {names[:LISTED]}")
 
 
 def exists(connection: Connection, name: str) -> bool:
     """Whether a map of that name is there."""
-    return connection.execute(select(maps.c.map_id).where(maps.c.name == name)).first() is not None
+    return any(label(row) == name for row in rows(connection))
 
 
-def summaries(connection: Connection, name: str | None = None) -> list[MapSummary]:
-    """All maps by name, or the one that is named."""
-    node_count = select(func.count()).where(nodes.c.map_id == maps.c.map_id).scalar_subquery()
-    edge_count = select(func.count()).where(edges.c.map_id == maps.c.map_id).scalar_subquery()
-    query = select(
-        maps.c.name, maps.c.revision, node_count, edge_count, maps.c.created_ns, maps.c.changed_ns
-    ).order_by(maps.c.name)
-    if name is not None:
-        query = query.where(maps.c.name == name)
-    return [MapSummary(*row) for row in connection.execute(query)]
+def records(connection: Connection) -> list[MapRecord]:
+    """All maps by name, but those whose record is damaged."""
+    good = [record_of(row) for row in rows(connection) if intact(maps, row)]
+    return sorted(good, key=lambda record: record.name)
 
 
-def create(connection: Connection, name: str, now_ns: int) -> int:
-    """Make an empty map at revision 0 and return its id."""
+def create(connection: Connection, name: str, now_ns: int) -> MapRecord:
+    """Make an empty map at revision 0."""
     if exists(connection, check_name(name)):
         raise ConflictError(f"map {name!r} exists already; read it, or delete it first")
     values = {"name": name, "revision": 0, "created_ns": now_ns, "changed_ns": now_ns}
     key = connection.execute(insert(maps).values(values)).inserted_primary_key
     assert key is not None
-    return int(key[0])
+    record = MapRecord(int(key[0]), name, 0, now_ns, now_ns)
+    save(connection, record)
+    return record
 
 
-def rename(connection: Connection, name: str, new_name: str) -> int:
-    """Give a map another name; returns its revision."""
+def save(connection: Connection, record: MapRecord) -> None:
+    """Write the record of a map that exists."""
+    values = sealed(maps, asdict(record))
+    connection.execute(update(maps).where(maps.c.map_id == record.map_id).values(values))
+
+
+def rename(connection: Connection, name: str, new_name: str) -> MapRecord:
+    """Give a map another name."""
     found = find(connection, name)
     if exists(connection, check_name(new_name)):
         raise ConflictError(f"map {new_name!r} exists already")
-    connection.execute(update(maps).where(maps.c.map_id == found.map_id).values(name=new_name))
-    return int(found.revision)
+    renamed = replace(found, name=new_name)
+    save(connection, renamed)
+    return renamed
 
 
 def remove(connection: Connection, name: str) -> int:
@@ -86,4 +112,12 @@ def remove(connection: Connection, name: str) -> int:
         connection.execute(delete(table).where(table.c.map_id == found.map_id))
     blobs.drop(connection, found.map_id)
     connection.execute(delete(maps).where(maps.c.map_id == found.map_id))
-    return int(found.revision)
+    return found.revision
+
+
+def record_of(row: Row[Any]) -> MapRecord:
+    """The record in a row; CorruptError when it is damaged."""
+    if not intact(maps, row):
+        name = label(row)
+        raise CorruptError(f"map {name!r}: its record is damaged; 'topnav map repair {name}' mends it")
+    return MapRecord(**{name: value for name, value in row._mapping.items() if name != "seal"})

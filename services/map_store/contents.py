@@ -4,9 +4,9 @@ import logging
 from collections.abc import Sequence
 from typing import Literal
 
-from sqlalchemy import update
+from sqlalchemy import and_
 
-from services.map_store import blobs, catalogue
+from services.map_store import blobs, catalogue, quarantine
 from services.map_store.database import Database
 from services.map_store.errors import CorruptError, InvalidError, MapError, MissingError
 from services.map_store.graph import Graph, Place
@@ -75,8 +75,7 @@ class Contents:
         try:
             with self._database.write() as connection:
                 chosen = nodes.c.node_id.in_(list(damaged)[: blobs.CHUNK])
-                query = update(nodes).where(nodes.c.map_id == map_id, chosen)
-                connection.execute(query.values(quarantined=True))
+                quarantine.mark(connection, and_(nodes.c.map_id == map_id, chosen), quarantined=True)
         except MapError as error:
             log.error("map %s: quarantine not written: %s", name, error)
 

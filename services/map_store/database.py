@@ -1,60 +1,129 @@
 """Connections: one writer at a time, any number of readers. Everything that only SQLite needs is here."""
 
+import logging
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import Connection, Engine, create_engine, event, insert, select
+from sqlalchemy import Connection, Engine, create_engine, event
 from sqlalchemy.engine import URL, make_url
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
-from services.map_store import tables
-from services.map_store.errors import MapError, StorageFullError, UnavailableError
+from services.map_store import integrity, migration
+from services.map_store.errors import CorruptError, MapError, StorageFullError, UnavailableError
+
+log = logging.getLogger(__name__)
 
 BUSY_TIMEOUT_S = 5.0
+SHOWN = 5
 FULL = ("database or disk is full", "no space left", "disk full", "could not extend file")
+MALFORMED = ("malformed", "not a database", "too big")
+ADVICE = "'topnav map check' lists the damage; 'topnav map repair' or 'topnav map restore' ends it"
 
 
 class Database:
     """Transactions on the database at `url`; it is created when it is not there.
 
+    A SQLite file is read as a whole first. A damaged one is served as far as it can be read and never
+    written to, because SQLite may overwrite good pages through a bad one.
+
+    Attributes:
+        damage: what is wrong with the file.
+
     Raises:
-        UnavailableError: no connection, or tables of another version.
+        UnavailableError: no connection, or tables of a later version.
+        CorruptError: so much is damaged that nothing can be read.
     """
 
     def __init__(self, url: str) -> None:
         self._lock = threading.Lock()
         parsed = make_url(url)
-        self._writer, self._reader = _sqlite_engines(parsed) if _is_sqlite(parsed) else _engines(parsed)
-        with self.write() as connection:
-            tables.metadata.create_all(connection)
-            versions = connection.execute(select(tables.about.c.version)).scalars().all()
-            if not versions:
-                connection.execute(insert(tables.about).values(version=tables.VERSION))
-            elif versions != [tables.VERSION]:
-                raise UnavailableError(
-                    f"{parsed.render_as_string()}: tables of version {tables.VERSION} expected, got "
-                    f"{versions}; export the maps with the version that wrote them and import them here"
-                )
+        self._where = parsed.render_as_string()
+        self._sqlite = _is_sqlite(parsed)
+        self._writer, self._reader = _sqlite_engines(parsed) if self._sqlite else _engines(parsed)
+        self.damage: tuple[str, ...] = ()
+        try:
+            self.inspect()
+            if not self.damage:
+                with self.write() as connection:
+                    migration.prepare(connection)
+            with self.read() as connection:
+                migration.require(connection)
+        except MapError as error:
+            self.close()
+            raise type(error)(f"{self._where}: {error}") from error
+
+    def inspect(self) -> tuple[str, ...]:
+        """Read the whole file and note what is wrong with it."""
+        if self._sqlite:
+            try:
+                with self.read() as connection:
+                    self.damage = integrity.damage(connection)
+            except CorruptError as error:  # so damaged that the inspection itself ended
+                self.damage = (str(error),)
+        for line in self.damage[:SHOWN]:
+            log.error("%s: %s", self._where, line)
+        return self.damage
+
+    def rebuild_indexes(self, then: Callable[[Connection], None]) -> None:
+        """Write the indexes of a damaged file anew and call `then` in the same transaction.
+
+        Raises:
+            CorruptError: that does not make it sound; nothing was changed.
+        """
+        with self._lock, self._translated(), self._writer.begin() as connection:
+            integrity.rebuild_indexes(connection)
+            damage = integrity.damage(connection)
+            if damage:
+                raise CorruptError(f"more than indexes is damaged: {damage[0]}; restore a backup")
+            then(connection)
+        self.inspect()
+
+    def dangling(self) -> tuple[str, ...]:
+        """Rows that refer to a row that is not there; a server checks that by itself."""
+        if not self._sqlite:
+            return ()
+        with self.read() as connection:
+            return integrity.dangling(connection)
 
     @contextmanager
     def write(self) -> Iterator[Connection]:
         """One transaction of the only writer: all of it or nothing."""
-        with self._lock, _translated(), self._writer.begin() as connection:
+        if self.damage:
+            raise CorruptError(f"nothing was written, the file is damaged: {self.damage[0]}; {ADVICE}")
+        with self._lock, self._translated(), self._writer.begin() as connection:
             yield connection
 
     @contextmanager
     def read(self) -> Iterator[Connection]:
         """One consistent view, never waiting for the writer."""
-        with _translated(), self._reader.begin() as connection:
+        with self._translated(), self._reader.begin() as connection:
             yield connection
 
     def close(self) -> None:
         """Close every connection."""
         self._writer.dispose()
         self._reader.dispose()
+
+    @contextmanager
+    def _translated(self) -> Iterator[None]:
+        """Turn the driver's errors into ours."""
+        try:
+            yield
+        except MapError:
+            raise
+        except UnicodeDecodeError as error:  # SQLite names the damaged thing with its damaged name
+            raise CorruptError(f"database: its description is damaged; {ADVICE}") from error
+        except SQLAlchemyError as error:
+            cause = str(error.orig if isinstance(error, DBAPIError) else error).strip()
+            if any(sign in cause.lower() for sign in FULL):
+                told = f"nothing was written: {cause}: {self._where}; free some space, reads go on"
+                raise StorageFullError(told) from error
+            if any(sign in cause.lower() for sign in MALFORMED):
+                raise CorruptError(f"database: {cause[:200]}; {ADVICE}") from error
+            raise UnavailableError(f"database: {type(error).__name__}: {cause[:200]}") from error
 
 
 def _is_sqlite(url: URL) -> bool:
@@ -80,6 +149,7 @@ def _sqlite_engine(url: URL, begin: str) -> Engine:
     @event.listens_for(engine, "connect")
     def _prepare(connection: Any, _record: object) -> None:
         connection.isolation_level = None  # the driver shall not begin transactions by itself
+        connection.text_factory = text_of
         for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
             connection.execute(f"PRAGMA {pragma}").close()
 
@@ -90,15 +160,6 @@ def _sqlite_engine(url: URL, begin: str) -> Engine:
     return engine
 
 
-@contextmanager
-def _translated() -> Iterator[None]:
-    """Turn the driver's errors into ours."""
-    try:
-        yield
-    except MapError:
-        raise
-    except SQLAlchemyError as error:
-        cause = str(error.orig if isinstance(error, DBAPIError) else error).strip()
-        if any(sign in cause.lower() for sign in FULL):
-            raise StorageFullError(f"nothing was written: {cause}; free some space, reads go on") from error
-        raise UnavailableError(f"database: {type(error).__name__}: {cause[:200]}") from error
+def text_of(data: bytes) -> str:
+    """Damaged text need not be UTF-8; it must reach the checks as text that differs, not as an exception."""
+    return data.decode("utf-8", "backslashreplace")

@@ -21,6 +21,10 @@ class CorruptError(MapError):
     """Stored bytes whose checksum does not match."""
 
 
+class GivenUpError(CorruptError):
+    """Something that was damaged and that a repair gave up."""
+
+
 class StorageFullError(MapError):
     """No room left on the device; reads go on."""
 

@@ -29,12 +29,12 @@ def build(store: MapStore, write: Sequence[Depends]) -> APIRouter:
     @router.get("/nodes")
     def list_nodes(name: MapName, after: After = -1, limit: Limit = MAX_CONTAINER) -> list[NodeView]:
         """Nodes by number."""
-        return node_views(store.database, name, after, limit)
+        return node_views(store, name, after, limit)
 
     @router.get("/nodes/{node_id}")
     def read_node(name: MapName, node_id: NodeId) -> NodeView:
         """One node."""
-        found = node_views(store.database, name, node_id - 1, 1)
+        found = node_views(store, name, node_id - 1, 1)
         if not found or found[0].node_id != node_id:
             raise MissingError(f"map {name!r}: node {node_id} does not exist")
         return found[0]
@@ -42,7 +42,7 @@ def build(store: MapStore, write: Sequence[Depends]) -> APIRouter:
     @router.get("/edges")
     def list_edges(name: MapName) -> list[EdgeView]:
         """Edges with their evidence."""
-        return edge_views(store.database, name)
+        return edge_views(store, name)
 
     @router.delete("/nodes/{node_id}", dependencies=write)
     def delete_node(name: MapName, node_id: NodeId, author: Author = AUTHOR) -> Changed:

@@ -3,8 +3,10 @@
 import threading
 from collections import OrderedDict
 
-from sqlalchemy import Connection, Row
+from sqlalchemy import Connection
 
+from services.map_store.catalogue import MapRecord
+from services.map_store.errors import CorruptError
 from services.map_store.graph import Graph
 from services.map_store.rows import read_graph
 
@@ -18,14 +20,23 @@ class Graphs:
         self._graphs: OrderedDict[int, tuple[int, Graph]] = OrderedDict()
         self._lock = threading.Lock()
 
-    def get(self, connection: Connection, found: Row[int, int]) -> Graph:
+    def get(self, connection: Connection, found: MapRecord) -> Graph:
         """The graph of the map that `catalogue.find` found, as this transaction sees it."""
         with self._lock:
             revision, graph = self._graphs.get(found.map_id, (-1, Graph()))
         if revision != found.revision:
-            graph = read_graph(connection, found.map_id)
+            try:
+                graph = read_graph(connection, found)
+            except CorruptError as error:
+                advice = f"'topnav map repair {found.name}' mends what can be mended"
+                raise CorruptError(f"map {found.name!r}: {error}; {advice}") from None
             self.remember(found.map_id, found.revision, graph)
         return graph
+
+    def forget(self, map_id: int) -> None:
+        """Read the map again when it is asked for."""
+        with self._lock:
+            self._graphs.pop(map_id, None)
 
     def remember(self, map_id: int, revision: int, graph: Graph) -> None:
         """Keep `graph` unless a newer revision is kept already."""

@@ -18,6 +18,7 @@ KINDS: dict[type[errors.MapError], tuple[str, HTTPStatus]] = {
     errors.ConflictError: ("conflict", HTTPStatus.CONFLICT),
     errors.InvalidError: ("invalid", HTTPStatus.UNPROCESSABLE_ENTITY),
     errors.CorruptError: ("corrupt", HTTPStatus.INTERNAL_SERVER_ERROR),
+    errors.GivenUpError: ("corrupt", HTTPStatus.INTERNAL_SERVER_ERROR),
     errors.StorageFullError: ("storage-full", HTTPStatus.INSUFFICIENT_STORAGE),
     errors.UnavailableError: ("unavailable", HTTPStatus.SERVICE_UNAVAILABLE),
 }

@@ -4,62 +4,96 @@ from typing import Any
 
 import msgpack
 from pydantic import TypeAdapter
-from sqlalchemy import Connection, bindparam, delete, insert, select, update
+from sqlalchemy import Connection, Row, bindparam, delete, insert, select, update
 
-from services.map_store.blobs import checksum
-from services.map_store.errors import CorruptError
+from services.map_store.blobs import CHUNK, checksum
+from services.map_store.catalogue import MapRecord
+from services.map_store.errors import CorruptError, GivenUpError
 from services.map_store.graph import Change, Graph, Place, Step
+from services.map_store.seals import intact, matches, sealed
 from services.map_store.tables import edges, nodes
 from shared.messages.maps import Edge, Node
+
+UPDATED = ("record", "revision", "seal")
+"""What an update of a node writes; its features and thumbnail stay."""
 
 STEPS: TypeAdapter[tuple[Step, ...]] = TypeAdapter(tuple[Step, ...])
 
 
-def read_graph(connection: Connection, map_id: int) -> Graph:
-    """Load one map."""
-    columns = (nodes.c.node_id, nodes.c.record, nodes.c.features, nodes.c.thumbnail)
-    stored = connection.execute(select(*columns).where(nodes.c.map_id == map_id).order_by(nodes.c.node_id))
-    places = {
-        row.node_id: Place(
-            node=Node.model_validate_json(row.record), features=row.features, thumbnail=row.thumbnail or ""
-        )
-        for row in stored
-    }
+def read_graph(connection: Connection, found: MapRecord) -> Graph:
+    """Load one map; CorruptError names the row that is damaged, or says how many are missing."""
+    stored = select(nodes).where(nodes.c.map_id == found.map_id).order_by(nodes.c.node_id)
+    places = {row.node_id: parse_node(row) for row in connection.execute(stored).all()}
     links = connection.execute(
-        select(edges.c.a, edges.c.b, edges.c.record)
-        .where(edges.c.map_id == map_id)
-        .order_by(edges.c.a, edges.c.b)
-    )
-    return Graph(places, {(row.a, row.b): Edge.model_validate_json(row.record) for row in links})
+        select(edges).where(edges.c.map_id == found.map_id).order_by(edges.c.a, edges.c.b)
+    ).all()
+    graph = Graph(places, {(row.a, row.b): parse_edge(row) for row in links})
+    missing = found.node_count - len(graph.places), found.edge_count - len(graph.edges)
+    if missing != (0, 0):
+        raise CorruptError(f"{missing[0]} nodes and {missing[1]} edges are missing")
+    return graph
+
+
+def parse_node(row: Row[Any]) -> Place:
+    """A place from its row; CorruptError when the row does not match its seal."""
+    if not intact(nodes, row):
+        raise CorruptError(f"node {row.node_id}: its record does not match its checksum")
+    node = Node.model_validate_json(row.record)
+    return Place(node=node, features=row.features, thumbnail=row.thumbnail or "")
+
+
+def parse_edge(row: Row[Any]) -> Edge:
+    """An edge from its row; CorruptError when the row does not match its seal."""
+    if not intact(edges, row):
+        raise CorruptError(f"edge {row.a}-{row.b}: its record does not match its checksum")
+    return Edge.model_validate_json(row.record)
 
 
 def write_change(connection: Connection, map_id: int, revision: int, change: Change) -> None:
     """Write what changed; edges go first and come last because they refer to nodes."""
+    places, links = change.graph.places, change.graph.edges
+    touched = [n for n in sorted(change.rewritten | change.updated) if n in places]
+    marked = _quarantined(connection, map_id, sorted(change.updated))
     _each(
         connection, delete(edges).where(*_edge_is(map_id)), [{"at_a": a, "at_b": b} for a, b in change.edges]
     )
     gone = [{"at": node_id} for node_id in change.rewritten]
     _each(connection, delete(nodes).where(nodes.c.map_id == map_id, nodes.c.node_id == bindparam("at")), gone)
-    base = {"map_id": map_id, "revision": revision}
-    places = change.graph.places
-    added = [base | _node_row(places[n]) for n in sorted(change.rewritten) if n in places]
-    _each(connection, insert(nodes), added)
+    made = {n: node_row(map_id, revision, places[n], quarantined=n in marked) for n in touched}
+    _each(connection, insert(nodes), [row for n, row in made.items() if n in change.rewritten])
     changed = [
-        {"at": n, "to": places[n].node.model_dump_json(), "now": revision} for n in sorted(change.updated)
+        {"at": n, **{f"to_{name}": made[n][name] for name in UPDATED}} for n in touched if n in change.updated
     ]
     _each(
         connection,
         update(nodes)
         .where(nodes.c.map_id == map_id, nodes.c.node_id == bindparam("at"))
-        .values(record=bindparam("to"), revision=bindparam("now")),
+        .values({name: bindparam(f"to_{name}") for name in UPDATED}),
         changed,
     )
-    present = [change.graph.edges[key] for key in sorted(change.edges) if key in change.graph.edges]
-    _each(
-        connection,
-        insert(edges),
-        [base | {"a": edge.a, "b": edge.b, "record": edge.model_dump_json()} for edge in present],
-    )
+    present = [edge_row(map_id, revision, links[key]) for key in sorted(change.edges) if key in links]
+    _each(connection, insert(edges), present)
+
+
+def node_row(map_id: int, revision: int, place: Place, quarantined: bool = False) -> dict[str, Any]:
+    """A place as its row."""
+    values = {
+        "map_id": map_id,
+        "node_id": place.node.node_id,
+        "revision": revision,
+        "record": place.node.model_dump_json(),
+        "features": place.features,
+        "thumbnail": place.thumbnail or None,
+        "quarantined": quarantined,
+    }
+    return sealed(nodes, values)
+
+
+def edge_row(map_id: int, revision: int, edge: Edge) -> dict[str, Any]:
+    """An edge as its row."""
+    record = edge.model_dump_json()
+    values = {"map_id": map_id, "a": edge.a, "b": edge.b, "revision": revision, "record": record}
+    return sealed(edges, values)
 
 
 def pack_history(steps: tuple[Step, ...], inverse: tuple[Step, ...]) -> tuple[bytes, str]:
@@ -70,25 +104,33 @@ def pack_history(steps: tuple[Step, ...], inverse: tuple[Step, ...]) -> tuple[by
 
 def read_history(content: bytes, sha256: str) -> dict[str, list[dict[str, Any]]]:
     """`steps` and `inverse` of one revision as stored; CorruptError when the checksum does not match."""
-    if checksum(content) != sha256:
+    if not matches(content, sha256):
         raise CorruptError("the stored operations do not match their checksum")
     fields: dict[str, list[dict[str, Any]]] = msgpack.unpackb(content)
+    if not fields:
+        raise GivenUpError("its operations were damaged; a repair gave them up")
     return fields
 
 
-def unpack_inverse(content: bytes, sha256: str) -> tuple[Step, ...]:
-    """The steps that lead back over one revision; CorruptError when the checksum does not match."""
-    return STEPS.validate_python(read_history(content, sha256)["inverse"])
+def pack_lost() -> tuple[bytes, str]:
+    """What stands in the place of operations that are lost, with its checksum."""
+    content = msgpack.packb({})
+    return content, checksum(content)
 
 
-def _node_row(place: Place) -> dict[str, Any]:
-    return {
-        "node_id": place.node.node_id,
-        "record": place.node.model_dump_json(),
-        "features": place.features,
-        "thumbnail": place.thumbnail or None,
-        "quarantined": False,
-    }
+def unpack_steps(content: bytes, sha256: str, inverse: bool) -> tuple[Step, ...]:
+    """The steps of one revision, or those that lead back over it; CorruptError as for `read_history`."""
+    return STEPS.validate_python(read_history(content, sha256)["inverse" if inverse else "steps"])
+
+
+def _quarantined(connection: Connection, map_id: int, node_ids: list[int]) -> set[int]:
+    """Which of these nodes are marked: an update of a record does not heal features."""
+    query = select(nodes.c.node_id).where(nodes.c.map_id == map_id, nodes.c.quarantined)
+    marked: set[int] = set()
+    for start in range(0, len(node_ids), CHUNK):
+        chunk = nodes.c.node_id.in_(node_ids[start : start + CHUNK])
+        marked.update(connection.execute(query.where(chunk)).scalars())
+    return marked
 
 
 def _edge_is(map_id: int) -> tuple[Any, ...]:

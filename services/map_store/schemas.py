@@ -1,8 +1,11 @@
 """What REST takes and gives."""
 
+from collections.abc import Sequence
+
 from pydantic import BaseModel, ConfigDict
 
-from services.map_store.catalogue import MapSummary
+from services.map_store.catalogue import MapRecord
+from services.map_store.check import Damage
 from shared.messages.base import Name
 from shared.messages.features import Features
 from shared.messages.maps import Edge, Node
@@ -82,15 +85,46 @@ class Undone(Changed):
     undone: int
 
 
+class DamageView(BaseModel):
+    """One damaged thing.
+
+    Attributes:
+        map: the map it belongs to; "" for what all maps share.
+    """
+
+    model_config = ConfigDict(from_attributes=True)
+
+    map: str
+    thing: str
+    reason: str
+
+
+class CheckView(BaseModel):
+    """Everything that is damaged."""
+
+    damage: list[DamageView]
+
+
+class RepairView(Changed):
+    """The revision after a repair, and what it did, in words."""
+
+    done: list[str]
+
+
 class Health(BaseModel):
     """Whether the service lives or is ready."""
 
     status: str
 
 
-def map_view(summary: MapSummary) -> MapView:
+def map_view(record: MapRecord) -> MapView:
     """One line of the list of maps."""
-    return MapView.model_validate(summary)
+    return MapView.model_validate(vars(record) | {"nodes": record.node_count, "edges": record.edge_count})
+
+
+def check_view(found: Sequence[Damage]) -> CheckView:
+    """What a check found."""
+    return CheckView(damage=[DamageView.model_validate(damage) for damage in found])
 
 
 def keypoints_view(features: Features) -> KeypointsView:

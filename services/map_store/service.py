@@ -79,9 +79,7 @@ def run(
 ) -> None:
     """Answer until `stop`; `ready` is called once questions can be asked."""
     maps, records = bus.requests(MAP, map="*"), bus.requests(MISSION_RECORD, robot="*")
-    for summary in store.summaries():  # a delta may have been lost with the process that committed it
-        deltas.push(MapDelta(map=summary.name, revision=summary.revision, reset=True))
-    deltas.publish()
+    _reset_followers(store, deltas)
     ready()
     while not stop.is_set():
         bus.wait(PERIOD_S)
@@ -91,6 +89,18 @@ def run(
         while (mission := records.take()) is not None:
             _answer(mission, partial(answer_mission, missions))
         deltas.publish()
+
+
+def _reset_followers(store: MapStore, deltas: Deltas) -> None:
+    """Have all maps read again: a delta may have been lost with the process that committed it."""
+    try:
+        records = store.summaries()
+    except MapError as error:
+        log.error("no map can be read, every question will be refused: %s", error)
+        return
+    for record in records:
+        deltas.push(MapDelta(map=record.name, revision=record.revision, reset=True))
+    deltas.publish()
 
 
 def _answer(question: Request[Q, R], answer: Callable[[str, Q], R]) -> None:

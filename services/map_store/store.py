@@ -3,11 +3,12 @@
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 
-from sqlalchemy import Connection, update
+from sqlalchemy import Connection
 
-from services.map_store import blobs, catalogue, history
-from services.map_store.catalogue import MapSummary
+from services.map_store import blobs, catalogue, history, losses
+from services.map_store.catalogue import MapRecord
 from services.map_store.contents import Contents
 from services.map_store.database import Database
 from services.map_store.errors import ConflictError, InvalidError
@@ -16,9 +17,9 @@ from services.map_store.graphs import Graphs
 from services.map_store.history import Revision
 from services.map_store.operations import prepare
 from services.map_store.past import Past
+from services.map_store.repair import Repaired, mend, relink_all
 from services.map_store.rows import write_change
 from services.map_store.summaries import Summaries
-from services.map_store.tables import maps
 from shared.messages.maps import MapDelta, Operation
 
 
@@ -42,16 +43,15 @@ class MapStore:
         self._now_ns, self._changed = now_ns, changed
         self._writing = threading.Lock()
 
-    def summaries(self) -> list[MapSummary]:
-        """All maps by name."""
+    def summaries(self) -> list[MapRecord]:
+        """All maps by name, but those whose record is damaged."""
         with self.database.read() as connection:
-            return catalogue.summaries(connection)
+            return catalogue.records(connection)
 
-    def summary(self, name: str) -> MapSummary:
+    def summary(self, name: str) -> MapRecord:
         """One map."""
         with self.database.read() as connection:
-            catalogue.find(connection, name)
-            return catalogue.summaries(connection, name)[0]
+            return catalogue.find(connection, name)
 
     def graph(self, name: str) -> tuple[int, Graph]:
         """The newest revision and its graph."""
@@ -63,7 +63,7 @@ class MapStore:
         """The newest `limit` revisions older than `before`, newest first."""
         with self.database.read() as connection:
             found = catalogue.find(connection, name)
-            return history.entries(connection, found.map_id, before, limit, self._summaries)
+            return history.entries(connection, found, before, limit, self._summaries)
 
     def create(self, name: str) -> int:
         """Make an empty map; returns its revision, 0. ConflictError when it exists."""
@@ -81,8 +81,8 @@ class MapStore:
     def rename(self, name: str, new_name: str) -> None:
         """Give a map another name; followers of both are told to read again."""
         with self._write() as (connection, deltas):
-            revision = catalogue.rename(connection, name, new_name)
-            deltas += [MapDelta(map=each, revision=revision, reset=True) for each in (name, new_name)]
+            found = catalogue.rename(connection, name, new_name)
+            deltas += [MapDelta(map=each, revision=found.revision, reset=True) for each in (name, new_name)]
 
     def transact(
         self,
@@ -105,7 +105,7 @@ class MapStore:
             change = apply(self._graphs.get(connection, found), prepared.steps)
             blobs.put(connection, found.map_id, prepared.contents)
             entry = Revision(found.revision + 1, author, self._now_ns(), len(prepared.steps), None)
-            self._commit(connection, found.map_id, entry, prepared.steps, change)
+            self._commit(connection, found, entry, prepared.steps, change)
             deltas.append(
                 MapDelta(
                     stamp_ns=entry.stamp_ns,
@@ -123,11 +123,11 @@ class MapStore:
         with self._write() as (connection, deltas):
             found = catalogue.find(connection, name)
             _check_base(name, found.revision, base_revision)
-            undone = history.last_standing(connection, found.map_id)
-            steps = history.inverse_of(connection, found.map_id, undone)
+            undone = history.last_standing(connection, found)
+            steps = history.steps_of(connection, found.map_id, undone, inverse=True)
             change = apply(self._graphs.get(connection, found), steps)
             entry = Revision(found.revision + 1, author, self._now_ns(), len(steps), undone)
-            self._commit(connection, found.map_id, entry, steps, change)
+            self._commit(connection, found, entry, steps, change)
             deltas.append(MapDelta(map=name, revision=entry.revision, author=author, reset=True))
         return entry.revision, undone
 
@@ -138,22 +138,51 @@ class MapStore:
         change = apply(Graph(), steps)
         with self._write() as (connection, deltas):
             entry = Revision(1, author, self._now_ns(), len(steps), None)
-            map_id = catalogue.create(connection, name, entry.stamp_ns)
+            record = catalogue.create(connection, name, entry.stamp_ns)
             for place in change.graph.places.values():
                 named = [sha256 for sha256 in (place.features, place.thumbnail) if sha256]
-                blobs.put(connection, map_id, {sha256: read_blob(sha256) for sha256 in named})
-            self._commit(connection, map_id, entry, steps, change)
+                blobs.put(connection, record.map_id, {sha256: read_blob(sha256) for sha256 in named})
+            self._commit(connection, record, entry, steps, change)
             deltas.append(MapDelta(map=name, revision=1, author=author, reset=True))
         return entry.revision
 
+    def repair(self, name: str, author: str = "") -> Repaired:
+        """Mend what is damaged in a map; what cannot be mended is removed, as a new revision.
+
+        Raises:
+            CorruptError: more of the file is damaged than a repair can mend; nothing was changed.
+        """
+        done: list[str] = []
+        if self.database.inspect():
+            self.database.rebuild_indexes(then=relink_all)
+            done.append("indexes of the file: written anew from their tables")
+        with self._write() as (connection, deltas):
+            mended = mend(connection, name, self._now_ns())
+            found = mended.found
+            lost = losses.take_out(connection, found.map_id, mended.graph)
+            steps = mended.removed + lost.steps
+            if steps:
+                entry = Revision(found.revision + 1, author, self._now_ns(), len(steps), None)
+                found = self._commit(connection, found, entry, steps, lost.change)
+            deltas.append(MapDelta(map=found.name, revision=found.revision, author=author, reset=True))
+        self._graphs.forget(found.map_id)
+        return Repaired(found.name, found.revision, (*done, *mended.done, *lost.done))
+
     @staticmethod
     def _commit(
-        connection: Connection, map_id: int, entry: Revision, steps: tuple[Step, ...], change: Change
-    ) -> None:
-        write_change(connection, map_id, entry.revision, change)
-        history.record(connection, map_id, entry, steps, change)
-        changed = {"revision": entry.revision, "changed_ns": entry.stamp_ns}
-        connection.execute(update(maps).where(maps.c.map_id == map_id).values(changed))
+        connection: Connection, found: MapRecord, entry: Revision, steps: tuple[Step, ...], change: Change
+    ) -> MapRecord:
+        write_change(connection, found.map_id, entry.revision, change)
+        history.record(connection, found.map_id, entry, steps, change)
+        record = replace(
+            found,
+            revision=entry.revision,
+            changed_ns=entry.stamp_ns,
+            node_count=len(change.graph.places),
+            edge_count=len(change.graph.edges),
+        )
+        catalogue.save(connection, record)
+        return record
 
     @contextmanager
     def _write(self) -> Iterator[tuple[Connection, list[MapDelta]]]:

@@ -14,12 +14,18 @@ from sqlalchemy import (
     Text,
 )
 
-VERSION = 1
-"""Raised with every change of these tables; an older or newer database is refused at start."""
+VERSION = 2
+"""Raised with every change of these tables; `migration` brings older ones up, newer ones are refused."""
+
+
+def _seal() -> Column[str]:
+    """Checksum of the rest of the row, see `seals`; a row without one counts as damaged."""
+    return Column("seal", String(64), nullable=False, server_default="")
+
 
 metadata = MetaData()
 
-about = Table("about", metadata, Column("version", Integer, primary_key=True))
+about = Table("about", metadata, Column("version", Integer, primary_key=True), _seal())
 
 maps = Table(
     "maps",
@@ -29,6 +35,9 @@ maps = Table(
     Column("revision", BigInteger, nullable=False),
     Column("created_ns", BigInteger, nullable=False),
     Column("changed_ns", BigInteger, nullable=False),
+    Column("node_count", Integer, nullable=False, server_default="0"),
+    Column("edge_count", Integer, nullable=False, server_default="0"),
+    _seal(),
     sqlite_autoincrement=True,  # an id is never given twice: caches are keyed by it
 )
 
@@ -43,6 +52,7 @@ revisions = Table(
     Column("steps", Integer, nullable=False),
     Column("content", LargeBinary, nullable=False),
     Column("sha256", String(64), nullable=False),
+    _seal(),
 )
 
 blobs = Table(
@@ -70,6 +80,7 @@ nodes = Table(
     Column("features", ForeignKey("blobs.sha256"), nullable=False),
     Column("thumbnail", ForeignKey("blobs.sha256")),
     Column("quarantined", Boolean, nullable=False, default=False),
+    _seal(),
 )
 
 edges = Table(
@@ -80,6 +91,7 @@ edges = Table(
     Column("b", BigInteger, primary_key=True, autoincrement=False),
     Column("revision", BigInteger, nullable=False),
     Column("record", Text, nullable=False),
+    _seal(),
     ForeignKeyConstraint(["map_id", "a"], ["nodes.map_id", "nodes.node_id"]),
     ForeignKeyConstraint(["map_id", "b"], ["nodes.map_id", "nodes.node_id"]),
 )
@@ -91,4 +103,5 @@ missions = Table(
     Column("epoch", BigInteger, nullable=False),
     Column("content", LargeBinary, nullable=False),
     Column("sha256", String(64), nullable=False),
+    _seal(),
 )

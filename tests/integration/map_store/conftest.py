@@ -3,7 +3,7 @@
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import pytest
@@ -14,10 +14,15 @@ START_S = 30.0
 
 
 class Process:
-    """A map store on a database of its own; `start` it as often as it was killed."""
+    """A map store on a database of its own; `start` it as often as it was killed.
 
-    def __init__(self, repository: Path, folder: Path, endpoint: str, port: int) -> None:
-        self._repository = repository
+    `inside` is a command that runs another one, for example in a namespace with a disk of its own.
+    """
+
+    def __init__(
+        self, repository: Path, folder: Path, endpoint: str, port: int, inside: Sequence[str] = ()
+    ) -> None:
+        self._repository, self._inside = repository, inside
         self._environment = os.environ | {
             "TOPNAV_ENDPOINT": endpoint,
             "MAP_STORE_PORT": str(port),
@@ -28,7 +33,7 @@ class Process:
 
     def start(self) -> None:
         """Start the process."""
-        command = [sys.executable, "-m", "services.map_store"]
+        command = [*self._inside, sys.executable, "-m", "services.map_store"]
         self.child = subprocess.Popen(command, cwd=self._repository, env=self._environment)
 
     def kill(self) -> None:

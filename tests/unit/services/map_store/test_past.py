@@ -85,5 +85,5 @@ def test_a_gap_in_the_history_is_damage(lived: MapStore):
     table = tables.revisions
     with lived.database.write() as connection:
         connection.execute(delete(table).where(table.c.revision == 5))
-    with pytest.raises(CorruptError, match="does not fit the graph: revision 5 does not exist"):
+    with pytest.raises(CorruptError, match="revision 5: its record is missing"):
         lived.past.compare("house", 4, 8)

@@ -1,0 +1,39 @@
+"""Nothing acknowledged is lost by kill -9 at any moment, and no changed byte of the file goes unnoticed."""
+
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.faults.flips import flips
+from tests.faults.kills import kill_often
+
+KILLS, FLIPS = 12, 60
+
+
+@pytest.mark.slow
+def test_no_acknowledged_transaction_is_lost_by_kill_9_at_any_moment(
+    repository: Path,
+    tmp_path: Path,
+    router_endpoint: str,
+    free_port: Callable[[], int],
+    monkeypatch: pytest.MonkeyPatch,
+    record_property: Callable[[str, object], None],
+):
+    monkeypatch.setenv("TOPNAV_LOG_LEVEL", "ERROR")
+    report = kill_often(tmp_path, repository, router_endpoint, free_port(), KILLS, seed=7, longest_s=0.4)
+    for name, value in report.figures().items():
+        record_property(name, value)
+    assert report.wrong == []
+    assert (report.lost, report.corrupt) == (0, 0)
+    assert report.acknowledged > KILLS
+
+
+@pytest.mark.slow
+def test_a_changed_byte_is_noticed_or_changes_nothing(tmp_path: Path):
+    found = list(flips(tmp_path, FLIPS, seed=3, mend=False))
+    assert [flip for flip in found if flip.verdict == "undetected"] == []
+    verdicts = Counter(flip.verdict for flip in found)
+    assert verdicts["detected"] >= FLIPS // 4
+    assert verdicts["harmless"] >= 1

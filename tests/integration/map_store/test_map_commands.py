@@ -1,0 +1,89 @@
+"""`topnav map check`, `repair`, `backup` and `restore` beside a running stack, and without one."""
+
+import re
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+
+import httpx
+import pytest
+from typer.testing import CliRunner, Result
+
+from experiments.failure import ExperimentError
+from experiments.maps import app
+from services.launcher.state import AlreadyRunningError
+from services.launcher.supervisor import Launcher
+from services.map_store.database import Database
+from services.map_store.store import MapStore
+from tests.faults.lived_maps import link, place
+from tests.unit.services.map_store.test_store import damage
+
+
+@pytest.fixture
+def data_dir(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A data folder in which a map store ran: map "flat" has two joined nodes."""
+    monkeypatch.setenv("TOPNAV_DATA_DIR", str(tmp_path / "data"))
+    store = opened(tmp_path / "data")
+    store.create("flat")
+    store.transact("flat", [place(0), place(1), link(0, 1)])
+    store.database.close()
+    return tmp_path / "data"
+
+
+@pytest.fixture
+def stack(data_dir: Path) -> Iterator[Launcher]:
+    """A running map store in that folder."""
+    with Launcher(data_dir, only=["map-store"]) as launcher:
+        yield launcher
+
+
+def opened(data_dir: Path) -> MapStore:
+    return MapStore(Database(f"sqlite:///{data_dir}/maps/maps.sqlite3"), lambda: 1, lambda _: None)
+
+
+def call(*words: str | Path) -> Result:
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+def test_a_running_stack_is_checked_repaired_and_backed_up_but_not_replaced(
+    stack: Launcher, data_dir: Path, tmp_path: Path
+):
+    copy = tmp_path / "maps.backup"
+    assert call("check").output == f"maps in {data_dir}: no damage\n"
+    told = call("backup", copy)
+    assert (told.exit_code, told.output.startswith("1 maps, ")) == (0, True)
+    refused = call("restore", copy)
+    assert isinstance(refused.exception, AlreadyRunningError)
+    assert "stop it with 'topnav down'" in str(refused.exception)
+
+    beside = opened(data_dir)
+    damage(beside.database, beside.graph("flat")[1].places[1].features)
+    beside.database.close()
+    found = call("check", "flat")
+    assert found.exit_code == 1
+    assert re.search(r"flat +│ features of node 1 +│ blob \w+ does not match its checksum", found.output)
+    assert call("check").exit_code == 1
+    worse = call("backup", copy)
+    assert isinstance(worse.exception, ExperimentError)
+    assert "features of node 1" in str(worse.exception)
+    mended = call("repair", "flat")
+    assert mended.output.splitlines() == [
+        "node 1: removed, its features are lost",
+        "flat is at revision 2",
+    ]
+    assert call("check", "flat").output == "map flat: no damage\n"
+    with httpx.Client(base_url=stack.map_store_url, trust_env=False) as rest:
+        assert rest.get("/maps/flat/revisions").json()[0]["author"] == "repair"
+
+
+def test_a_backup_is_put_back_while_nothing_runs(data_dir: Path, tmp_path: Path):
+    copy, file = tmp_path / "maps.backup", data_dir / "maps" / "maps.sqlite3"
+    assert call("backup", copy).exit_code == 0
+    file.write_bytes(b"rubbish" * 1_000)
+    told = call("restore", copy).output
+    kept = Path(told.split("kept as ")[1].replace("\n", ""))
+    assert kept.read_bytes() == b"rubbish" * 1_000
+    assert sorted(opened(data_dir).graph("flat")[1].places) == [0, 1]
+    with closing(sqlite3.connect(copy)) as connection:
+        assert connection.execute("SELECT name FROM maps").fetchall() == [("flat",)]
