@@ -44,7 +44,7 @@ def main(arguments: list[str] | None = None) -> int:
         chosen.json.write_text(text, encoding="utf-8")
     _say({name: _short(part) if isinstance(part, dict) else part for name, part in result.items()})
     kills, flipped = result.get("kills", {}), result.get("flips", {})
-    return int(bool(kills.get("lost") or kills.get("corrupt") or flipped.get("undetected")))
+    return int(bool(kills.get("wrong") or flipped.get("undetected")))
 
 
 def _kills(folder: Path, kills: int, seed: int) -> Report:

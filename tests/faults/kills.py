@@ -17,7 +17,7 @@ from tests.faults.account import judge
 from tests.faults.writers import OWN, SHARED, Link, Load
 from tests.integration.map_store.conftest import Process
 
-PATIENCE_S = 60.0
+PATIENCE_S = 40.0
 KILLS_PER_MAP = 5
 """A new set of maps begins then, so that reading them back stays short."""
 
@@ -72,7 +72,7 @@ def kill_often(
     with open_bus(endpoint) as bus, httpx.Client(base_url=process.url, trust_env=False, timeout=5.0) as rest:
         try:
             report.recovery_s.append(_start(process, bus))
-            while report.kills < kills:
+            while report.kills < kills and not report.wrong:
                 link = Link(bus, rest, f"{report.maps // len((SHARED, OWN))}")
                 _round(process, link, rng, report, min(KILLS_PER_MAP, kills - report.kills), longest_s)
                 tell(report)
@@ -91,19 +91,17 @@ def _round(
     """One set of maps: load, kills, restarts, and the account at the end."""
     load = Load(link, seed=int(rng.integers(2**32)))
     load.start()
-    for _ in range(kills):
-        before = load.acknowledged()
-        wait_until(lambda before=before: load.acknowledged() > before, PATIENCE_S)
-        time.sleep(rng.uniform(0.0, longest_s))
-        process.kill()
-        report.kills += 1
-        if rng.random() < EARLY and report.kills < kills:
-            process.start()
-            time.sleep(rng.uniform(0.0, 1.5))
-            process.kill()
-            report.kills += 1
-        report.recovery_s.append(_start(process, link.bus))
-    load.stop()
+    try:
+        for _ in range(kills):
+            before = load.acknowledged()
+            if not wait_until(lambda before=before: load.acknowledged() > before, PATIENCE_S):
+                report.wrong.append("nothing is acknowledged any more")
+                break
+            time.sleep(rng.uniform(0.0, longest_s))
+            _kill(process, rng, report)
+            report.recovery_s.append(_start(process, link.bus))
+    finally:
+        load.stop()
     for name, transactions in load.transactions().items():
         verdict = judge(link, name, transactions)
         report.maps += 1
@@ -113,6 +111,17 @@ def _round(
         report.lost += verdict.lost
         report.corrupt += bool(verdict.wrong)
         report.wrong += [f"{name}: {text}" for text in verdict.wrong]
+
+
+def _kill(process: Process, rng: np.random.Generator, report: Report) -> None:
+    """Kill the process, and sometimes the next one while it is still starting."""
+    process.kill()
+    report.kills += 1
+    if rng.random() < EARLY:
+        process.start()
+        time.sleep(rng.uniform(0.0, 1.5))
+        process.kill()
+        report.kills += 1
 
 
 def _start(process: Process, bus: Bus) -> float:
