@@ -149,11 +149,12 @@ async function listRobots() {
   } catch {
     return;
   }
-  const all = [...new Set([robot || names[0] || DEFAULT_ROBOT, ...names])].sort();
+  const first = names.includes(DEFAULT_ROBOT) ? DEFAULT_ROBOT : names[0] || DEFAULT_ROBOT; // not a recording that was played
+  const all = [...new Set([robot || first, ...names])].sort();
   const shown = [...$("robot").options].map((option) => option.value);
   if (all.join() !== shown.join()) {
     $("robot").replaceChildren(...all.map((name) => html("option", { value: name }, name)));
-    $("robot").value = robot || all[0];
+    $("robot").value = robot || first;
   }
   if (!robot) follow($("robot").value);
 }
