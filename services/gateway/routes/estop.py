@@ -8,6 +8,7 @@ from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 from services.gateway.bodies import read_json
 from services.gateway.live import estop_facts
 from services.gateway.problems import ProblemError
+from services.gateway.routes.robots import known
 from services.gateway.state import Gateway, GatewayDep, RobotPath
 from shared.messages import EStopRequest
 from shared.topics import ESTOP
@@ -88,5 +89,10 @@ async def clear_estop(request: Request, robot: RobotPath, gateway: GatewayDep, w
 
 
 async def _ask(gateway: Gateway, robot: str, request: EStopRequest) -> EStopAnswer:
-    state = await gateway.asker.ask("drive", ESTOP, request, TIMEOUT_S, robot=robot)
+    try:
+        state = await gateway.asker.ask("drive", ESTOP, request, TIMEOUT_S, robot=robot)
+    except ProblemError as problem:
+        if problem.code == "service_absent" and robot != gateway.settings.robot:
+            known(gateway, robot)  # a robot nobody heard of is a better reason than a missing drive service
+        raise
     return EStopAnswer(**estop_facts(state))

@@ -77,9 +77,12 @@ def start(router_endpoint: str, tmp_path: Path, neighbours: Neighbours) -> Itera
 
     def launch() -> subprocess.Popen[bytes]:
         state = {"TOPNAV_ENDPOINT": router_endpoint, "DRIVE_STATE_DIR": str(tmp_path / "state")}
-        before = len(neighbours.bus.alive("drive"))
+        before = sum(process.poll() is None for process in processes)
+        assert wait_until(lambda: len(neighbours.bus.alive("drive")) == before, START_S), (
+            "a killed one is gone"
+        )
         processes.append(subprocess.Popen([sys.executable, "-m", "services.drive"], env=os.environ | state))
-        assert wait_until(lambda: len(neighbours.bus.alive("drive")) > before, START_S)
+        assert wait_until(lambda: len(neighbours.bus.alive("drive")) == before + 1, START_S)
         return processes[-1]
 
     yield launch

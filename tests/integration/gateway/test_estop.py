@@ -67,8 +67,14 @@ def test_clearing_needs_a_name(clear: httpx.Client, who: str | None) -> None:
     assert clear.get(PATH).json()["engaged"]
 
 
-def test_without_drive_it_says_so(http: httpx.Client) -> None:
+def test_a_robot_nobody_heard_of_is_named(http: httpx.Client) -> None:
     answer = http.post("/api/robots/nobody/estop")
+    assert (answer.status_code, answer.json()["got"]) == (404, "nobody")
+
+
+def test_without_drive_it_says_so(http: httpx.Client) -> None:
+    """The stand-in knows another robot."""
+    answer = http.post("/api/robots/r1/estop")
     assert (answer.status_code, answer.json()["service"]) == (503, "drive")
 
 
