@@ -41,11 +41,10 @@ def pipeline_with_weights(descriptor: str, representation: str, matcher: str) ->
 
 def measured(descriptor: str, pictures: Sequence[Image], size: Size) -> Iterator[Row]:
     """Rows of one descriptor: every representation, matcher and condition, averaged over the pictures."""
-    absent_everywhere = pipeline_with_weights(descriptor, REPRESENTATIONS[0], MATCHERS[0]) is None
+    absent_before = False
     for representation in REPRESENTATIONS:
-        pipeline = (
-            None if absent_everywhere else pipeline_with_weights(descriptor, representation, MATCHERS[0])
-        )
+        pipeline = None if absent_before else pipeline_with_weights(descriptor, representation, MATCHERS[0])
+        absent_before = pipeline is None
         names = {"descriptor": descriptor, "representation": representation}
         if pipeline is None:
             absent = {

@@ -83,14 +83,14 @@ def is_surely_clear(match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
     return _is_free_for(max(most_m, length_m(match, profile)), match, ranges, profile)
 
 
-def _is_free_for(length_m: float, match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
+def _is_free_for(leg_m: float, match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
     if match.status == "no_baseline":
         return True
     if match.heading_rad is None or match.disparity_rad is None:
         return False
     obstacles = Obstacles.from_ranges(ranges.angles_rad, ranges.distances_m, ranges.max_range_m)
     free_m = obstacles.clearance_m(np.array([match.heading_rad]), profile.robot_radius_m)[0]
-    return bool(length_m <= free_m + profile.robot_radius_m)
+    return bool(leg_m <= free_m + profile.robot_radius_m)
 
 
 def is_clear_from(node: Node, match: NodeMatch, profile: Profile) -> bool:

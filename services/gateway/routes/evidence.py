@@ -4,7 +4,7 @@ from fastapi import APIRouter
 
 from services.gateway.problems import ProblemError
 from services.gateway.routes.goals import NodeAnswer
-from services.gateway.routes.robots import known
+from services.gateway.routes.robots import newest_frame
 from services.gateway.state import Gateway, GatewayDep, MapPath, MapQuery, NodePath, NodeQuery, RobotPath
 from shared.messages.maps import MapRequest
 from shared.messages.matching import MatchRequest, NodeMatch
@@ -50,15 +50,7 @@ async def show_live_matches(
     robot: RobotPath, map_name: MapQuery, node: NodeQuery, gateway: GatewayDep
 ) -> Matches:
     """Compare the newest picture with a place."""
-    frame = known(gateway, robot).frame
-    if frame is None:
-        raise ProblemError(
-            404,
-            "no_frame",
-            expected=f"a frame of {robot}",
-            got="none since the gateway started",
-            next_step="see whether its camera or the simulator runs (/readyz)",
-        )
+    frame = newest_frame(gateway, robot)
     question = MatchRequest(seq=frame.seq, stamp_ns=frame.stamp_ns, map=map_name, node_ids=(node,))
     return await _matches(gateway, robot, question, f"frame {frame.seq}")
 

@@ -12,6 +12,7 @@ from services.gateway.snapshot import jpeg_of
 from services.gateway.state import Gateway, GatewayDep, MapQuery, RobotPath
 from services.gateway.true_poses import Position
 from shared.messages.maps import MapRequest
+from shared.messages.sensors import Frame
 from shared.topics import MAP
 
 router = APIRouter(tags=["robots"])
@@ -50,16 +51,7 @@ async def show_frame(
     robot: RobotPath, gateway: GatewayDep, width: Annotated[int | None, Query(ge=64, le=4096)] = None
 ) -> Response:
     """The newest frame as JPEG, no wider than `width`."""
-    view = known(gateway, robot)
-    frame = view.frame
-    if frame is None:
-        raise ProblemError(
-            404,
-            "no_frame",
-            expected=f"a frame of {robot}",
-            got="none since the gateway started",
-            next_step="see whether its camera or the simulator runs (/readyz)",
-        )
+    view, frame = known(gateway, robot), newest_frame(gateway, robot)
     jpeg = await gateway.work(lambda: jpeg_of(frame, width))
     headers = {
         "Cache-Control": "no-store",
@@ -91,6 +83,24 @@ async def show_true_positions(robot: RobotPath, map_name: MapQuery, gateway: Gat
     view, timeout_s = known(gateway, robot), gateway.settings.compute_timeout_s
     reply = await gateway.asker.ask("map_store", MAP, MapRequest(action="read"), timeout_s, map=map_name)
     return TruePositions(map=map_name, positions=view.true_poses.of_nodes(reply.nodes))
+
+
+def newest_frame(gateway: Gateway, robot: str) -> Frame:
+    """The robot's newest frame.
+
+    Raises:
+        ProblemError: 404, never heard of the robot, or no frame of it.
+    """
+    frame = known(gateway, robot).frame
+    if frame is None:
+        raise ProblemError(
+            404,
+            "no_frame",
+            expected=f"a frame of {robot}",
+            got="none since the gateway started",
+            next_step="see whether its camera or the simulator runs (/readyz)",
+        )
+    return frame
 
 
 def known(gateway: Gateway, robot: str) -> RobotView:

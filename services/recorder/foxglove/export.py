@@ -5,7 +5,6 @@ The SDK's own writer is a sink, by default of the whole process, and a write tha
 line in its log until the file is closed.
 """
 
-import struct
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,17 +12,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
-from mcap.exceptions import McapError
-from mcap.records import Channel
-from mcap.records import Message as McapMessage
-from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
-from zstandard import ZstdError
 
 from services.recorder.backlog import Sample
 from services.recorder.channels import SCHEMA_ENCODING, RecordingError, topic_of
 from services.recorder.foxglove.plain_json import plain_json, plain_schema
 from services.recorder.recording import CHUNK_BYTES
+from services.recorder.whole_part import WholePart
 from shared.messages.base import Message
 from shared.wire import WireError, decode
 
@@ -31,8 +26,6 @@ if TYPE_CHECKING:
     from services.recorder.foxglove.drawings import Draw
 
 LIBRARY = "topnav foxglove"
-MAX_RECORD_BYTES = 256_000_000
-"""A longer record is damage: the longest message has 64 MB."""
 
 
 @dataclass(frozen=True)
@@ -76,26 +69,6 @@ def export(source: Path, target: Path, draw_more: "Draw | None" = None) -> Expor
             raise RecordingError(f"{source} holds no message that can be exported ({why})")
     left_out = {key: (count, exporter.reasons[key]) for key, count in exporter.left_out.items()}
     return Exported(dict(exporter.counts), left_out, whole.problem)
-
-
-class WholePart:
-    """The messages of a recording up to the first damage; `problem` then says what ended them."""
-
-    def __init__(self, stream: IO[bytes]) -> None:
-        self._stream = stream
-        self.problem = ""
-
-    def __iter__(self) -> Iterator[Sample]:
-        channels: dict[int, str] = {}
-        reader = StreamReader(self._stream, validate_crcs=True, record_size_limit=MAX_RECORD_BYTES)
-        try:
-            for record in reader.records:
-                if isinstance(record, Channel):
-                    channels[record.id] = record.topic
-                elif isinstance(record, McapMessage) and record.channel_id in channels:
-                    yield Sample(channels[record.channel_id], record.data, record.log_time)
-        except (McapError, EOFError, struct.error, ZstdError, ValueError) as error:
-            self.problem = f"{type(error).__name__}: {error}"
 
 
 class Exporter:
