@@ -115,10 +115,15 @@ export class Graph {
     this.soon = setTimeout(() => { this.soon = null; this.load(); }, EACH_MS);
   }
 
-  async load() {
+  /** Fetch what changed; the promise ends when the drawing shows it, or why not. */
+  load() {
     const map = this.map;
-    if (!map || document.hidden || this.loading === map) return;
-    this.loading = map;
+    if (!map || document.hidden) return Promise.resolve();
+    if (this.loading?.map !== map) this.loading = { map, done: this.fetch(map) };
+    return this.loading.done;
+  }
+
+  async fetch(map) {
     try {
       const facts = await get(`/api/maps/${map}`);
       if (map !== this.map || facts.revision === this.revision) return;
@@ -133,7 +138,7 @@ export class Graph {
       $("graph-facts").textContent = problem.status === 404 ? TEXT.graphNone : problem.message;
       if (problem.status === 404 && this.nodes.length) this.clear(map);
     } finally {
-      if (this.loading === map) this.loading = null;
+      if (this.loading?.map === map) this.loading = null;
     }
   }
 

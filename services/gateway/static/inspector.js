@@ -21,8 +21,9 @@ export class Inspector {
     document.body.classList.remove("inspecting");
   }
 
-  /** "12" is a place, "3-12" a connection. */
-  find(text) {
+  /** "12" is a place, "3-12" a connection. A map that is still on its way is waited for. */
+  async find(text) {
+    if (this.graph.revision === null) await this.graph.load();
     const [a, b] = text.split(/[\s,-]+/).map(Number);
     const edge = b !== undefined && this.graph.edges.find((one) => one.a === Math.min(a, b) && one.b === Math.max(a, b));
     if (edge) this.open({ edge: [edge.a, edge.b] });
