@@ -32,6 +32,25 @@ COLOURS = """() => {
 SERIOUS = {"serious", "critical"}
 
 
+class Late:
+    """Requests of the page that wait until they are let through."""
+
+    def __init__(self) -> None:
+        self.held: list[Any] = []
+        self.open = False
+
+    def take(self, route: Any) -> None:
+        if self.open:
+            route.continue_()
+        else:
+            self.held.append(route)
+
+    def arrive(self) -> None:
+        self.open = True
+        for route in self.held:
+            route.continue_()
+
+
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
     """A headless Chromium."""
@@ -111,16 +130,14 @@ def test_a_deleted_place_comes_back_by_undo_and_the_history_says_who(page: Any, 
     page.goto(f"{page.url}#maps")
     page.click(f"#maps-table button:text-is('{copy_of_map}')", timeout=WAIT_MS)
     before = int(page.inner_text(f"#maps-table tr:has(button:text-is('{copy_of_map}')) td:nth-child(2)"))
-    held: list[Any] = []
-    page.route(f"**/api/maps/{copy_of_map}/nodes", held.append)
+    late = Late()
+    page.route(f"**/api/maps/{copy_of_map}/nodes", late.take)
     page.reload()
     page.click("nav a[data-view=map]")
     page.select_option("#map", copy_of_map)
     page.fill("#find", "1")
     page.press("#find", "Enter")
-    page.unroute(f"**/api/maps/{copy_of_map}/nodes")
-    for request in held:
-        request.continue_()
+    late.arrive()
     page.click("#remove")
     page.click("#confirm-yes")
     page.wait_for_selector(f'#graph[data-nodes="{before - 1}"]', timeout=WAIT_MS)
