@@ -10,6 +10,7 @@ from experiments.studies.heading import main as heading
 from experiments.studies.heading_frames import main as heading_frames
 from experiments.studies.matching import main as matching
 from experiments.studies.recovery import main as recovery
+from experiments.studies.scale import main as scale
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, no_args_is_help=True)
 app.command("heading")(on_record("study heading", heading))
@@ -19,6 +20,7 @@ app.command("disturbance-matches")(on_record("study disturbance-matches", distur
 app.command("failures")(on_record("study failures", failures))
 app.command("matching")(on_record("study matching", matching))
 app.command("recovery")(on_record("study recovery", recovery))
+app.command("scale")(on_record("study scale", scale))
 
 
 @app.callback()

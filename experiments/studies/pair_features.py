@@ -57,15 +57,15 @@ def features_of_pairs(
     for number, pair in enumerate(pairs):
         path = folder / f"{number:05d}.npz"
         if not path.exists():
-            look = look or _eye(world, pipeline)
+            look = look or eye(world, pipeline)
             _save(path, (look(pair.current), look(pair.target)))
         found.append(_load(path))
         tick()
     return found
 
 
-def _eye(world: WorldFile, pipeline: Pipeline) -> Callable[[Pose], FeatureSet]:
-    # SAPIEN is loaded only where a picture is missing.
+def eye(world: WorldFile, pipeline: Pipeline) -> Callable[[Pose], FeatureSet]:
+    """What the pipeline sees of a world from any pose; loads SAPIEN, where a picture is missing."""
     from simulator.simulation import Simulation
 
     simulation = Simulation(world, camera_settings())

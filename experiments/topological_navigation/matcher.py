@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 from experiments.topological_navigation.memory_map import MemoryMap
-from services.features.map_cache import Place
 from services.features.matching_requests import pair, verify_paired
 from services.features.pipeline import Pipeline
+from services.features.places import Places
 from shared.messages.features import Features
 from shared.messages.matching import MatchRequest, NodeMatch
 
@@ -17,6 +17,7 @@ class LocalMatcher:
 
     def __init__(self, pipeline: Pipeline, maps: MemoryMap) -> None:
         self._pipeline, self._maps = pipeline, maps
+        self._places = Places(pipeline.identity, pipeline.profile.keypoints, pipeline.extractor.distance)
         self.current: Features | None = None
 
     def match(
@@ -35,9 +36,8 @@ class LocalMatcher:
         return self._ask(features, MatchRequest(map=NAME, best_k=best_k))
 
     def _ask(self, features: Features, request: MatchRequest) -> dict[int, NodeMatch]:
-        places = {
-            node_id: Place(found.pipeline, self._maps.words(node_id))
-            for node_id, found in self._maps.features.items()
-        }
-        paired = pair(self._pipeline, request, features, places)
+        for node_id, found in self._maps.features.items():
+            if node_id not in self._places:
+                self._places.put(node_id, found)
+        paired = pair(self._pipeline, request, features, self._places)
         return {m.node_id: m for m in verify_paired(self._pipeline, request, paired)}

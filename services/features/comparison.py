@@ -9,6 +9,17 @@ SHORTLIST_FACTOR = 2
 """Candidates verified per place asked for: at 1 to 3 m about half of the raw matches are wrong,
 so the most similar places are among the first 2 k by raw count, not surely among the first k."""
 
+CONSIDERED_LEAST, CONSIDERED_FACTOR = 24, 8
+
+
+def considered(best_k: int) -> int:
+    """Places of a large map whose words are compared, by their global descriptors.
+
+    Of 400 pictures all had the most similar place among the first 10, and 99 % of their six most similar ones
+    among the first 64 (`topnav study scale`).
+    """
+    return max(CONSIDERED_LEAST, CONSIDERED_FACTOR * best_k)
+
 
 def shortlist(pairs: Mapping[int, IndexArray], best_k: int) -> list[int]:
     """Node ids with the most raw matches, at most 2 best_k of them; ties by id."""

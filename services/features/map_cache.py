@@ -1,24 +1,10 @@
-"""Words of all places of the maps asked for, filled once and then kept by deltas. Pure."""
+"""Words of all places of the maps asked for, filled once and then kept by deltas."""
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 
-from services.features.interfaces import FeatureSet
-from services.features.verification import feature_set
-from shared.messages.features import Features
+from services.features.places import Places
 from shared.messages.maps import AddNode, DeleteNode, MapDelta, MapReply
-
-
-@dataclass(frozen=True, eq=False)
-class Place:
-    """Words of one node and the pipeline that made them."""
-
-    pipeline: str
-    features: FeatureSet
-
-    @classmethod
-    def of(cls, features: Features) -> "Place":
-        """Keep what matching needs; thumbnails are left behind."""
-        return cls(features.pipeline, feature_set(features))
 
 
 @dataclass
@@ -26,13 +12,18 @@ class MapWords:
     """One map at one revision."""
 
     revision: int
-    places: dict[int, Place] = field(default_factory=dict)
+    places: Places
 
 
 class MapCache:
-    """Maps by name. A map whose deltas leave a gap is dropped, to be read again when next asked for."""
+    """Maps by name. A map whose deltas leave a gap is dropped, to be read again when next asked for.
 
-    def __init__(self) -> None:
+    Args:
+        empty: makes the places of a new map.
+    """
+
+    def __init__(self, empty: Callable[[], Places]) -> None:
+        self._empty = empty
         self._maps: dict[str, MapWords] = {}
 
     def get(self, name: str) -> MapWords | None:
@@ -41,7 +32,11 @@ class MapCache:
 
     def load(self, reply: MapReply) -> MapWords:
         """Take over a whole map."""
-        words = MapWords(reply.revision, {part.node_id: Place.of(part.features) for part in reply.features})
+        self.drop(reply.map)
+        words = MapWords(reply.revision, self._empty())
+        for part in reply.features:
+            words.places.put(part.node_id, part.features)
+        words.places.prepare()
         self._maps[reply.map] = words
         return words
 
@@ -64,7 +59,7 @@ class MapCache:
             return
         for operation in delta.operations:
             if isinstance(operation, AddNode):
-                words.places[operation.node.node_id] = Place.of(operation.features)
+                words.places.put(operation.node.node_id, operation.features)
             elif isinstance(operation, DeleteNode):
-                words.places.pop(operation.node_id, None)
+                words.places.remove(operation.node_id)
         words.revision = delta.revision

@@ -16,10 +16,10 @@ DELTA_WAIT_S = 0.2
 class MapReader:
     """The maps this service has been asked about."""
 
-    def __init__(self, bus: Bus, timeout_s: float) -> None:
+    def __init__(self, bus: Bus, cache: MapCache, timeout_s: float) -> None:
         self._bus, self._timeout_s = bus, timeout_s
         self._deltas = bus.subscribe(MAP_DELTA, map="*")
-        self._cache = MapCache()
+        self._cache = cache
 
     def follow(self) -> None:
         """Apply all deltas that have arrived."""

@@ -1,12 +1,12 @@
 """One MATCH question, answered in two steps so that each can be timed: pair, then verify. Pure."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from services.features.comparison import answer, is_settled, shortlist
+from services.features.comparison import answer, considered, is_settled, shortlist
 from services.features.interfaces import FeatureSet, IndexArray
-from services.features.map_cache import Place
 from services.features.pipeline import Pipeline
+from services.features.places import Places
 from services.features.verification import Candidate, feature_set, verify
 from shared.messages.features import Features
 from shared.messages.matching import MatchRequest, NodeMatch
@@ -27,25 +27,25 @@ class Paired:
     shortlisted: list[int]
 
 
-def pair(pipeline: Pipeline, request: MatchRequest, current: Features, places: Mapping[int, Place]) -> Paired:
+def pair(pipeline: Pipeline, request: MatchRequest, current: Features, places: Places) -> Paired:
     """Match the descriptors of the current frame with every candidate.
+
+    In a large map the candidates for `best_k` are the places that resemble the frame as a whole.
 
     Raises:
         RequestError: something was made by another pipeline, or a node is not in the map.
     """
     _require_pipeline("frame", current, pipeline)
-    wanted = sorted(places) if request.best_k else sorted(set(request.node_ids))
-    missing = sorted(set(request.node_ids) - places.keys())
+    missing = sorted(node_id for node_id in set(request.node_ids) if node_id not in places)
     if missing:
         raise RequestError(f"map {request.map!r} has no node {missing[:8]}")
-    for node_id in wanted:
-        if places[node_id].pipeline != pipeline.identity:
-            raise RequestError(_mismatch(f"node {node_id}", places[node_id].pipeline, pipeline))
-    candidates = {node_id: Candidate(node_id, places[node_id].features) for node_id in wanted}
+    _require_comparable(request, places, pipeline)
+    query = feature_set(current)
+    wanted = _wanted(request, query, places)
+    candidates = {node_id: Candidate(node_id, places.words(node_id)) for node_id in wanted}
     for number, target in enumerate(request.targets, start=1):
         _require_pipeline(f"target {number}", target, pipeline)
         candidates[-number] = Candidate(-number, feature_set(target))
-    query = feature_set(current)
     found = pipeline.matcher.match(query, [candidate.features for candidate in candidates.values()])
     pairs = dict(zip(candidates, found, strict=True))
     of_map = {node_id: rows for node_id, rows in pairs.items() if node_id >= 0}
@@ -75,6 +75,18 @@ def _verify_one(pipeline: Pipeline, request: MatchRequest, paired: Paired, node_
         pipeline.verification,
         request.with_matches,
     )
+
+
+def _wanted(request: MatchRequest, query: FeatureSet, places: Places) -> Sequence[int]:
+    if not request.best_k:
+        return sorted(set(request.node_ids))
+    return sorted({*request.node_ids, *places.nearest(query, considered(request.best_k))})
+
+
+def _require_comparable(request: MatchRequest, places: Places, pipeline: Pipeline) -> None:
+    others = places.others
+    for node_id in sorted(others) if request.best_k else sorted(others.keys() & set(request.node_ids)):
+        raise RequestError(_mismatch(f"node {node_id}", others[node_id], pipeline))
 
 
 def _require_pipeline(what: str, features: Features, pipeline: Pipeline) -> None:

@@ -8,10 +8,11 @@ import cv2
 
 from services.features.decoding import BadPictureError
 from services.features.frame_cache import FrameCache, FrameKey
-from services.features.map_cache import MapWords
+from services.features.map_cache import MapCache, MapWords
 from services.features.map_reader import MapReader
 from services.features.matching_requests import RequestError, pair, verify_paired
 from services.features.pipeline import Pipeline
+from services.features.places import Places
 from services.features.settings import FeaturesSettings
 from shared.bus import Bus, Request
 from shared.messages.features import ExtractRequest, Features
@@ -33,7 +34,7 @@ class FeatureService:
         thumbnail = settings.thumbnail_width_px, settings.thumbnail_quality
         self._pipeline = Pipeline(settings.profile(), *thumbnail, settings.runtime())
         self._frames = FrameCache(settings.frames_kept)
-        self._maps = MapReader(bus, settings.map_timeout_s)
+        self._maps = MapReader(bus, MapCache(self._no_places), settings.map_timeout_s)
         self._incoming = bus.subscribe(FRAME, robot=settings.robot)
         self._outgoing = bus.publisher(FEATURES, robot=settings.robot)
         self._matches = bus.requests(MATCH, robot=settings.robot)
@@ -91,7 +92,7 @@ class FeatureService:
         words = (
             self._maps.words(request.map, request.node_ids, request.map_revision)
             if needs_map
-            else MapWords(0)
+            else MapWords(0, self._no_places())
         )
         start_s = time.perf_counter()
         paired = pair(self._pipeline, request, current, words.places)
@@ -108,6 +109,10 @@ class FeatureService:
             match_ms=(paired_s - start_s) * 1e3,
             verify_ms=(time.perf_counter() - paired_s) * 1e3,
         )
+
+    def _no_places(self) -> Places:
+        pipeline = self._pipeline
+        return Places(pipeline.identity, pipeline.profile.keypoints, pipeline.extractor.distance)
 
     def _current(self, request: MatchRequest) -> Features:
         if request.features is not None:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from services.features.map_cache import MapCache
+from services.features.places import Places
 from shared.messages.features import Features
 from shared.messages.maps import AddNode, DeleteNode, MapDelta, MapReply, Node, NodeFeatures
 
@@ -23,7 +24,7 @@ def add(node_id: int) -> AddNode:
 
 @pytest.fixture
 def cache() -> MapCache:
-    kept = MapCache()
+    kept = MapCache(lambda: Places("sift", 1, "euclidean"))
     kept.load(MapReply(map="flat", revision=3, features=(NodeFeatures(node_id=1, features=features()),)))
     return kept
 
@@ -38,14 +39,14 @@ def test_nodes_come_and_go_with_deltas_in_order(cache):
     cache.apply(
         MapDelta(map="flat", revision=5, operations=(DeleteNode(node_id=1), add(4), DeleteNode(node_id=4)))
     )
-    assert sorted(cache.get("flat").places) == [2, 3]
+    assert cache.get("flat").places.ids == [2, 3]
     assert cache.get("flat").revision == 5
 
 
 @pytest.mark.parametrize("revision", [1, 3])
 def test_a_delta_already_in_the_map_changes_nothing(cache, revision):
     cache.apply(MapDelta(map="flat", revision=revision, operations=(DeleteNode(node_id=1),)))
-    assert sorted(cache.get("flat").places) == [1]
+    assert cache.get("flat").places.ids == [1]
 
 
 def test_a_gap_forgets_the_map(cache):

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from services.features.extraction import extract
-from services.features.map_cache import Place
 from services.features.matching_requests import RequestError, pair, verify_paired
 from services.features.pipeline import Pipeline
 from services.features.pipelines import PROFILES
+from services.features.places import Places
 from shared.messages.features import Features
 from shared.messages.matching import MatchRequest
 
@@ -31,13 +31,18 @@ def features(pipeline: Pipeline, picture: np.ndarray) -> Features:
     )
 
 
+def places(pipeline: Pipeline, **of: Features) -> Places:
+    kept = Places(pipeline.identity, pipeline.profile.keypoints, pipeline.extractor.distance)
+    for name, found in of.items():
+        kept.put(int(name.removeprefix("n")), found)
+    return kept
+
+
 def test_heading_and_yaw_of_another_place(room, pipeline):
     here = features(pipeline, room(0.0, 0.0, 0.0, 400))
-    there = Place.of(features(pipeline, room(*STEP_M, YAW_RAD, 400)))
+    there = places(pipeline, n8=features(pipeline, room(*STEP_M, YAW_RAD, 400)))
     request = MatchRequest(map="flat", node_ids=(8,))
-    answers = [
-        verify_paired(pipeline, request, pair(pipeline, request, here, {8: there}))[0] for _ in range(2)
-    ]
+    answers = [verify_paired(pipeline, request, pair(pipeline, request, here, there))[0] for _ in range(2)]
     found = answers[0]
     assert found.status == "ok"
     assert found.inliers > 0.8 * found.raw_matches > 60
@@ -49,12 +54,12 @@ def test_heading_and_yaw_of_another_place(room, pipeline):
 
 def test_a_node_of_another_pipeline_is_refused_naming_both(pipeline, room):
     here = features(pipeline, room(0.0, 0.0, 0.0, 400))
-    other = Place("superpoint-tangent-150", Place.of(here).features)
+    other = places(pipeline, n8=here.model_copy(update={"pipeline": "superpoint-tangent-150"}))
     with pytest.raises(RequestError, match=f"node 8 .*'superpoint-tangent-150'.*{pipeline.identity!r}"):
-        pair(pipeline, MatchRequest(map="flat", best_k=1), here, {8: other})
+        pair(pipeline, MatchRequest(map="flat", best_k=1), here, other)
 
 
 def test_an_empty_map_has_no_results(pipeline, room):
     here = features(pipeline, room(0.0, 0.0, 0.0, 400))
     request = MatchRequest(map="flat", best_k=5)
-    assert verify_paired(pipeline, request, pair(pipeline, request, here, {})) == ()
+    assert verify_paired(pipeline, request, pair(pipeline, request, here, places(pipeline))) == ()

@@ -1,0 +1,51 @@
+"""Maps of any size from rendered places. Pure.
+
+Beyond the places that were rendered, more are put together: each takes the words of four different rendered
+places, a quarter of all round from each. Their words are those of real pictures, so they compete with the
+right place as other streets of a campus would, though no such place exists.
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from services.features.interfaces import FeatureSet, Float32Array
+from shared.messages.features import Features
+
+PARTS = 4
+
+
+def places_of(real: Sequence[FeatureSet], count: int, rng: np.random.Generator) -> Iterator[FeatureSet]:
+    """`count` places: the real ones first, as many as are needed."""
+    yield from real[:count]
+    for _ in range(count - len(real)):
+        yield put_together([real[k] for k in rng.choice(len(real), PARTS, replace=False)], rng)
+
+
+def put_together(sources: Sequence[FeatureSet], rng: np.random.Generator) -> FeatureSet:
+    """A place that shows in each of its sectors what another of `sources` shows in that sector."""
+    start = float(rng.uniform(-np.pi, np.pi))
+    masks = [_sector(source.lonlat_rad, start, k, len(sources)) for k, source in enumerate(sources)]
+    kept = list(zip(sources, masks, strict=True))
+    scores = np.concatenate([source.scores[mask] for source, mask in kept])
+    order = np.argsort(-scores, kind="stable")
+    return FeatureSet(
+        np.concatenate([source.lonlat_rad[mask] for source, mask in kept])[order],
+        scores[order],
+        np.concatenate([source.descriptors[mask] for source, mask in kept])[order],
+    )
+
+
+def _sector(lonlat_rad: Float32Array, start: float, k: int, parts: int) -> np.ndarray:
+    turn = np.remainder(lonlat_rad[:, 0] - start, 2 * np.pi) / (2 * np.pi)
+    return np.asarray(np.minimum((turn * parts).astype(int), parts - 1) == k)
+
+
+def as_message(words: FeatureSet, pipeline: str) -> Features:
+    """The features message of a picture."""
+    return Features(
+        pipeline=pipeline,
+        lonlat_rad=words.lonlat_rad,
+        scores=words.scores,
+        descriptors=words.descriptors,
+    )

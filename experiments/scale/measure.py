@@ -1,0 +1,94 @@
+"""One map: how long it takes to load it, to find a place in it and to follow a way."""
+
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from experiments.output import rounded
+from experiments.scale.frames import Seen
+from experiments.scale.maps import as_message
+from services.features.interfaces import FeatureSet
+from services.features.matching_requests import pair, verify_paired
+from services.features.pipeline import Pipeline
+from services.features.places import Places
+from services.features.verification import Candidate, verify
+from shared.messages.matching import MatchRequest, NodeMatch
+
+TRACKED = 4
+"""Places compared on a way: those ahead and around (services/planner/following.py)."""
+BYTES_PER_KB = 1000.0
+
+
+@dataclass(frozen=True)
+class Found:
+    """Answer to one picture."""
+
+    node_id: int
+    inliers: int
+    ms: float
+
+
+def load(words: Iterable[FeatureSet], pipeline: Pipeline) -> tuple[Places, float]:
+    """Places of a map, numbered from zero, and the seconds it took to take them over."""
+    messages = (as_message(each, pipeline.identity) for each in words)
+    places = Places(pipeline.identity, pipeline.profile.keypoints, pipeline.extractor.distance)
+    took_s = 0.0
+    for node_id, message in enumerate(messages):
+        start_s = time.perf_counter()
+        places.put(node_id, message)
+        took_s += time.perf_counter() - start_s
+    start_s = time.perf_counter()
+    places.prepare()
+    return places, took_s + time.perf_counter() - start_s
+
+
+def localise(queries: Sequence[Seen], places: Places, pipeline: Pipeline) -> list[Found]:
+    """The most similar place of each picture as the running service finds it, verified."""
+    return [
+        _ask(query, MatchRequest(seq=n, map="scale", best_k=1), places, pipeline)
+        for n, query in enumerate(queries)
+    ]
+
+
+def track(
+    queries: Sequence[Seen], near: Sequence[Sequence[int]], places: Places, pipeline: Pipeline
+) -> list[Found]:
+    """Each picture compared with the few places given for it, verified."""
+    return [
+        _ask(query, MatchRequest(seq=n, map="scale", node_ids=tuple(ids)), places, pipeline)
+        for n, (query, ids) in enumerate(zip(queries, near, strict=True))
+    ]
+
+
+def _ask(query: Seen, request: MatchRequest, places: Places, pipeline: Pipeline) -> Found:
+    message = as_message(query.words, pipeline.identity)
+    start_s = time.perf_counter()
+    answers: tuple[NodeMatch, ...] = verify_paired(
+        pipeline, request, pair(pipeline, request, message, places)
+    )
+    took_ms = (time.perf_counter() - start_s) * 1e3
+    best = answers[0] if answers else None
+    return Found(-1 if best is None else best.node_id, 0 if best is None else best.inliers, took_ms)
+
+
+def exhaustive(query: Seen, words: Sequence[FeatureSet], pipeline: Pipeline) -> tuple[np.ndarray, float]:
+    """Verified matches with every place of the map, and the milliseconds that took."""
+    start_s = time.perf_counter()
+    pairs = pipeline.matcher.match(query.words, words)
+    inliers = [
+        verify(query.words, Candidate(n, place), rows, 0, pipeline.verification, False).inliers
+        for n, (place, rows) in enumerate(zip(words, pairs, strict=True))
+    ]
+    return np.array(inliers), (time.perf_counter() - start_s) * 1e3
+
+
+def times(found: Sequence[Found], name: str) -> dict[str, Any]:
+    """Median and 99th percentile."""
+    ms = [each.ms for each in found]
+    return {
+        f"{name}_p50_ms": rounded(np.percentile(ms, 50), 2),
+        f"{name}_p99_ms": rounded(np.percentile(ms, 99), 2),
+    }

@@ -1,0 +1,42 @@
+"""Where the places of a study stand and where its pictures are taken. Pure."""
+
+import math
+
+import numpy as np
+
+from shared.messages.simulation import Pose
+from simulator.freespace import FreeSpace
+
+SPACING_M = {"indoor": 0.6, "outdoor": 1.5}
+"""Distance of neighbouring places, as exploring leaves them."""
+
+NEAR = (0.3, 1.2)
+"""A picture is taken within these parts of the spacing from a place, in free sight of it."""
+
+
+def place_poses(space: FreeSpace, spacing_m: float, rng: np.random.Generator) -> list[Pose]:
+    """As many poses as fit on the free floor, none nearer than `spacing_m` to another, in random order."""
+    cells: dict[tuple[int, int], list[tuple[float, float]]] = {}
+    kept = []
+    for x_m, y_m in rng.permutation(space.centres_m()).tolist():
+        column, row = int(x_m // spacing_m), int(y_m // spacing_m)
+        around = [(column + i, row + j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+        if all(math.dist((x_m, y_m), other) >= spacing_m for cell in around for other in cells.get(cell, ())):
+            cells.setdefault((column, row), []).append((x_m, y_m))
+            kept.append(Pose(x_m=x_m, y_m=y_m, yaw_rad=float(rng.uniform(-math.pi, math.pi))))
+    return kept
+
+
+def query_poses(
+    space: FreeSpace, places: list[Pose], spacing_m: float, count: int, rng: np.random.Generator
+) -> list[Pose]:
+    """Poses beside places, turned at random."""
+    found: list[Pose] = []
+    while len(found) < count:
+        place = places[int(rng.integers(len(places)))]
+        bearing = float(rng.uniform(-math.pi, math.pi))
+        distance_m = float(rng.uniform(*NEAR)) * spacing_m
+        end = (place.x_m + distance_m * math.cos(bearing), place.y_m + distance_m * math.sin(bearing))
+        if space.is_free(end) and space.line_of_sight((place.x_m, place.y_m), end):
+            found.append(Pose(x_m=end[0], y_m=end[1], yaw_rad=float(rng.uniform(-math.pi, math.pi))))
+    return found

@@ -1,0 +1,140 @@
+"""The measurements of `topnav study scale`, one table after the other."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from experiments.output import rounded
+from experiments.scale.frames import Seen, WorldFrames
+from experiments.scale.maps import places_of
+from experiments.scale.measure import TRACKED, Found, exhaustive, load, localise, times, track
+from experiments.scale.peers import peers, timed
+from experiments.scale.refusal import calibrated, refusal_curve
+from services.features.interfaces import FeatureSet
+from services.features.pipeline import Pipeline
+from services.features.places import Places
+
+Row = dict[str, Any]
+EXHAUSTIVE_PICTURES = {1000: 60, 10_000: 3}
+"""Pictures compared with every place of a map of at most so many places: each takes seconds."""
+NEAR_SPACINGS = 2.0
+
+
+class ScaleStudy:
+    """Maps that grow, and the same pictures to be found in each.
+
+    Args:
+        frames: of the worlds in the maps.
+        foreign: pictures of a world that is in none.
+    """
+
+    def __init__(
+        self, pipeline: Pipeline, frames: Sequence[WorldFrames], foreign: Sequence[Seen], seed: int
+    ) -> None:
+        rng = np.random.default_rng(seed)
+        self._pipeline, self._foreign, self._seed = pipeline, foreign, seed
+        self._places = _shuffled([seen for each in frames for seen in each.places], rng)
+        self._queries = _shuffled([seen for each in frames for seen in each.queries], rng)
+
+    def point(self, count: int) -> tuple[Row, Places]:
+        """Figures of a map of `count` places, and the map."""
+        rng = np.random.default_rng([self._seed, count])
+        real = [seen.words for seen in self._places]
+        places, load_s = load(places_of(real, count, rng), self._pipeline)
+        queries = self._near(count)
+        found = localise(queries, places, self._pipeline)
+        near = [_neighbours(answer.node_id, count) for answer in found]
+        followed = track(queries, near, places, self._pipeline)
+        truth = self._exhaustive(places, queries, count)
+        row = {
+            "nodes": count,
+            **times(found, "localise"),
+            **times(followed, "track"),
+            "right_place": rounded(
+                np.mean([self._is_right(f, q) for f, q in zip(found, queries, strict=True)])
+            ),
+            "bytes_per_node": rounded(places.size_bytes / count, 0),
+            "load_s": rounded(load_s, 2),
+            **_against(truth, found),
+        }
+        return row, places
+
+    def refusal(self, places: Places, count: int) -> Row:
+        """Errors of "not in this map" in a map."""
+        own = [each.inliers for each in localise(self._near(count), places, self._pipeline)]
+        foreign = [each.inliers for each in localise(self._foreign, places, self._pipeline)]
+        curve = refusal_curve(own, foreign)
+        return {"nodes": count, **asdict(calibrated(curve)), "curve": [asdict(each) for each in curve]}
+
+    def peers(self, count: int, asked: int) -> list[Row]:
+        """Time and recall@1 of topnav and of others, on the same pictures and the same map of real places."""
+        words = [seen.words for seen in self._places[:count]]
+        queries = self._near(count)[:asked]
+        best = [exhaustive(query, words, self._pipeline) for query in queries]
+        places, _ = load(words, self._pipeline)
+        found = localise(queries, places, self._pipeline)
+        rows = [
+            (
+                "exhaustive, verified",
+                [int(s.argmax()) for s, _ in best],
+                float(np.median([ms for _, ms in best])),
+            )
+        ]
+        rows.append(("topnav", [f.node_id for f in found], float(np.median([f.ms for f in found]))))
+        for name, rank in peers(words).items():
+            rows.append((name, *timed(rank, [query.words for query in queries])))
+        return [
+            {
+                "name": name,
+                "nodes": len(words),
+                "ms": rounded(ms, 2),
+                "recall_at_1": rounded(
+                    np.mean([s[a] >= s.max() for (s, _), a in zip(best, answers, strict=True)])
+                ),
+            }
+            for name, answers, ms in rows
+        ]
+
+    def _near(self, count: int) -> list[Seen]:
+        """Pictures taken beside a real place that is in a map of `count`."""
+        return [
+            query for query in self._queries if any(_is_near(query, place) for place in self._places[:count])
+        ]
+
+    def _is_right(self, found: Found, query: Seen) -> bool:
+        real = 0 <= found.node_id < len(self._places)
+        return real and _is_near(query, self._places[found.node_id])
+
+    def _exhaustive(
+        self, places: Places, queries: Sequence[Seen], count: int
+    ) -> list[tuple[np.ndarray, float]]:
+        asked = next((n for most, n in EXHAUSTIVE_PICTURES.items() if count <= most), 0)
+        words: list[FeatureSet] = [places.words(node_id) for node_id in range(count)] if asked else []
+        return [exhaustive(query, words, self._pipeline) for query in queries[:asked]]
+
+
+def _against(truth: list[tuple[np.ndarray, float]], found: Sequence[Found]) -> Row:
+    if not truth:
+        return {"exhaustive_ms": None, "recall_at_1": None, "exhaustive_pictures": 0}
+    same = [s[f.node_id] >= s.max() for (s, _), f in zip(truth, found, strict=False)]
+    return {
+        "exhaustive_ms": rounded(np.median([ms for _, ms in truth]), 1),
+        "recall_at_1": rounded(np.mean(same)),
+        "exhaustive_pictures": len(truth),
+    }
+
+
+def _neighbours(node_id: int, count: int) -> list[int]:
+    return sorted({(max(node_id, 0) + step) % count for step in range(TRACKED)})
+
+
+def _is_near(query: Seen, place: Seen) -> bool:
+    apart_m = math.dist((query.pose.x_m, query.pose.y_m), (place.pose.x_m, place.pose.y_m))
+    return query.world == place.world and apart_m <= NEAR_SPACINGS * query.spacing_m
+
+
+def _shuffled(seen: list[Seen], rng: np.random.Generator) -> list[Seen]:
+    return [seen[k] for k in rng.permutation(len(seen)).tolist()]

@@ -1,0 +1,64 @@
+"""`topnav study scale`: time, memory and recall as a map grows from 100 to 100,000 places."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from experiments import options
+from experiments.output import write_json
+from experiments.plots.scale import draw_growth
+from experiments.scale.frames import frames_of
+from experiments.scale.machine import machine
+from experiments.scale.study import ScaleStudy
+from experiments.tables import print_rows, wide_console
+from services.features.pipeline import Pipeline
+from services.features.pipelines import find_profile
+
+MAPPED = {"apartment": 100, "factory": 200, "village": 200}
+FOREIGN = {"break_room": 100}
+"""Worlds in the maps and outside of them, with how many pictures are taken there."""
+SIZES, QUICK_SIZES = (100, 1000, 10_000, 100_000), (100, 300)
+PEER_PLACES, PEER_PICTURES = 1000, 40
+
+
+def main(
+    quick: Annotated[bool, typer.Option("--quick", help="Maps of 100 and 300 places.")] = False,
+    sizes: Annotated[str | None, typer.Option(help='Places of the maps, as "100,1000".')] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw the growth into this PNG.")] = None,
+    seed: options.Seed = 1,
+    pipeline: options.PipelineName = None,
+    json_file: options.JsonFile = None,
+    data_dir: options.DataDir = options.DATA_DIR,
+) -> int:
+    """Growth of the time to find a place, of memory and of loading; others on the same pictures; refusal."""
+    counts = [int(size) for size in sizes.split(",")] if sizes else list(QUICK_SIZES if quick else SIZES)
+    chosen = Pipeline(find_profile(pipeline or "sift"))
+    report: dict[str, Any] = {"machine": machine(), "seed": seed, "points": [], "peers": [], "refusal": {}}
+
+    def keep() -> None:
+        if json_file is not None:
+            write_json(json_file, report)
+
+    with wide_console(stderr=True).status("") as status:
+        cache = data_dir / "cache"
+        frames = [frames_of(world, chosen, n, seed, cache, status.update) for world, n in MAPPED.items()]
+        foreign = [frames_of(world, chosen, n, seed, cache, status.update) for world, n in FOREIGN.items()]
+        study = ScaleStudy(chosen, frames, [seen for each in foreign for seen in each.queries], seed)
+        for count in counts:
+            status.update(f"a map of {count} places")
+            row, places = study.point(count)
+            report["points"].append(row)
+            if count == max(counts):
+                status.update(f"pictures that are not in the map of {count} places")
+                report["refusal"] = study.refusal(places, count)
+            keep()
+        status.update("others on the same pictures")
+        report["peers"] = study.peers(min(PEER_PLACES, max(counts)), PEER_PICTURES)
+        keep()
+    if plot is not None:
+        draw_growth(plot, report["points"])
+    print_rows("maps that grow", report["points"])
+    print_rows("on the same pictures", report["peers"])
+    print_rows("not in this map", [{k: v for k, v in report["refusal"].items() if k != "curve"}])
+    return len(report["points"])
