@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from experiments.eye import cache_folder, eye
 from experiments.scale.poses import SPACING_M, place_poses, query_poses
-from experiments.studies.pair_features import cache_folder, eye
 from services.features.interfaces import FeatureSet
 from services.features.pipeline import Pipeline
 from shared.messages.simulation import Pose
@@ -46,8 +46,7 @@ def frames_of(
     spacing_m = SPACING_M[world.environment]
     places = place_poses(space, spacing_m, rng)
     asked = query_poses(space, places, spacing_m, queries, rng)
-    folder = cache_folder(cache, world, pipeline, seed, (0.0, spacing_m))
-    folder = folder.with_name(folder.name.replace("pairs", "scale", 1))
+    folder = cache_folder(cache, "scale", world, pipeline, seed, spacing_m)
     return WorldFrames(
         _seen(world, pipeline, places, folder / "places", tick),
         _seen(world, pipeline, asked, folder / f"queries-{queries}", tick),

@@ -8,9 +8,9 @@ import numpy as np
 import typer
 
 from experiments import options
+from experiments.eye import WIDTH_PX
 from experiments.output import rounded, write_json
 from experiments.studies.disturbance_results import CLEAN
-from experiments.studies.pair_features import WIDTH_PX
 from experiments.tables import print_rows
 from services.features.interfaces import FeatureSet
 from services.features.pipeline import Pipeline

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from experiments.environments import environment_of
+from experiments.eye import cache_folder
 from experiments.map_client import require_map
 from experiments.output import rounded
 from experiments.stack import StackChoice, open_stack
-from experiments.studies.pair_features import cache_folder, features_of_pairs
+from experiments.studies.pair_features import features_of_pairs
 from experiments.studies.pair_headings import PairResult, judge_pair
 from experiments.studies.pairs import PosePair, draw_pair
 from experiments.truth_file import load_truth, truth_path
@@ -43,7 +44,7 @@ def wrong_headings(
     pipeline = Pipeline(find_profile(environment_of(world).pipeline or "sift"))
     space = free_space(world)
     drawn = _near(space, centre_m, radius_m, pairs, np.random.default_rng(1))
-    folder = cache_folder(data_dir / "cache", world, pipeline, 1).with_suffix(f".{what.replace(' ', '-')}")
+    folder = cache_folder(data_dir / "cache", what.replace(" ", "-"), world, pipeline, 1)
     features = features_of_pairs(drawn, world, pipeline, folder, lambda: None)
     judged = [
         judge_pair(pair, both, pipeline, n)

@@ -8,8 +8,9 @@ import typer
 from rich.progress import track
 
 from experiments import options
+from experiments.eye import cache_folder
 from experiments.output import write_json
-from experiments.studies.pair_features import cache_folder, features_of_pairs
+from experiments.studies.pair_features import features_of_pairs
 from experiments.studies.pair_headings import PairResult, judge_pair
 from experiments.studies.pair_tables import distance_table, method_table, status_counts
 from experiments.studies.pairs import APART_M, draw_pairs
@@ -67,7 +68,7 @@ def measure(
     world = load_world(world_name)
     pipeline = Pipeline(find_profile(pipeline_name))
     pairs = draw_pairs(free_space(world), count, np.random.default_rng(seed), apart_m)
-    folder = cache_folder(data_dir / "cache", world, pipeline, seed, apart_m)
+    folder = cache_folder(data_dir / "cache", "pairs", world, pipeline, seed, apart_m)
     console = wide_console(stderr=True)
     with console.status("") as status:
         done = iter(range(1, count + 1))

@@ -8,12 +8,12 @@ import numpy as np
 import typer
 
 from experiments import options
+from experiments.eye import camera_settings
 from experiments.failure import ExperimentError, one_line_errors
 from experiments.map_client import require_map
 from experiments.output import rounded, write_json
 from experiments.rounds import EXTRACT_TIMEOUT_S, MARGIN_M, Game, Round
 from experiments.stack import Stack, StackChoice, open_stack
-from experiments.studies.pair_features import camera_settings
 from experiments.tables import print_rows
 from experiments.trail import collisions
 from shared.messages import ExtractRequest, MissionRequest, MissionStatus
