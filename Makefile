@@ -1,17 +1,19 @@
 # Everything runs from a bare clone: `setup` makes .venv and installs all that a run needs.
 #   make demo    explore the apartment, then find a hidden robot from its picture (KEEP=1 leaves it running)
-#   make test    every test          make check   lint, types and unit tests, within a minute
+#   make test    every test but those of tests/faults      make check   lint, types, unit tests: a minute
+#   make faults  what dies, hangs, lies, floods or is cut off: deploy/FAULTS.md
 PYTHON ?= python3
 VENV ?= .venv
 KEEP ?=
 PYTEST_ARGS ?=
+FUZZ_ARGS ?= --seconds 60 --json runs/fuzz/report.json
 
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 INPUTS := pyproject.toml constraints.txt deploy/packaging/opencv-shim/pyproject.toml
 SOURCES := services shared simulator experiments tests
 
-.PHONY: setup demo test check lint types bench screenshots clean
+.PHONY: setup demo test faults check lint types bench fuzz sbom audit screenshots clean
 
 setup: $(STAMP)
 	@bash deploy/setup/vulkan.sh
@@ -28,7 +30,10 @@ demo: setup
 	KEEP=$(KEEP) $(BIN)/topnav demo
 
 test: setup
-	$(BIN)/python -m pytest $(PYTEST_ARGS)
+	$(BIN)/python -m pytest --ignore=tests/faults $(PYTEST_ARGS)
+
+faults: setup
+	$(BIN)/python -m pytest tests/faults $(PYTEST_ARGS)
 
 check: setup lint types
 	$(BIN)/python -m pytest tests/unit tests/test_architecture.py -m "not render and not slow" $(PYTEST_ARGS)
@@ -43,6 +48,16 @@ types: setup
 bench: setup
 	$(BIN)/topnav bench loop
 	$(BIN)/python -m pytest -q -s tests/benchmarks/test_console_graph.py
+	$(BIN)/python -m pytest -q -s tests/benchmarks/test_gateway_load.py
+
+fuzz: setup
+	$(BIN)/python -m tests.fuzz $(FUZZ_ARGS)
+
+sbom: setup
+	@bash deploy/setup/audit.sh sbom $(VENV)
+
+audit: setup
+	@bash deploy/setup/audit.sh audit $(VENV)
 
 screenshots: setup
 	$(BIN)/python -m tests.screenshots

@@ -4,6 +4,7 @@ import sys
 from functools import partial
 
 from shared.lifecycle import run_service
+from shared.sole_robot import TakenError
 from simulator.service import run
 from simulator.service_settings import SimulatorSettings
 from simulator.world_check import start_faults
@@ -11,7 +12,7 @@ from simulator.world_file import WorldFileError, load_world
 
 
 def main() -> None:
-    """Run the simulator until a signal; a bad world file ends it with one line."""
+    """Run the simulator until a signal; a bad world file or a taken name ends it with one line."""
     settings = SimulatorSettings.from_environment()
     try:
         world = load_world(settings.world)
@@ -19,7 +20,10 @@ def main() -> None:
         sys.exit(f"simulator: {error}")
     if faults := start_faults(world):
         sys.exit(f"simulator: {settings.world}: {faults[0]}")
-    run_service("simulator", settings, partial(run, settings, world))
+    try:
+        run_service("simulator", settings, partial(run, settings, world))
+    except TakenError as error:
+        sys.exit(f"simulator: {error}")
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from pathlib import Path
 from shared.bus import Bus
 from shared.estop.sides import StopFollower
 from shared.messages import Command, Frame, Ranges, Truth
+from shared.sole_robot import SoleRobot
 from shared.topics import COMMAND, FRAME, RANGES, SIMULATION, TRUTH
 from simulator.command_age import CommandAge
 from simulator.experimenter import Experimenter, RequestError
@@ -159,10 +160,16 @@ class RealTimeLoop(Loop):
 
 
 def run(settings: SimulatorSettings, world: WorldFile, bus: Bus, stop: threading.Event) -> None:
-    """Build the world and serve until `stop`."""
+    """Build the world and serve until `stop`.
+
+    Raises:
+        TakenError: another process is this robot.
+    """
+    sole = SoleRobot(bus, settings.robot)
     simulation = Simulation(world, settings.simulation(), settings.seed)
     ports = Ports(bus, settings.robot, settings.state_dir)
     loop = (LockstepLoop if settings.lockstep else RealTimeLoop)(simulation, settings, ports)
+    sole.require()
     bus.announce("simulator")
     log.info("world %s, %s", settings.world, "lockstep" if settings.lockstep else "real time")
     # The first picture builds the shaders, about half a second: requests can wait for that, clocks cannot.
@@ -170,5 +177,6 @@ def run(settings: SimulatorSettings, world: WorldFile, bus: Bus, stop: threading
     loop.start()
     while not stop.is_set():
         bus.wait(settings.repeat_s / 4 if settings.lockstep else REAL_TIME_TURN_S)
+        sole.require()
         loop.turn(time.monotonic())
         ports.stop.tell(time.monotonic())

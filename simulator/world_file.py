@@ -15,10 +15,10 @@ from pydantic import (
     model_validator,
 )
 
+from shared.yaml_reading import YamlFileError, read_yaml
 from simulator.assets.folder import AssetFolder
 from simulator.furniture.catalogue import FURNITURE
 from simulator.textures.catalogue import KINDS
-from simulator.yaml_reading import YamlFileError, read_yaml
 
 WORLDS = Path(__file__).parent / "worlds"
 

@@ -14,3 +14,5 @@ RUN useradd --system --uid 10001 topnav \
 USER topnav
 # The root file system is read-only: caches go to the tmpfs.
 ENV HOME=/tmp PYTHONDONTWRITEBYTECODE=1 PYTHONUNBUFFERED=1
+# The tmpfs is memory: an archive that is imported waits on the volume.
+ENV TMPDIR=/var/lib/topnav/maps

@@ -1,10 +1,10 @@
 """Words of all places of the maps asked for, filled once and then kept by deltas."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from services.features.places import Places
-from shared.messages.maps import AddNode, DeleteNode, MapDelta, MapReply
+from shared.messages.maps import AddNode, DeleteNode, MapDelta, NodeFeatures
 
 
 @dataclass
@@ -30,14 +30,13 @@ class MapCache:
         """The map as far as it is known, None when it must be read."""
         return self._maps.get(name)
 
-    def load(self, reply: MapReply) -> MapWords:
-        """Take over a whole map."""
-        self.drop(reply.map)
-        words = MapWords(reply.revision, self._empty())
-        for part in reply.features:
+    def load(self, name: str, revision: int, features: Iterable[NodeFeatures]) -> MapWords:
+        """Take over a whole map, place by place."""
+        words = MapWords(revision, self._empty())
+        for part in features:
             words.places.put(part.node_id, part.features)
         words.places.prepare()
-        self._maps[reply.map] = words
+        self._maps[name] = words
         return words
 
     def drop(self, name: str) -> None:

@@ -10,6 +10,7 @@ The one conversion, whatever the file holds:
 """
 
 import io
+import math
 import warnings
 from typing import Final
 
@@ -19,7 +20,12 @@ from PIL import Image, UnidentifiedImageError
 
 from services.gateway.picture_header import HeaderError, PictureHeader, read_header
 
-MAX_PIXELS: Final = 64_000_000
+MAX_PIXELS: Final = {"jpeg": 64_000_000, "png": 34_000_000, "webp": 20_000_000}
+"""A JPEG is shrunk while it is decoded; PNG is decoded whole, at 4 bytes a pixel, and WebP at 16."""
+MAX_SCANS: Final = 100
+"""Of a JPEG. Progressive ones have ten or so; each is a pass over the picture, an empty one a dozen bytes."""
+BAND_ROWS: Final = 64
+"""Rows of the result converted at a time: a large picture shall not be there in several modes at once."""
 MIN_WIDTH_PX: Final = 128
 MAX_WIDTH_PX: Final = 2048
 PILLOW_FORMATS: Final = {"png": ("PNG",), "jpeg": ("JPEG",), "webp": ("WEBP",)}
@@ -69,6 +75,14 @@ def check_header(data: bytes, declared_type: str) -> PictureHeader:
             "send the content type that fits the file",
         )
     _check_size(header)
+    if header.format == "jpeg" and (scans := data.count(b"\xff\xda")) > MAX_SCANS:
+        raise PictureError(
+            422,
+            "too_many_scans",
+            f"a JPEG of at most {MAX_SCANS} scans",
+            f"{scans}",
+            "save it as a baseline JPEG",
+        )
     return header
 
 
@@ -96,22 +110,20 @@ def decode_bgr(data: bytes, header: PictureHeader) -> Bgr:
         image.load()
     except (OSError, ValueError, SyntaxError, EOFError, IndexError, KeyError, MemoryError) as error:
         raise _damaged(error) from None
-    rgb = _as_rgb(image)
-    if rgb.size != target:
-        rgb = rgb.resize(target, Image.Resampling.BOX)
-    return np.ascontiguousarray(np.asarray(rgb, dtype=np.uint8)[:, :, ::-1])
+    return np.concatenate([_band(image, target, row) for row in range(0, target[1], BAND_ROWS)])
 
 
 def _check_size(header: PictureHeader) -> None:
     width_px, height_px = header.width_px, header.height_px
     got = f"{width_px} x {height_px} px"
-    if width_px * height_px > MAX_PIXELS:
+    most = MAX_PIXELS[header.format]
+    if width_px * height_px > most:
         raise PictureError(
             413,
             "too_many_pixels",
-            f"at most {MAX_PIXELS // 1_000_000} megapixels",
+            f"at most {most // 1_000_000} megapixels as {header.format.upper()}",
             got,
-            "send a smaller picture",
+            "send a smaller picture or, up to 64 megapixels, a JPEG",
         )
     if width_px != 2 * height_px:
         raise PictureError(
@@ -141,6 +153,19 @@ def _open(data: bytes, header: PictureHeader) -> Image.Image:
     if image.size != (header.width_px, header.height_px):
         raise _damaged(ValueError(f"header says {header[1:]}, decoder says {image.size}"))
     return image
+
+
+def _band(image: Image.Image, target: tuple[int, int], row: int) -> Bgr:
+    """Rows `row` to `row + BAND_ROWS` of the result, averaged over the rows of `image` that they cover."""
+    width, height = target
+    rows = min(BAND_ROWS, height - row)
+    top, bottom = row * image.height / height, (row + rows) * image.height / height
+    first = math.floor(top)
+    rgb = _as_rgb(image.crop((0, first, image.width, min(image.height, math.ceil(bottom)))))
+    if image.size != target:
+        box = (0.0, top - first, float(image.width), min(bottom - first, float(rgb.height)))
+        rgb = rgb.resize((width, rows), Image.Resampling.BOX, box)
+    return np.ascontiguousarray(np.asarray(rgb, dtype=np.uint8)[:, :, ::-1])
 
 
 def _as_rgb(image: Image.Image) -> Image.Image:

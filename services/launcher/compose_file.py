@@ -5,10 +5,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Literal
 
-import yaml
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from services.launcher.interpolate import interpolate_tree
+from shared.yaml_reading import YamlFileError, read_yaml
 
 UNIT_S = {"us": 1e-6, "ms": 1e-3, "s": 1.0, "m": 60.0, "h": 3600.0}
 DURATION = re.compile(r"(?:\d+(?:\.\d+)?(?:us|ms|s|m|h))+\Z")
@@ -36,7 +36,13 @@ def _text_mapping(value: object) -> object:
 
 
 def _dependencies(value: object) -> object:
-    return {name: {} for name in value} if isinstance(value, list) else value
+    return {_name(name): {} for name in value} if isinstance(value, list) else value
+
+
+def _name(value: object) -> str:
+    if not isinstance(value, str):
+        raise ValueError(f"must be the name of a service, got {value!r:.80}")
+    return value
 
 
 def _words(value: object) -> object:
@@ -67,7 +73,10 @@ class Healthcheck(Model):
 class Dependency(Model):
     """What has to hold for another service before this one starts."""
 
-    condition: Literal["service_started", "service_healthy"] = "service_started"
+    condition: Literal["service_started", "service_healthy", "service_completed_successfully"] = (
+        "service_started"
+    )
+    required: bool = True
 
 
 class Service(Model):
@@ -96,7 +105,10 @@ def load_compose(path: Path, variables: Mapping[str, str]) -> Compose:
     Raises:
         ValueError: not readable as a Compose file; names the file and the field.
     """
-    document = interpolate_tree(yaml.safe_load(path.read_text(encoding="utf-8")), variables)
+    try:
+        document = interpolate_tree(read_yaml(path), variables)
+    except YamlFileError as error:
+        raise ValueError(f"{path}: {error}") from error
     if not isinstance(document, dict) or "services" not in document:
         raise ValueError(f"{path}: expected a mapping with the key 'services'")
     return Compose.model_validate(document)

@@ -11,6 +11,7 @@ from services.map_store.blobs import checksum, unpack_features
 from services.map_store.contents import Kind
 from services.map_store.errors import CorruptError, InvalidError, MapError
 from services.map_store.graph import AddPlace, Graph, Place, Step, apply
+from services.map_store.zip_opening import open_zip
 from shared.messages.base import Name, Part
 from shared.messages.maps import Edge, PutEdge
 from shared.wire import MAX_CONTAINER
@@ -19,6 +20,8 @@ INDEX = "map.json"
 BLOBS = "blobs/"
 MAX_INDEX_BYTES = 64_000_000
 MAX_BLOB_BYTES = 64_000_000
+MAX_DIRECTORY_BYTES = 10_000_000
+"""Twice what a map with as many places as the bus carries needs for their two blobs each."""
 EPOCH = (1980, 1, 1, 0, 0, 0)
 """Time stamp of every entry: the earliest a zip can hold."""
 
@@ -66,10 +69,7 @@ class Archive:
     """
 
     def __init__(self, file: IO[bytes], max_bytes: int) -> None:
-        try:
-            self._zip = zipfile.ZipFile(file)
-        except (zipfile.BadZipFile, OSError, ValueError, EOFError) as error:
-            raise InvalidError(f"not a zip archive: {error}") from error
+        self._zip = open_zip(file, MAX_DIRECTORY_BYTES)
         self._check_entries(max_bytes)
         self.index = self._read_index()
         self.steps = self._check_graph()

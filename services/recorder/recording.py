@@ -8,7 +8,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from mcap.exceptions import McapError
 from mcap.reader import SeekingReader
 from mcap.writer import CompressionType, Writer
 
@@ -20,6 +19,7 @@ from services.recorder.channels import (
     json_schema,
     topic_of,
 )
+from services.recorder.whole_part import DAMAGE, MAX_RECORD_BYTES
 
 CHUNK_BYTES = 1_000_000
 LIBRARY = "topnav recorder"
@@ -122,10 +122,10 @@ def read(path: Path) -> Iterator[Sample]:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[SeekingReader]:
-    try:
-        with path.open("rb") as stream:
-            yield SeekingReader(stream, validate_crcs=True)
-    except (McapError, EOFError) as error:
-        raise RecordingError(
-            f"{path} is no whole recording ({type(error).__name__}): 'topnav recover' saves what is in it"
-        ) from error
+    with path.open("rb") as stream:
+        try:
+            yield SeekingReader(stream, validate_crcs=True, record_size_limit=MAX_RECORD_BYTES)
+        except (*DAMAGE, OSError) as error:  # OSError: an index that points outside the file
+            raise RecordingError(
+                f"{path} is no whole recording ({type(error).__name__}): 'topnav recover' saves what is in it"
+            ) from error

@@ -14,6 +14,9 @@ from services.recorder.backlog import Sample
 MAX_RECORD_BYTES = 256_000_000
 """A longer record is damage: the longest message has 64 MB."""
 
+DAMAGE = (McapError, EOFError, struct.error, ZstdError, ValueError, ArithmeticError, LookupError, MemoryError)
+"""What the reader of MCAP files raises on damaged ones."""
+
 
 class WholePart:
     """The messages of a recording up to the first damage; `problem` then says what ended them."""
@@ -31,5 +34,5 @@ class WholePart:
                     channels[record.id] = record.topic
                 elif isinstance(record, Message) and record.channel_id in channels:
                     yield Sample(channels[record.channel_id], record.data, record.log_time)
-        except (McapError, EOFError, struct.error, ZstdError, ValueError) as error:
+        except DAMAGE as error:
             self.problem = f"{type(error).__name__}: {error}"

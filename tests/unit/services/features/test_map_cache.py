@@ -6,7 +6,7 @@ import pytest
 from services.features.map_cache import MapCache
 from services.features.places import Places
 from shared.messages.features import Features
-from shared.messages.maps import AddNode, DeleteNode, MapDelta, MapReply, Node, NodeFeatures
+from shared.messages.maps import AddNode, DeleteNode, MapDelta, Node, NodeFeatures
 
 
 def features(pipeline: str = "sift") -> Features:
@@ -25,7 +25,7 @@ def add(node_id: int) -> AddNode:
 @pytest.fixture
 def cache() -> MapCache:
     kept = MapCache(lambda: Places("sift", 1, "euclidean"))
-    kept.load(MapReply(map="flat", revision=3, features=(NodeFeatures(node_id=1, features=features()),)))
+    kept.load("flat", 3, [NodeFeatures(node_id=1, features=features())])
     return kept
 
 

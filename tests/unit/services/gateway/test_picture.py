@@ -88,12 +88,17 @@ def test_cmyk_jpegs_are_converted() -> None:
     np.testing.assert_allclose(decoded(data, "jpeg")[64, 64], RED_BGR, atol=12)
 
 
-def test_exif_rotation_is_ignored() -> None:
-    image = Image.new("RGB", SIZE, (255, 0, 0))
+@pytest.mark.parametrize("orientation", [2, 3, 6], ids=["mirrored", "upside down", "on its side"])
+@pytest.mark.parametrize("kind", ["PNG", "JPEG", "WEBP"])
+def test_exif_rotation_is_ignored(kind: str, orientation: int) -> None:
+    image = Image.new("RGB", SIZE, (0, 0, 255))
+    image.paste((255, 0, 0), (0, 0, 128, 64))
     exif = Image.Exif()
-    exif[0x0112] = 6  # rotate by 90 degrees to show
-    bgr = decoded(saved(image, "JPEG", exif=exif), "jpeg")
+    exif[0x0112] = orientation
+    bgr = decoded(saved(image, kind, exif=exif), kind.lower())
     assert bgr.shape == (128, 256, 3)
+    np.testing.assert_allclose(bgr[20, 20], RED_BGR, atol=12)
+    np.testing.assert_allclose(bgr[100, 200], [255, 0, 0], atol=12)
 
 
 @pytest.mark.parametrize("kind", ["PNG", "JPEG", "WEBP"])
@@ -103,6 +108,40 @@ def test_large_pictures_shrink_to_2048_and_keep_their_average(kind: str) -> None
     bgr = decoded(saved(Image.fromarray(pixels), kind), kind.lower())
     assert bgr.shape == (1024, 2048, 3)
     assert abs(float(bgr.mean()) - 100.0) < 3.0
+
+
+@pytest.mark.parametrize("mode", ["RGB", "RGBA", "P", "L", "1"])
+@pytest.mark.parametrize("width", [2050, 3998])
+def test_shrinking_in_bands_gives_what_shrinking_at_once_gives(mode: str, width: int) -> None:
+    rng = np.random.default_rng(8)
+    grey = Image.fromarray(rng.integers(0, 255, (width // 2, width), np.uint8))
+    image = grey.convert("RGB").convert(mode)
+    expected = image.convert("RGB").resize((2048, 1024), Image.Resampling.BOX)
+    got = decoded(saved(image, compress_level=1))[:, :, ::-1].astype(int)
+    assert np.abs(got - np.asarray(expected, int)).max() <= 1
+
+
+def test_a_jpeg_of_very_many_scans_is_refused_unread() -> None:
+    data = saved(Image.new("RGB", SIZE), "JPEG", progressive=True)
+    at = data.rindex(b"\xff\xda")
+    assert check_header(data, "image/jpeg").width_px == SIZE[0]
+    with pytest.raises(PictureError) as caught:
+        check_header(data[:at] + data[at:-2] * 200 + data[-2:], "image/jpeg")
+    assert (caught.value.status, caught.value.reason) == (422, "too_many_scans")
+
+
+@pytest.mark.parametrize(
+    ("kind", "size", "fits"),
+    [("png", (8192, 4096), True), ("png", (8320, 4160), False), ("jpeg", (11_008, 5504), True)],
+)
+def test_only_jpegs_may_be_of_64_megapixels(kind: str, size: tuple[int, int], fits: bool) -> None:
+    data = saved(Image.new("1", size), kind.upper())
+    if fits:
+        assert check_header(data, f"image/{kind}")[1:] == size
+        return
+    with pytest.raises(PictureError) as caught:
+        check_header(data, f"image/{kind}")
+    assert (caught.value.status, caught.value.reason) == (413, "too_many_pixels")
 
 
 @pytest.mark.parametrize(

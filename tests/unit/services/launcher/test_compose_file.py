@@ -55,3 +55,27 @@ def test_a_bad_duration_is_refused(text):
 def test_what_the_launcher_cannot_run_is_refused_with_the_field(tmp_path, text, message):
     with pytest.raises(ValueError, match=message):
         load_compose(write(tmp_path, text), {})
+
+
+BOMB = "a: &a [1,1,1,1,1,1,1,1,1]\n" + "".join(
+    f"{b}: &{b} [*{a},*{a},*{a},*{a},*{a},*{a},*{a},*{a},*{a}]\n"
+    for a, b in zip("abcdefgh", "bcdefghi", strict=True)
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        pytest.param(BOMB, "at most 200000 values", id="references that multiply"),
+        pytest.param("a: &a [*a]", "refers to what it is a part of", id="a reference to itself"),
+        pytest.param("[" * 100_000, "deep|not valid YAML", id="deep nesting"),
+        pytest.param("services: {a: {command: [x]}", "not valid YAML", id="cut short"),
+        pytest.param("a: !!python/object/apply:os.getcwd []", "not valid YAML", id="code"),
+        pytest.param("services: {a: {}, a: {}}", "is there twice", id="a service twice"),
+        pytest.param("x" * 2_100_000, "at most 2000000 bytes", id="too long"),
+        pytest.param("services: {a: {command: [x], depends_on: [[b]]}}", "depends_on", id="a list as name"),
+    ],
+)
+def test_traps_of_yaml_are_refused_and_name_the_file_or_the_field(tmp_path, text, told):
+    with pytest.raises(ValueError, match=told):
+        load_compose(write(tmp_path, text), {})

@@ -2,15 +2,21 @@
 
 import io
 import json
+import struct
+import time
+import tracemalloc
 import zipfile
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
 
 from services.map_store.api import create_app
+from services.map_store.archive import Archive
 from services.map_store.blobs import checksum
+from services.map_store.errors import InvalidError
 from services.map_store.store import MapStore
 from shared.messages.maps import Edge, PutEdge
 from tests.unit.services.map_store.conftest import add
@@ -161,6 +167,57 @@ def test_features_that_are_none_are_refused(client: TestClient, exported: bytes)
 @pytest.mark.parametrize("data", [b"", b"junk", b"PK\x05\x06" + bytes(18), b"PK\x03\x04" + bytes(100)])
 def test_anything_but_a_zip_is_refused(client: TestClient, data: bytes):
     assert client.post("/maps/import", content=data).status_code == 422
+
+
+def test_an_entry_of_a_later_version_of_zip_is_refused(client: TestClient, exported: bytes):
+    at = exported.rindex(b"PK\x01\x02")
+    response = client.post(
+        "/maps/import?name=copy", content=exported[: at + 6] + b"\xff" + exported[at + 7 :]
+    )
+    assert response.status_code == 422
+    assert "not a zip archive" in response.json()["detail"]
+
+
+def test_a_directory_of_very_many_entries_is_refused_unread():
+    entry = struct.pack("<4s6H3I5H2I", b"PK\1\2", 20, 20, *[0] * 7, 70, *[0] * 6) + b"blobs/" + b"0" * 64
+    directory = entry * 100_000
+    end = struct.pack("<4s4H2IH", b"PK\5\6", 0, 0, 0xFFFF, 0xFFFF, len(directory), 0, 0)
+    began_s = time.thread_time()
+    with pytest.raises(InvalidError, match="directory must have at most 10000000 bytes"):
+        Archive(io.BytesIO(directory + end), 2_000_000)
+    assert time.thread_time() - began_s < 0.1
+
+
+@pytest.mark.parametrize("packing", [zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
+def test_an_entry_that_unpacks_to_more_than_it_says_is_refused(
+    client: TestClient, exported: bytes, packing: int
+):
+    """A bomb whose header lies about its size: at most what was announced is ever unpacked."""
+    name = f"blobs/{checksum(bytes(100_000_000))}"
+    bomb = bytearray(zipped(entries_of(exported) | {name: bytes(100_000_000)}, packing))
+    at = bomb.rindex(b"PK\x01\x02")
+    bomb[at + 24 : at + 28] = struct.pack("<I", 1_000)
+    tracemalloc.start()
+    response = client.post("/maps/import?name=copy", content=bytes(bomb))
+    peak_bytes = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert response.status_code == 422
+    assert peak_bytes < 20_000_000
+
+
+@pytest.mark.parametrize("mode", [0o120777, 0o060644, 0o010644], ids=["link", "device", "pipe"])
+def test_links_and_devices_are_never_made(client: TestClient, exported: bytes, mode: int, tmp_path: Path):
+    """Entries are read, never written out; the name of a link breaks the rule of names anyway."""
+    file = io.BytesIO(exported)
+    with zipfile.ZipFile(file, "a") as archive:
+        entry = zipfile.ZipInfo("blobs/link")
+        entry.external_attr = mode << 16
+        archive.writestr(entry, "/etc/passwd")
+    before = sorted(tmp_path.rglob("*"))
+    response = client.post("/maps/import?name=copy", content=file.getvalue())
+    assert response.status_code == 422
+    assert "entry must be" in response.json()["detail"]
+    assert [path for path in sorted(tmp_path.rglob("*")) if path not in before] == []
 
 
 def test_every_truncated_archive_is_refused(client: TestClient, exported: bytes):

@@ -1,5 +1,6 @@
 """What was recorded is read back byte by byte; what was cut off is saved up to the damage."""
 
+import contextlib
 import threading
 
 import pytest
@@ -8,6 +9,7 @@ from services.recorder.backlog import Backlog, Sample
 from services.recorder.channels import RecordingError, topic_of, topics_named
 from services.recorder.recording import RecordingWriter, contents, read
 from services.recorder.recovering import recover
+from services.recorder.whole_part import WholePart
 from shared.messages import Ranges
 from shared.topics import TOPICS
 from shared.wire import encode
@@ -91,6 +93,26 @@ def test_what_is_no_recording_is_refused_and_leaves_no_file(tmp_path, content):
         list(read(path))
     with pytest.raises(RecordingError):
         contents(path)
+
+
+@pytest.mark.parametrize("place", range(40))
+def test_damage_anywhere_is_told_as_such(tmp_path, place):
+    data = bytearray(written(tmp_path / "a.mcap").read_bytes())
+    at = place * len(data) // 40
+    data[at : at + 8] = b"\xff" * 8
+    broken = tmp_path / "broken.mcap"
+    broken.write_bytes(data)
+    for reading in (lambda: list(read(broken)), lambda: contents(broken)):
+        with contextlib.suppress(RecordingError):
+            reading()
+    with broken.open("rb") as stream:
+        whole = WholePart(stream)
+        assert len(list(whole)) <= 50
+
+
+def test_a_recording_that_is_not_there_is_no_damaged_one(tmp_path):
+    with pytest.raises(FileNotFoundError):
+        contents(tmp_path / "none.mcap")
 
 
 def test_every_topic_is_found_by_its_key():
