@@ -5,8 +5,9 @@ import time
 from types import TracebackType
 from typing import Any, Self
 
+from experiments.address import Address
 from experiments.bench_stages import Arrival
-from shared.bus import Bus, open_bus
+from shared.bus import Bus
 from shared.topics import COMMAND, EVENT, FEATURES, HEADING, TRUTH
 
 TOPICS = {"truth": TRUTH, "features": FEATURES, "heading": HEADING, "command": COMMAND, "event": EVENT}
@@ -16,9 +17,9 @@ PERIOD_S = 0.2
 class Listener:
     """Listens on a session and a thread of its own; `arrivals` is complete after the `with` block."""
 
-    def __init__(self, endpoint: str, robot: str, most: int | None = None) -> None:
+    def __init__(self, address: Address, robot: str, most: int | None = None) -> None:
         """Listen to a robot; after `most` messages stop keeping them."""
-        self._endpoint, self._robot, self._most = endpoint, robot, most
+        self._address, self._robot, self._most = address, robot, most
         self._stop, self._ready = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._listen, name="bench-listener")
         self.arrivals: list[Arrival] = []
@@ -37,7 +38,7 @@ class Listener:
         self._thread.join()
 
     def _listen(self) -> None:
-        with open_bus(self._endpoint) as bus:
+        with self._address.open() as bus:
             inboxes = {name: _subscribe(bus, topic, self._robot) for name, topic in TOPICS.items()}
             self._ready.set()
             while not self._stop.is_set():

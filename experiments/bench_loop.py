@@ -33,7 +33,7 @@ def main(
         choice = StackChoice(Path(folder), world, seed, lockstep=True, pipeline=pipeline)
         with (
             open_stack(choice) as stack,
-            Listener(stack.endpoint, stack.robot) as listener,
+            Listener(stack.address, stack.robot) as listener,
             mission_progress(wide_console(stderr=True), "timing") as watch,
         ):
             result = explore(stack, world, MAP, seed, steps, watch=watch)

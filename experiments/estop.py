@@ -8,9 +8,8 @@ from typing import Annotated
 import typer
 
 from experiments import options
+from experiments.address import Address, find_address
 from experiments.stack import ROBOT
-from services.launcher.state import StateFolder
-from shared.bus import open_bus
 from shared.messages import EStopRequest, EStopState
 from shared.queries import AbsentError, RefusedError, TimedOutError
 from shared.settings import ServiceSettings
@@ -53,7 +52,7 @@ def main(
     else:
         request = EStopRequest(action="engage", who=(who.strip() or getpass.getuser())[:64], why=why[:400])
     try:
-        state = _ask(robot, request, endpoint or _endpoint(data_dir))
+        state = _ask(robot, request, _address(endpoint, data_dir))
     except (AbsentError, TimedOutError):
         typer.echo(f"topnav: {ALONE}", err=True)
         raise typer.Exit(UNKNOWN) from None
@@ -64,15 +63,15 @@ def main(
     raise typer.Exit(ENGAGED if status and state.engaged else 0)
 
 
-def _ask(robot: str, request: EStopRequest, endpoint: str) -> EStopState:
-    with open_bus(endpoint) as bus:
+def _ask(robot: str, request: EStopRequest, address: Address) -> EStopState:
+    with address.open() as bus:
         return bus.ask(ESTOP, request, TIMEOUT_S, robot=robot)
 
 
-def _endpoint(data_dir: Path) -> str:
+def _address(endpoint: str | None, data_dir: Path) -> Address:
     """Router of the stack that runs in the folder, else the usual one: a stop does not ask for settings."""
-    running = StateFolder(data_dir.resolve()).read()
-    return running.endpoint if running is not None else ServiceSettings.from_environment().endpoint
+    usual = ServiceSettings.from_environment()
+    return find_address(endpoint, data_dir) or Address(usual.endpoint, usual.certs)
 
 
 def _sentence(state: EStopState) -> str:

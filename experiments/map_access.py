@@ -1,5 +1,6 @@
 """The map store of a data folder: the running one over REST, or one started for a command; and its file."""
 
+import ssl
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,6 +15,7 @@ from services.launcher.local import LocalMachine, local_process
 from services.launcher.stack_settings import StackSettings
 from services.launcher.state import StateFolder
 from services.launcher.supervisor import Launcher
+from shared.bus_security import MAP_STORE_HOST, credentials_in
 
 TIMEOUT_S = 120.0
 SERVICE = "map-store"
@@ -25,10 +27,10 @@ def open_store(data_dir: Path) -> Iterator[httpx.Client]:
     running = StateFolder(data_dir.resolve()).read()
     with one_line_errors():
         if running is not None:
-            with _client(running.map_store_url) as client:
+            with store_client(running.map_store_url, running.operator_certs) as client:
                 yield client
             return
-        with Launcher(data_dir, only=[SERVICE]) as launcher, _client(launcher.map_store_url) as client:
+        with Launcher(data_dir, only=[SERVICE]) as launcher, store_client(launcher.map_store_url) as client:
             yield client
 
 
@@ -41,5 +43,21 @@ def database_url(data_dir: Path) -> str:
     return spec.environment["MAP_STORE_DATABASE_URL"]
 
 
-def _client(url: str) -> httpx.Client:
-    return httpx.Client(base_url=url, headers=token_header(), timeout=TIMEOUT_S, trust_env=False)
+def store_client(url: str, certs: Path | None = None) -> httpx.Client:
+    """A client of a map store; on a secured stack it shows the certificate in the folder `certs`."""
+    credentials = credentials_in(certs)
+    client = httpx.Client(
+        base_url=url,
+        headers=token_header(),
+        timeout=TIMEOUT_S,
+        trust_env=False,
+        verify=credentials.tls_context(ssl.Purpose.SERVER_AUTH) if credentials else True,
+    )
+    if credentials:
+        client.event_hooks = {"request": [_expect_the_map_store]}
+    return client
+
+
+def _expect_the_map_store(request: httpx.Request) -> None:
+    """Its certificate is compared with this name instead of the address."""
+    request.extensions = {**request.extensions, "sni_hostname": MAP_STORE_HOST}

@@ -5,12 +5,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from experiments.address import Address, find_address
 from experiments.environments import environment_of
 from experiments.failure import ExperimentError
 from services.launcher.stack_settings import Ports
 from services.launcher.state import StateFolder
 from services.launcher.supervisor import Launcher
-from shared.bus import Bus, open_bus, wait_until
+from shared.bus import Bus, wait_until
 from shared.messages import MissionRequest
 from shared.topics import MISSION
 
@@ -29,6 +30,7 @@ class StackChoice:
         lockstep: None is lockstep for a stack of its own and whatever a running one has.
         endpoint: join the stack there; None joins the one that runs in data_dir, or starts one.
         ports: of a stack of its own; None takes free ones.
+        secure: certificates and access rules for a stack of its own.
     """
 
     data_dir: Path
@@ -40,6 +42,7 @@ class StackChoice:
     endpoint: str | None = None
     ports: Ports | None = None
     environment: dict[str, str] = field(default_factory=dict)
+    secure: bool = False
 
 
 @dataclass(frozen=True)
@@ -47,15 +50,20 @@ class Stack:
     """A stack in use. `launcher` is None when somebody else runs it."""
 
     bus: Bus
-    endpoint: str
+    address: Address
     gateway_url: str | None
     launcher: Launcher | None
     robot: str = ROBOT
 
+    @property
+    def endpoint(self) -> str:
+        """Zenoh endpoint of the router."""
+        return self.address.endpoint
+
     @contextmanager
     def session(self) -> Iterator["Stack"]:
         """The same stack over a bus session of its own, which ends with everything it listens to."""
-        with open_bus(self.endpoint) as bus:
+        with self.address.open() as bus:
             _require_services(bus, self.endpoint)
             yield replace(self, bus=bus)
 
@@ -69,18 +77,20 @@ def open_stack(choice: StackChoice) -> Iterator[Stack]:
         LaunchError: the own one does not come up.
     """
     running = StateFolder(choice.data_dir.resolve()).read()
-    if choice.endpoint is not None or running is not None:
+    address = find_address(choice.endpoint, choice.data_dir)
+    if address is not None:
         _refuse_settings(choice)
-        endpoint = choice.endpoint or (running.endpoint if running else "")
-        url = running.gateway_url if running and endpoint == running.endpoint else None
-        with open_bus(endpoint) as bus:
-            _require_services(bus, endpoint)
-            yield Stack(bus, endpoint, url, None)
+        url = running.gateway_url if running and address.endpoint == running.endpoint else None
+        with address.open() as bus:
+            _require_services(bus, address.endpoint)
+            yield Stack(bus, address, url, None)
         return
-    with _launcher(choice) as launcher, open_bus(launcher.endpoint) as bus:
-        _require_services(bus, launcher.endpoint)
-        _end_left_mission(bus)
-        yield Stack(bus, launcher.endpoint, launcher.gateway_url, launcher)
+    with _launcher(choice) as launcher:
+        own = Address(launcher.endpoint, launcher.certs)
+        with own.open() as bus:
+            _require_services(bus, own.endpoint)
+            _end_left_mission(bus)
+            yield Stack(bus, own, launcher.gateway_url, launcher)
 
 
 def _launcher(choice: StackChoice) -> Launcher:
@@ -97,6 +107,7 @@ def _launcher(choice: StackChoice) -> Launcher:
         profile=place.profile(choice.profile),
         ports=choice.ports,
         environment=environment,
+        secure=choice.secure,
     )
 
 

@@ -6,13 +6,15 @@ import time
 import uuid
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 import zenoh
 from zenoh import ext
 
 from shared import queries
-from shared.bus_config import peer_config
+from shared.bus_config import client_config, peer_config
+from shared.bus_security import Credentials, credentials_in
 from shared.inbox import Counters, Inbox
 from shared.messages.base import Message
 from shared.queries import Request, Requests
@@ -93,9 +95,12 @@ class Bus:
             topic.message, topic.max_bytes, CAPACITY[topic.delivery], wake or self.wake, self.counters
         )
         key = topic.key(**names)
-        store: Any = zenoh.handlers.Callback(
-            lambda sample: inbox.push(sample.payload.to_bytes()), indirect=False
-        )
+
+        def keep(sample: zenoh.Sample) -> None:
+            if inbox.admits(len(sample.payload)):  # before its bytes are copied
+                inbox.push(sample.payload.to_bytes())
+
+        store: Any = zenoh.handlers.Callback(keep, indirect=False)
         if topic.delivery is Delivery.RECOVERED:
             declared: Any = ext.declare_advanced_subscriber(
                 self._session,
@@ -132,23 +137,36 @@ class Bus:
 
     def announce(self, service: str) -> None:
         """Declare this process alive as `service`; the token goes when the process does."""
-        token = self._session.liveliness().declare_token(alive_key(service, uuid.uuid4().hex))
-        self._declared.append(token)
+        self.declare_token(alive_key(service, uuid.uuid4().hex))
+
+    def declare_token(self, key: str) -> None:
+        """Declare a liveliness token that goes when this process does."""
+        self._declared.append(self._session.liveliness().declare_token(key))
 
     def alive(self, service: str = "*", timeout_s: float = 1.0) -> list[str]:
         """Names of the services of this kind that are alive now, one entry per process."""
         answers = self._session.liveliness().get(alive_key(service, "*"), timeout=timeout_s)
-        return sorted(str(a.ok.key_expr).split("/")[2] for a in answers if a.ok is not None)
+        keys = {
+            str(answer.ok.key_expr) for answer in answers if answer.ok is not None
+        }  # a client's own comes twice
+        return sorted(key.split("/")[2] for key in keys)
 
     def watch_alive(self, changed: Callable[[str, str, bool], None], service: str = "*") -> None:
         """Call `changed(service, instance, alive)` on Zenoh's thread, for those there now and all changes."""
 
+        def store(key: str, alive: bool) -> None:
+            _, _, name, instance = key.split("/")
+            changed(name, instance, alive)
+
+        self.watch_tokens(alive_key(service, "*"), store)
+
+    def watch_tokens(self, key: str, changed: Callable[[str, bool], None]) -> None:
+        """Call `changed(key, alive)` on Zenoh's thread for the tokens there now and for all changes."""
+
         def store(sample: zenoh.Sample) -> None:
-            _, _, name, instance = str(sample.key_expr).split("/")
-            changed(name, instance, sample.kind == zenoh.SampleKind.PUT)
+            changed(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT)
 
         handler = zenoh.handlers.Callback(store, indirect=False)
-        key = alive_key(service, "*")
         self._declared.append(self._session.liveliness().declare_subscriber(key, handler, history=True))
 
     def wait(self, timeout_s: float) -> bool:
@@ -167,14 +185,40 @@ class Bus:
             self._session.close()  # type: ignore[no-untyped-call]
 
 
+class UnreachableError(ConnectionError):
+    """No secured router at the endpoint, or none that takes this certificate."""
+
+
 @contextmanager
-def open_bus(endpoint: str, listen: str = "tcp/127.0.0.1:0") -> Iterator[Bus]:
-    """Open a peer session to the router, reachable at `listen`, and close it whatever happens."""
-    bus = Bus(zenoh.open(peer_config(endpoint, listen)))
+def open_bus(endpoint: str, listen: str = "tcp/127.0.0.1:0", certs: Path | None = None) -> Iterator[Bus]:
+    """Open a session to the router at `endpoint` and close it whatever happens.
+
+    Without certificates in the folder `certs` it is a peer, reachable at `listen`, which never waits for the
+    router. With certificates it is a client, which listens nowhere and waits up to ten seconds.
+
+    Raises:
+        CredentialsError: the folder cannot be used, or the endpoint is secured and there is none.
+        UnreachableError: no router, or it refuses this certificate.
+    """
+    credentials = credentials_in(certs)
+    if credentials is None:
+        bus = Bus(zenoh.open(peer_config(endpoint, listen)))
+    else:
+        bus = Bus(_secured_session(endpoint, credentials))
     try:
         yield bus
     finally:
         bus.close()
+
+
+def _secured_session(endpoint: str, credentials: Credentials) -> zenoh.Session:
+    try:
+        return zenoh.open(client_config(endpoint, credentials))
+    except zenoh.ZError as error:
+        raise UnreachableError(
+            f"no secured router at {endpoint} takes the certificate in {credentials.certificate.parent}: "
+            f"is it up, of the same authority, and not expired ('topnav certs --check')? {str(error)[:200]}"
+        ) from error
 
 
 def wait_until(condition: Callable[[], bool], timeout_s: float, period_s: float = 0.02) -> bool:
@@ -187,4 +231,4 @@ def wait_until(condition: Callable[[], bool], timeout_s: float, period_s: float 
     return True
 
 
-__all__ = ["Bus", "Inbox", "Publisher", "Request", "Requests", "open_bus", "wait_until"]
+__all__ = ["Bus", "Inbox", "Publisher", "Request", "Requests", "UnreachableError", "open_bus", "wait_until"]

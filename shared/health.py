@@ -2,8 +2,10 @@
 
 import os
 import sys
+from pathlib import Path
 
-from shared.bus import open_bus, wait_until
+from shared.bus import UnreachableError, open_bus, wait_until
+from shared.bus_security import CredentialsError
 
 
 def main(arguments: list[str]) -> int:
@@ -12,8 +14,14 @@ def main(arguments: list[str]) -> int:
         sys.stderr.write("usage: python -m shared.health SERVICE\n")
         return 2
     service = arguments[0]
-    with open_bus(os.environ.get("TOPNAV_ENDPOINT", "tcp/127.0.0.1:7447")) as bus:
-        alive = wait_until(lambda: bool(bus.alive(service)), timeout_s=2.0)
+    endpoint = os.environ.get("TOPNAV_ENDPOINT", "tcp/127.0.0.1:7447")
+    certs = os.environ.get("TOPNAV_CERTS")
+    try:
+        with open_bus(endpoint, certs=Path(certs) if certs else None) as bus:
+            alive = wait_until(lambda: bool(bus.alive(service)), timeout_s=2.0)
+    except (CredentialsError, UnreachableError) as error:
+        sys.stderr.write(f"{service}: {error}\n")
+        return 1
     if not alive:
         sys.stderr.write(f"{service}: not alive on the bus\n")
     return 0 if alive else 1

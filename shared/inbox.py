@@ -13,6 +13,12 @@ M = TypeVar("M", bound=Message)
 log = logging.getLogger(__name__)
 
 WARN_PERIOD_S = 1.0
+QUEUE_BYTES = 64_000_000
+
+
+def queue_bytes(max_bytes: int) -> int:
+    """How many bytes may wait in one queue, at least one longest message: what a flood can take from us."""
+    return max(QUEUE_BYTES, max_bytes)
 
 
 class Counters:
@@ -41,30 +47,51 @@ class Counters:
 
 
 class Inbox(Generic[M]):
-    """Keeps the newest `capacity` payloads of one subscription and decodes them when they are taken."""
+    """Keeps the newest `capacity` payloads of one subscription and decodes them when they are taken.
+
+    Payloads that are too long are never kept, and all that wait together are bounded in bytes too.
+    """
 
     def __init__(
         self, kind: type[M], max_bytes: int, capacity: int, wake: threading.Event, counters: Counters
     ) -> None:
         self._kind, self._max_bytes = kind, max_bytes
-        self._payloads: deque[bytes] = deque(maxlen=capacity)
+        self._payloads: deque[bytes] = deque()
+        self._waiting_bytes, self._most_bytes = 0, queue_bytes(max_bytes)
         self._wake, self._counters = wake, counters
-        self._capacity = capacity
+        self._capacity, self._lock = capacity, threading.Lock()
+
+    def admits(self, length: int) -> bool:
+        """Whether a payload of `length` bytes may be a message; one that may not is counted."""
+        if length <= self._max_bytes:
+            return True
+        schema = self._kind.SCHEMA
+        self._counters.count("malformed", f"{schema}: at most {self._max_bytes} bytes expected, got {length}")
+        return False
 
     def push(self, payload: bytes) -> None:
-        """Store one payload; the oldest makes room. Called on Zenoh's thread."""
-        if self._capacity > 1 and len(self._payloads) == self._capacity:
+        """Store one payload; the oldest make room. Called on Zenoh's thread."""
+        if not self.admits(len(payload)):
+            return
+        with self._lock:
+            self._payloads.append(payload)
+            self._waiting_bytes += len(payload)
+            lost = 0
+            while len(self._payloads) > self._capacity or self._waiting_bytes > self._most_bytes:
+                self._waiting_bytes -= len(self._payloads.popleft())
+                lost += 1
+        for _ in range(lost if self._capacity > 1 else 0):
             self._counters.count("overflow", f"{self._kind.SCHEMA}: queue of {self._capacity} is full")
-        self._payloads.append(payload)
         self._wake.set()
 
     def take(self) -> M | None:
         """Return the oldest waiting message, or None. Malformed ones are counted and skipped."""
         while True:
-            try:
+            with self._lock:
+                if not self._payloads:
+                    return None
                 payload = self._payloads.popleft()
-            except IndexError:
-                return None
+                self._waiting_bytes -= len(payload)
             try:
                 return decode(self._kind, payload, self._max_bytes)
             except WireError as error:

@@ -9,7 +9,8 @@ import threading
 import time
 from collections.abc import Callable
 
-from shared.bus import Bus, open_bus
+from shared.bus import Bus, UnreachableError, open_bus
+from shared.bus_security import CredentialsError
 from shared.settings import ServiceSettings
 
 log = logging.getLogger(__name__)
@@ -70,7 +71,11 @@ def run_service(
     """Run `loop(bus, stop)` with logging, signals and a bus that closes; it announces itself when ready."""
     configure_logging(service, settings.log_level)
     stop = stop_on_signals()
-    with open_bus(settings.endpoint, settings.listen) as bus:
-        log.info("started, endpoint %s", settings.endpoint)
-        loop(bus, stop)
+    try:
+        with open_bus(settings.endpoint, settings.listen, settings.certs) as bus:
+            log.info("started, endpoint %s, certificates %s", settings.endpoint, settings.certs)
+            loop(bus, stop)
+    except (CredentialsError, UnreachableError) as error:
+        log.error("%s", error)
+        sys.exit(1)
     log.info("stopped")

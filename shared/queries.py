@@ -8,7 +8,7 @@ from typing import Generic, TypeVar
 
 import zenoh
 
-from shared.inbox import Counters
+from shared.inbox import Counters, queue_bytes
 from shared.messages.base import Message
 from shared.topics import NAME, Query
 from shared.wire import WireError, decode, encode
@@ -54,6 +54,11 @@ class Request(Generic[Q, R]):
         with self._query as query:
             query.reply_err(reason.encode())
 
+    def leave(self) -> None:
+        """Say nothing: the asker gets the answer of whoever else is asked."""
+        with self._query:
+            pass
+
 
 class Requests(Generic[Q, R]):
     """Questions of one kind, taken by the service's loop in the order they came."""
@@ -61,22 +66,31 @@ class Requests(Generic[Q, R]):
     def __init__(self, query: Query[Q, R], wake: threading.Event, counters: Counters) -> None:
         self._query = query
         self._waiting: deque[zenoh.Query] = deque()
+        self._waiting_bytes, self._most_bytes = 0, queue_bytes(query.max_bytes)
         self._wake, self._counters = wake, counters
+        self._lock = threading.Lock()
 
     def push(self, query: zenoh.Query) -> None:
-        """Store a question; refuse it when too many wait. Called on Zenoh's thread."""
-        if len(self._waiting) >= MAX_WAITING:
-            self._counters.count("overflow", f"{self._query.template}: {MAX_WAITING} questions wait")
+        """Store a question; refuse one that is too long, or when too much waits. Called on Zenoh's thread."""
+        length = _length(query)
+        if length > self._query.max_bytes:
+            self._refuse(query, f"at most {self._query.max_bytes} bytes expected, got {length}")
+            return
+        with self._lock:
+            full = len(self._waiting) >= MAX_WAITING or self._waiting_bytes + length > self._most_bytes
+            if not full:
+                self._waiting.append(query)
+                self._waiting_bytes += length
+        if full:
+            self._counters.count("overflow", f"{self._query.template}: {len(self._waiting)} questions wait")
             with query:
                 query.reply_err(b"busy: too many questions wait, ask again later")
             return
-        self._waiting.append(query)
         self._wake.set()
 
     def take(self) -> Request[Q, R] | None:
         """Return the oldest question, or None. Malformed ones are refused with the reason and counted."""
-        while self._waiting:
-            query = self._waiting.popleft()
+        while (query := self._oldest()) is not None:
             name = _variable(self._query.template, str(query.key_expr))
             if not NAME.match(name):  # an asker may send any key expression that meets ours, '**' too
                 template, key = self._query.template, str(query.key_expr)
@@ -90,6 +104,14 @@ class Requests(Generic[Q, R]):
                 continue
             return Request(query, message, name)
         return None
+
+    def _oldest(self) -> zenoh.Query | None:
+        with self._lock:
+            if not self._waiting:
+                return None
+            query = self._waiting.popleft()
+            self._waiting_bytes -= _length(query)
+            return query
 
     def _refuse(self, query: zenoh.Query, reason: str) -> None:
         self._counters.count("malformed", reason)
@@ -123,6 +145,10 @@ def _read(query: Query[Q, R], key: str, answer: zenoh.Reply, timeout_s: float) -
     if text == "Timeout":
         raise TimedOutError(f"{key}: no answer within {timeout_s} s")
     raise RefusedError(text)
+
+
+def _length(query: zenoh.Query) -> int:
+    return len(query.payload) if query.payload is not None else 0
 
 
 def _variable(template: str, key: str) -> str:

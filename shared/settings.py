@@ -1,9 +1,10 @@
 """Settings read from the environment: typed, frozen, and a misspelt name is an error."""
 
 import os
+from pathlib import Path
 from typing import Any, Self
 
-from pydantic import BaseModel
+from pydantic import BaseModel, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 NESTED = "__"
@@ -15,6 +16,7 @@ class ServiceSettings(BaseSettings):
     Attributes:
         endpoint: Zenoh router to reach, from TOPNAV_ENDPOINT.
         listen: where other peers reach this process, from TOPNAV_LISTEN.
+        certs: folder of a certificate for the secured bus, from TOPNAV_CERTS; none, or empty: not secured.
         robot: whose service this is, from TOPNAV_ROBOT.
         log_level: DEBUG, INFO, WARNING or ERROR, from TOPNAV_LOG_LEVEL.
     """
@@ -23,8 +25,14 @@ class ServiceSettings(BaseSettings):
 
     endpoint: str = "tcp/127.0.0.1:7447"
     listen: str = "tcp/127.0.0.1:0"
+    certs: Path | None = None
     robot: str = "r1"
     log_level: str = "INFO"
+
+    @field_validator("certs", mode="before")
+    @classmethod
+    def _without_certificates(cls, path: object) -> object:
+        return None if path == "" else path  # a variable that Compose passes on without a value
 
     @classmethod
     def from_environment(cls) -> Self:

@@ -100,6 +100,7 @@ EXTRACT = Query("topnav/features/extract", ExtractRequest, Features, 64 * MB)
 MISSION = Query("topnav/{robot}/mission", MissionRequest, MissionStatus, 8 * MB)
 ESTOP = Query("topnav/{robot}/estop", EStopRequest, EStopState, 10_000)
 MAP = Query("topnav/maps/{map}/graph", MapRequest, MapReply, 512 * MB)
+MAP_READ = Query("topnav/maps/{map}/read", MapRequest, MapReply, 512 * MB)
 MISSION_RECORD = Query("topnav/missions/{robot}", MissionRecordRequest, MissionRecord, 8 * MB)
 SIMULATION = Query("topnav/{robot}/simulation", SimulationRequest, SimulationReply, 64 * MB)
 
@@ -122,6 +123,7 @@ QUERIES: tuple[Query[Message, Message], ...] = (
     MISSION,
     ESTOP,
     MAP,
+    MAP_READ,
     MISSION_RECORD,
     SIMULATION,
 )  # type: ignore[assignment]
@@ -130,3 +132,8 @@ QUERIES: tuple[Query[Message, Message], ...] = (
 def alive_key(service: str, instance: str) -> str:
     """Liveliness key of one process; '*' as instance watches them all."""
     return fill("topnav/alive/{service}/{instance}", {"service": service, "instance": instance})
+
+
+def robot_key(robot: str, holder: str) -> str:
+    """Liveliness key of a process that is robot `robot`; '*' as holder watches for all that say so."""
+    return fill("topnav/alive/robot/{robot}/{holder}", {"robot": robot, "holder": holder})

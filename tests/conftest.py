@@ -13,7 +13,7 @@ from shared.bus_config import router_config
 REPOSITORY = Path(__file__).resolve().parents[1]
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def repository() -> Path:
     """Folder of the whole project."""
     return REPOSITORY

@@ -6,13 +6,12 @@ from typing import Annotated
 import typer
 
 from experiments import options
+from experiments.address import find_address
 from experiments.failure import ExperimentError
 from experiments.tables import print_rows, wide_console
-from services.launcher.state import StateFolder
 from services.recorder.channels import topics_named
 from services.recorder.recorder import record
 from services.recorder.recording import RecordingWriter
-from shared.bus import open_bus
 from shared.lifecycle import stop_on_signals
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
@@ -28,10 +27,13 @@ def main(
 ) -> None:
     """Record the bus of a running stack until Ctrl+C."""
     left_out = topics_named(without)
-    address = endpoint or _endpoint(data_dir)
+    address = find_address(endpoint, data_dir)
+    if address is None:
+        raise ExperimentError(f"no stack runs in {data_dir}: start one ('topnav up') or give --endpoint")
     stop = stop_on_signals()
-    with RecordingWriter(file) as writer, open_bus(address) as bus:
-        wide_console(stderr=True).print(f"recording {address} into {file}; Ctrl+C ends it", highlight=False)
+    with RecordingWriter(file) as writer, address.open() as bus:
+        told = f"recording {address.endpoint} into {file}; Ctrl+C ends it"
+        wide_console(stderr=True).print(told, highlight=False)
         backlog = record(bus, writer, left_out, stop, seconds)
     lost = backlog.dropped()
     rows = [
@@ -39,10 +41,3 @@ def main(
         for key, count in sorted(writer.counts.items())
     ]
     print_rows(f"{file}, {file.stat().st_size / 1e6:.1f} MB", rows)
-
-
-def _endpoint(data_dir: Path) -> str:
-    running = StateFolder(data_dir.resolve()).read()
-    if running is None:
-        raise ExperimentError(f"no stack runs in {data_dir}: start one ('topnav up') or give --endpoint")
-    return running.endpoint

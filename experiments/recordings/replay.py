@@ -8,9 +8,9 @@ from typing import Annotated
 import typer
 
 from experiments import options
+from experiments.address import find_address
 from experiments.failure import ExperimentError
 from experiments.tables import print_rows, wide_console
-from services.launcher.state import StateFolder
 from services.launcher.supervisor import Launcher
 from services.recorder.channels import topic_of, topics_named
 from services.recorder.player import Player, play
@@ -64,9 +64,14 @@ def main(
 @contextmanager
 def _bus(endpoint: str | None, data_dir: Path, robots: set[str]) -> Iterator[Bus]:
     """The bus of a running stack, or of a web page and a map store started for this command."""
-    running = StateFolder(data_dir.resolve()).read()
-    if endpoint is not None or running is not None:
-        with open_bus(endpoint or (running.endpoint if running else "")) as bus:
+    address = find_address(endpoint, data_dir)
+    if address is not None:
+        if address.certs is not None:
+            raise ExperimentError(
+                f"{address.endpoint} is secured: its router lets nobody speak for a robot, a replay neither. "
+                "Leave --endpoint out and use a --data-dir where no stack runs"
+            )
+        with address.open() as bus:
             _refuse_mixing(bus, robots)
             yield bus
         return

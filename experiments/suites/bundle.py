@@ -8,11 +8,9 @@ from typing import Any
 import httpx
 
 from experiments.failure import ExperimentError
-from experiments.map_client import token_header
+from experiments.map_access import store_client
 from experiments.output import write_json
 from experiments.stack import Stack
-
-TIMEOUT_S = 120.0
 
 
 @dataclass(frozen=True)
@@ -67,4 +65,4 @@ def _client(stack: Stack) -> httpx.Client:
     if stack.launcher is None:
         raise ExperimentError("suites start stacks of their own: stop the one in this folder first")
     url = stack.launcher.map_store_url
-    return httpx.Client(base_url=url, headers=token_header(), timeout=TIMEOUT_S, trust_env=False)
+    return store_client(url, stack.launcher.certs)

@@ -87,7 +87,7 @@ def play_run(plan: RunPlan, bundle: MapBundle, folder: str) -> dict[str, Any]:
         with open_stack(choice) as stack:
             if fresh:
                 import_map(stack, MAP, bundle.archive)
-            with Listener(stack.endpoint, stack.robot, TIMED_MESSAGES) as listener:
+            with Listener(stack.address, stack.robot, TIMED_MESSAGES) as listener:
                 drawings = place if plan.draw else None
                 played = play_rounds(
                     stack, scene, plan.rounds, plan.seed, plan.max_steps, drawings, rounds, quiet=True

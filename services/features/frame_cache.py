@@ -8,6 +8,9 @@ from typing import Literal
 from shared.messages.features import Features
 from shared.messages.sensors import Frame
 
+RESTARTED_FRAMES = 10
+"""So many frames one after the other that are all behind: a camera that restarted with its clock set back."""
+
 
 @dataclass(frozen=True)
 class FrameKey:
@@ -30,26 +33,35 @@ class FrameCache:
         self._capacity = capacity
         self._kept: OrderedDict[int, tuple[FrameKey, Features]] = OrderedDict()
         self._last: FrameKey | None = None
+        self._late: FrameKey | None = None
+        self._climbed = 0
 
     def judge(self, key: FrameKey, lockstep: bool) -> Literal["new", "again", "stale"]:
         """Say whether to extract this frame, publish its features again, or ignore it.
 
         A lower number is a restarted camera when its clock has moved on; without lockstep it is otherwise a
-        late frame. In lockstep one frame is under way at a time, so none is ever late.
+        late frame, also where it came in time before. In lockstep one frame is under way at a time, so none
+        is ever late.
         """
         if self.same(key) is not None:
-            return "again"
+            return "again" if lockstep or key == self._last else "stale"
         if self._last is None or lockstep:
             return "new"
         behind = key.seq <= self._last.seq and key.stamp_ns <= self._last.stamp_ns
-        return "stale" if behind else "new"
+        return "stale" if behind and not self._counts_anew(key) else "new"
+
+    def _counts_anew(self, late: FrameKey) -> bool:
+        """Whether late frames come in an order of their own, for so long that they are the camera's now."""
+        climbs = self._late is not None and late.seq > self._late.seq
+        self._climbed, self._late = self._climbed + 1 if climbs else 0, late
+        return self._climbed >= RESTARTED_FRAMES
 
     def put(self, key: FrameKey, features: Features) -> None:
         """Keep the newest; frames of before a restart are forgotten, their numbers mean other pictures."""
         if self._last is not None and key.seq <= self._last.seq:
             self._kept.clear()
         self._kept[key.seq] = (key, features)
-        self._last = key
+        self._last, self._late, self._climbed = key, None, 0
         while len(self._kept) > self._capacity:
             self._kept.popitem(last=False)
 

@@ -1,16 +1,22 @@
 """Keeps the map cache true: reads a map at first use, follows its deltas, says what it could not get."""
 
+import logging
 import time
 
 from services.features.map_cache import MapCache, MapWords
 from services.features.matching_requests import RequestError
 from shared.bus import Bus
-from shared.messages.maps import MapRequest
+from shared.messages.maps import MapReply, MapRequest
 from shared.queries import AbsentError, RefusedError, TimedOutError
-from shared.topics import MAP, MAP_DELTA
+from shared.topics import MAP_DELTA, MAP_READ
 from shared.wire import WireError
 
+log = logging.getLogger(__name__)
+
 DELTA_WAIT_S = 0.2
+PIECE = 250
+"""Places per question: 10 to 20 MB, so that neither side holds a large map twice."""
+READ_TRIES = 3
 
 
 class MapReader:
@@ -56,15 +62,38 @@ class MapReader:
         return kept
 
     def _read(self, name: str) -> MapWords:
+        """Take over a map piece by piece; a place that goes meanwhile means: once more."""
+        for _ in range(READ_TRIES - 1):
+            try:
+                return self._read_once(name)
+            except RefusedError as error:
+                log.info("map %r changed while it was read: %s", name, error)
+        try:
+            return self._read_once(name)
+        except RefusedError as error:
+            raise RequestError(f"map {name!r} keeps changing while it is read: {error}") from error
+
+    def _read_once(self, name: str) -> MapWords:
         self._cache.drop(name)
         try:
-            reply = self._bus.ask(MAP, MapRequest(action="read_features"), self._timeout_s, map=name)
+            graph = self._ask(name, MapRequest(action="read"))
         except RefusedError as error:
             raise RequestError(f"map {name!r} is not known to the map store: {error}") from error
+        ids = [node.node_id for node in graph.nodes]
+        pieces = (ids[start : start + PIECE] for start in range(0, len(ids), PIECE))
+        features = (
+            part
+            for piece in pieces
+            for part in self._ask(name, MapRequest(action="read_features", node_ids=tuple(piece))).features
+        )
+        words = self._cache.load(name, graph.revision, features)
+        self.follow()
+        return self._cache.get(name) or words
+
+    def _ask(self, name: str, request: MapRequest) -> MapReply:
+        try:
+            return self._bus.ask(MAP_READ, request, self._timeout_s, map=name)
         except AbsentError as error:
             raise RequestError(f"map {name!r} cannot be read: the map store is not up") from error
         except (TimedOutError, WireError) as error:
             raise RequestError(f"map {name!r} cannot be read: {error}") from error
-        words = self._cache.load(reply)
-        self.follow()
-        return self._cache.get(name) or words

@@ -26,7 +26,7 @@ IDLE_S = 0.5
 
 
 class FeatureService:
-    """Extracts the newest frame and answers questions, in that order."""
+    """Extracts the newest frame and answers questions, in turn."""
 
     def __init__(self, settings: FeaturesSettings, bus: Bus) -> None:
         cv2.setNumThreads(settings.threads)
@@ -41,21 +41,20 @@ class FeatureService:
         self._extracts = bus.requests(EXTRACT)
 
     def work(self) -> None:
-        """Handle everything that has arrived; a frame that comes meanwhile goes first again."""
-        while self._step():
+        """Handle everything that has arrived."""
+        while self._round():
             pass
 
-    def _step(self) -> bool:
+    def _round(self) -> bool:
+        """One of each kind: on a machine too slow for all frames, questions must have their turn too."""
         self._maps.follow()
         if (frame := self._incoming.take()) is not None:
             self._on_frame(frame)
-        elif (match := self._matches.take()) is not None:
+        if (match := self._matches.take()) is not None:
             self._on_match(match)
-        elif (picture := self._extracts.take()) is not None:
+        if (picture := self._extracts.take()) is not None:
             self._on_extract(picture)
-        else:
-            return False
-        return True
+        return any(each is not None for each in (frame, match, picture))
 
     def _on_frame(self, frame: Frame) -> None:
         key = FrameKey.of(frame)

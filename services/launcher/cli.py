@@ -37,6 +37,9 @@ def up(
     profile: Annotated[
         str | None, typer.Option(help="Rules of planner and drive: default or thesis.")
     ] = None,
+    secure: Annotated[
+        bool, typer.Option("--secure/--open", help="Certificates and access rules on the bus.")
+    ] = False,
     detach: Annotated[
         bool, typer.Option("--detach/--foreground", help="Return once all is healthy.")
     ] = False,
@@ -49,7 +52,7 @@ def up(
     from services.launcher.up import run_detached, run_foreground
 
     choices: dict[str, Any] = {"world": world, "lockstep": lockstep, "seed": seed, "profile": profile}
-    settings = StackSettings(data_dir.resolve(), **choices)
+    settings = StackSettings(data_dir.resolve(), **choices, secure=secure)
     if detach:
         run_detached(settings, file.resolve(), timeout_s)
     else:

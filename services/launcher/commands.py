@@ -33,7 +33,12 @@ COMMANDS: dict[str, LazyCommand] = {
     "replay": LazyCommand("experiments.recordings.replay", "Play a recording, as if live."),
     "recover": LazyCommand("experiments.recordings.recover", "Save what is in a broken recording."),
     "foxglove": LazyCommand("experiments.recordings.foxglove", "Convert a recording for Foxglove."),
+    "soak": LazyCommand("experiments.soak.command", "Missions without end while services break."),
     "map": LazyCommand("experiments.maps", "List, move, check, mend and keep maps."),
+    "certs": LazyCommand(
+        "services.launcher.certs", "Make, renew and check the certificates of a secured stack."
+    ),
+    "token": LazyCommand("services.launcher.tokens", "Make, list and take away tokens of the gateway."),
 }
 
 

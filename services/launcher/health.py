@@ -1,5 +1,6 @@
 """Whether a service is ready: by its liveliness token, or by the health command of the Compose file."""
 
+import logging
 import subprocess
 import threading
 import time
@@ -9,7 +10,9 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Protocol
 
-from shared.bus import open_bus
+from shared.bus import UnreachableError, open_bus
+
+log = logging.getLogger(__name__)
 
 
 class Health(Protocol):
@@ -29,14 +32,22 @@ class Liveliness:
         self._lock = threading.Lock()
         self._alive: defaultdict[str, set[str]] = defaultdict(set)
         self._stack = ExitStack()
+        self._closing = threading.Event()
+        self._joining: threading.Thread | None = None
 
-    def open(self, endpoint: str) -> None:
+    def open(self, endpoint: str, certs: Path | None = None) -> None:
         """Join the bus; returns at once, the router may come later."""
-        bus = self._stack.enter_context(open_bus(endpoint))
-        bus.watch_alive(self._changed)
+        if certs is None:
+            self._join(endpoint, None)
+            return
+        self._joining = threading.Thread(target=self._join_when_up, args=(endpoint, certs), daemon=True)
+        self._joining.start()
 
     def close(self) -> None:
         """Leave the bus."""
+        self._closing.set()
+        if self._joining is not None:
+            self._joining.join()
         self._stack.close()
 
     def of(self, service: str) -> "TokenHealth":
@@ -47,6 +58,19 @@ class Liveliness:
         """Return the instances of `service` that are alive."""
         with self._lock:
             return frozenset(self._alive[service])
+
+    def _join_when_up(self, endpoint: str, certs: Path) -> None:
+        """A client of a secured router cannot open before that is up: try until it is, or we close."""
+        while not self._closing.is_set():
+            try:
+                self._join(endpoint, certs)
+                return
+            except UnreachableError as error:
+                log.info("%s", error)
+
+    def _join(self, endpoint: str, certs: Path | None) -> None:
+        bus = self._stack.enter_context(open_bus(endpoint, certs=certs))
+        bus.watch_alive(self._changed)
 
     def _changed(self, service: str, instance: str, alive: bool) -> None:
         with self._lock:

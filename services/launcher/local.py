@@ -1,12 +1,13 @@
 """From a Compose service to a local process: host names, volumes, Python and health check replaced."""
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from services.launcher.compose_file import Service
 
+CERTIFICATE_VARIABLE = "TOPNAV_CERTS"
 LIVELINESS_TEST = ("CMD", "python", "-m", "shared.health")
 UNCHECKED_READY_AFTER_S = 0.5
 
@@ -44,10 +45,17 @@ class ProcessSpec:
 
 @dataclass(frozen=True)
 class LocalMachine:
-    """Where local processes find Python and keep what containers keep in volumes."""
+    """Where local processes find Python and keep what containers keep in volumes.
+
+    Attributes:
+        python: interpreter of all services.
+        data_dir: folder of the volumes.
+        certs: folder of all certificates; None runs without, whatever volumes the Compose file has for them.
+    """
 
     python: str
     data_dir: Path
+    certs: Path | None = None
 
 
 def local_process(name: str, service: Service, hosts: Collection[str], machine: LocalMachine) -> ProcessSpec:
@@ -59,13 +67,17 @@ def local_process(name: str, service: Service, hosts: Collection[str], machine: 
         hosts: all service names; as host names they mean this machine.
         machine: Python and data folder of this machine.
     """
-    mounts = _mounts(service.volumes, machine.data_dir)
+    own_certs = service.environment.get(CERTIFICATE_VARIABLE)
+    mounts = _mounts([v for v in service.volumes if v.split(":")[1] != own_certs], machine.data_dir)
+    environment = {key: _local_value(value, hosts, mounts) for key, value in service.environment.items()}
+    if own_certs is not None:
+        environment[CERTIFICATE_VARIABLE] = certificate_folder(machine.certs, name)
     test = service.healthcheck.test if service.healthcheck else ()
     by_token = test[: len(LIVELINESS_TEST)] == LIVELINESS_TEST
     return ProcessSpec(
         name=name,
         command=_with_python(service.command, machine.python),
-        environment={key: _local_value(value, hosts, mounts) for key, value in service.environment.items()},
+        environment=environment,
         data_folders=tuple(mounts.values()),
         alive_as=test[len(LIVELINESS_TEST)] if by_token else None,
         check=None if by_token or not test or test[0] == "NONE" else _check_command(test, machine.python),
@@ -75,6 +87,11 @@ def local_process(name: str, service: Service, hosts: Collection[str], machine: 
         restart=service.restart != "no",
         stop_grace_s=service.stop_grace_period,
     )
+
+
+def certificate_folder(certs: Path | None, service: str) -> str:
+    """A service's own certificate, the only one it is told of; "" without certificates."""
+    return str(certs / service.replace("-", "_")) if certs else ""
 
 
 def _with_python(command: tuple[str, ...], python: str) -> tuple[str, ...]:
@@ -87,7 +104,7 @@ def _check_command(test: tuple[str, ...], python: str) -> tuple[str, ...]:
     return _with_python(test[1:], python)
 
 
-def _mounts(volumes: tuple[str, ...], data_dir: Path) -> dict[str, Path]:
+def _mounts(volumes: Sequence[str], data_dir: Path) -> dict[str, Path]:
     """Map the container path of each named volume to a folder under `data_dir`."""
     mounts = {}
     for volume in volumes:

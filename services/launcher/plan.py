@@ -3,7 +3,7 @@
 from collections.abc import Collection, Mapping
 from graphlib import CycleError, TopologicalSorter
 
-from services.launcher.compose_file import Service
+from services.launcher.compose_file import Dependency, Service
 
 
 def active_services(
@@ -11,12 +11,14 @@ def active_services(
 ) -> dict[str, Service]:
     """Keep the services without a profile or with a chosen one; `only` keeps these and what they need.
 
+    A dependency that is not required counts only where it runs.
+
     Raises:
         ValueError: `only` names a service that the file lacks.
     """
     chosen = {n: s for n, s in services.items() if not s.profiles or set(s.profiles) & set(profiles)}
     if only is None:
-        return chosen
+        return _without_absent(chosen)
     wanted, queue = set[str](), list(only)
     while queue:
         name = queue.pop()
@@ -24,8 +26,18 @@ def active_services(
             raise ValueError(f"no service {name!r}; there are {sorted(services)}")
         if name not in wanted:
             wanted.add(name)
-            queue.extend(services[name].depends_on)
-    return {name: service for name, service in services.items() if name in wanted}
+            needs = services[name].depends_on.items()
+            queue.extend(other for other, need in needs if need.required or other in chosen)
+    return _without_absent({name: service for name, service in services.items() if name in wanted})
+
+
+def _without_absent(services: Mapping[str, Service]) -> dict[str, Service]:
+    """Drop the dependencies that are not required and do not run."""
+
+    def needs(service: Service) -> dict[str, Dependency]:
+        return {n: need for n, need in service.depends_on.items() if need.required or n in services}
+
+    return {n: s.model_copy(update={"depends_on": needs(s)}) for n, s in services.items()}
 
 
 def start_stages(services: Mapping[str, Service]) -> list[list[str]]:

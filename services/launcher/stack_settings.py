@@ -46,6 +46,7 @@ class StackSettings:
         profile: rules of planner and drive, "default" or "thesis", or a file of `topnav calibrate --write`.
         ports: where the services listen.
         environment: set in every service last of all, for example {"FEATURES_KEYPOINTS": "300"}.
+        secure: certificates for everybody, and a router that lets pass only what the access rules allow.
     """
 
     data_dir: Path
@@ -55,11 +56,22 @@ class StackSettings:
     profile: str | None = None
     ports: Ports = field(default_factory=Ports)
     environment: Mapping[str, str] = field(default_factory=dict)
+    secure: bool = False
+
+    @property
+    def protocol(self) -> str:
+        """What Zenoh endpoints begin with; "tls" is refused by a service without certificate."""
+        return "tls" if self.secure else "tcp"
 
     @property
     def endpoint(self) -> str:
         """Zenoh endpoint of the router."""
-        return f"tcp/{HOST}:{self.ports.router}"
+        return f"{self.protocol}/{HOST}:{self.ports.router}"
+
+    @property
+    def certs(self) -> Path | None:
+        """Folder of the certificates of a secured stack."""
+        return self.data_dir / "certs" if self.secure else None
 
     def variables(self, base: Mapping[str, str] | None = None) -> dict[str, str]:
         """Return what the Compose file interpolates: the choices on top of `base` (the environment)."""
@@ -70,6 +82,7 @@ class StackSettings:
             "TOPNAV_SEED": None if self.seed is None else str(self.seed),
             **profile_variables(self.profile),
             "TOPNAV_BIND": HOST,
+            "TOPNAV_BUS": self.protocol,
             "TOPNAV_TOKEN": base.get("TOPNAV_TOKEN", ""),  # nobody else reaches loopback: no secret needed
             "TOPNAV_ROUTER_PORT": str(self.ports.router),
             "TOPNAV_GATEWAY_PORT": str(self.ports.gateway),
@@ -92,7 +105,7 @@ def profile_variables(profile: str | None) -> dict[str, str | None]:
         return {"TOPNAV_PROFILE": profile}
     try:
         base = json.loads(Path(profile).read_text(encoding="utf-8"))["base"]
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         raise ValueError(
             f"--profile {profile}: not a file of 'topnav calibrate --write': {error or type(error).__name__}"
         ) from error

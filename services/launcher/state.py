@@ -31,7 +31,13 @@ class StackState(BaseModel):
     gateway_url: str
     map_store_url: str
     logs: str
+    certs: str | None = None
     services: dict[str, ServiceStatus]
+
+    @property
+    def operator_certs(self) -> Path | None:
+        """Certificate of the shell on a secured stack, None on an open one."""
+        return Path(self.certs) if self.certs else None
 
     @property
     def healthy(self) -> bool:

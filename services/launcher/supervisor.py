@@ -19,15 +19,18 @@ from typing import Self
 
 from services.launcher.compose_file import COMPOSE_FILE, load_compose
 from services.launcher.health import AlwaysReady, CommandHealth, Health, Liveliness
-from services.launcher.local import LocalMachine, ProcessSpec, local_process
+from services.launcher.local import LocalMachine, ProcessSpec, certificate_folder, local_process
 from services.launcher.loop import SupervisorLoop
 from services.launcher.plan import active_services, start_stages
+from services.launcher.preparing import OPERATOR, prepare
 from services.launcher.process import ChildProcess
 from services.launcher.restart import RestartPolicy
 from services.launcher.runner import ServiceRunner, State
 from services.launcher.stack_settings import HOST, Ports, StackSettings
 from services.launcher.state import ServiceStatus, StackState, StateFolder
 from services.launcher.wait import LaunchError, require_healthy
+from shared.access_rules import robot_names
+from shared.bus_security import secured_url
 
 log = logging.getLogger(__name__)
 
@@ -40,6 +43,7 @@ class Launcher:
         world, lockstep, seed, profile: see StackSettings; None leaves the Compose file's default.
         ports: default: free ones, so that stacks run side by side.
         environment: set in every service last of all.
+        secure: certificates, mTLS and access rules on the bus.
         only: run these services and what they depend on.
         variables: what the Compose file interpolates; default: this process's environment.
         compose_file: which processes there are.
@@ -63,10 +67,11 @@ class Launcher:
         timeout_s: float = 120.0,
         policy: RestartPolicy | None = None,
         watch: Callable[[Mapping[str, ServiceStatus]], None] | None = None,
+        secure: bool = False,
     ) -> None:
         folder = Path(data_dir).resolve()
         self.settings = StackSettings(
-            folder, world, lockstep, seed, profile, ports or Ports.free(), dict(environment or {})
+            folder, world, lockstep, seed, profile, ports or Ports.free(), dict(environment or {}), secure
         )
         self._root, self._timeout_s, self._watch = compose_file.resolve().parent, timeout_s, watch
         self._policy = policy or RestartPolicy()
@@ -88,6 +93,12 @@ class Launcher:
         return self.settings.endpoint
 
     @property
+    def certs(self) -> Path | None:
+        """Certificate of the shell on a secured stack, None on an open one."""
+        folder = certificate_folder(self.settings.certs, OPERATOR)
+        return Path(folder) if folder else None
+
+    @property
     def gateway_url(self) -> str:
         """Base URL of the gateway."""
         return f"http://{HOST}:{self.settings.ports.gateway}"
@@ -95,7 +106,8 @@ class Launcher:
     @property
     def map_store_url(self) -> str:
         """Base URL of the map store."""
-        return f"http://{HOST}:{self.settings.ports.map_store}"
+        url = f"http://{HOST}:{self.settings.ports.map_store}"
+        return secured_url(url) if self.settings.secure else url
 
     @property
     def logs(self) -> Path:
@@ -108,13 +120,16 @@ class Launcher:
         Raises:
             AlreadyRunningError: the data folder belongs to a running stack.
             LaunchError: a service keeps crashing or is not healthy in time; everything is stopped again.
+            CertificatesError: a certificate has expired or does not fit.
         """
         self._state.acquire()
         self._started = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
         try:
+            if self.settings.certs:
+                prepare(self.settings.certs, self._robots)
             self._loop.start()
             if self._uses_bus:
-                self._liveliness.open(self.endpoint)
+                self._liveliness.open(self.endpoint, self.certs)
             if wait:
                 self.wait_all_healthy(self._timeout_s)
         except BaseException:
@@ -180,10 +195,12 @@ class Launcher:
     def _specs(
         self, compose_file: Path, variables: Mapping[str, str] | None, only: Collection[str] | None
     ) -> list[ProcessSpec]:
-        compose = load_compose(compose_file, self.settings.variables(variables))
+        given = self.settings.variables(variables)
+        self._robots = robot_names(given)
+        compose = load_compose(compose_file, given)
         services = active_services(compose.services, only=only)
         self._stages = start_stages(services)
-        machine = LocalMachine(sys.executable, self.settings.data_dir)
+        machine = LocalMachine(sys.executable, self.settings.data_dir, self.settings.certs)
         return [local_process(name, service, compose.services, machine) for name, service in services.items()]
 
     def _health(self, spec: ProcessSpec) -> Health:
@@ -212,6 +229,7 @@ class Launcher:
                 gateway_url=self.gateway_url,
                 map_store_url=self.map_store_url,
                 logs=str(self.logs),
+                certs=str(self.certs) if self.certs else None,
                 services=dict(services),
             )
         )

@@ -52,6 +52,7 @@ def run_foreground(settings: StackSettings, compose_file: Path, timeout_s: float
         variables=variables,
         compose_file=compose_file,
         watch=watch,
+        secure=settings.secure,
     )
     _log_to(launcher.logs / "launcher.jsonl")
     launcher.start(wait=False)
@@ -126,4 +127,6 @@ def _arguments(settings: StackSettings, compose_file: Path, timeout_s: float) ->
         arguments += [f"--{name}", str(value)] if value is not None else []
     if settings.lockstep is not None:
         arguments.append("--lockstep" if settings.lockstep else "--no-lockstep")
+    if settings.secure:
+        arguments.append("--secure")
     return arguments

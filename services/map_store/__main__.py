@@ -1,17 +1,20 @@
 """`python -m services.map_store`: the maps, over the bus and over REST."""
 
 import logging
+import sys
 import time
 from threading import Event
 
 from services.map_store.api import create_app
 from services.map_store.database import Database
+from services.map_store.guard import LOOPBACK_NAMES
 from services.map_store.missions import MissionStore
 from services.map_store.server import serve
 from services.map_store.service import Deltas, run
 from services.map_store.settings import MapStoreSettings
 from services.map_store.store import MapStore
 from shared.bus import Bus
+from shared.bus_security import credentials_in
 from shared.lifecycle import run_service
 
 log = logging.getLogger(__name__)
@@ -20,8 +23,12 @@ NAME = "map_store"
 
 
 def main() -> None:
-    """Run until a signal comes."""
-    settings = MapStoreSettings.from_environment()
+    """Run until a signal comes; exits with 2 and one line when the settings are wrong."""
+    try:
+        settings = MapStoreSettings.from_environment()
+    except ValueError as error:
+        sys.stderr.write(f"map_store: {error}\n")
+        sys.exit(2)
 
     def loop(bus: Bus, stop: Event) -> None:
         database = Database(settings.database_url)
@@ -32,9 +39,16 @@ def main() -> None:
             ready.set()
             bus.announce(NAME)
 
-        app = create_app(store, settings.token.get_secret_value(), settings.max_archive_bytes, ready.is_set)
+        app = create_app(
+            store,
+            settings.token.get_secret_value(),
+            settings.max_archive_bytes,
+            ready.is_set,
+            names=LOOPBACK_NAMES | {settings.host} if settings.loopback else None,
+            guard_reading=not settings.loopback,
+        )
         try:
-            with serve(app, settings.host, settings.port):
+            with serve(app, settings.host, settings.port, credentials_in(settings.certs)):
                 run(bus, stop, store, MissionStore(database), deltas, announce)
         finally:
             database.close()

@@ -1,13 +1,13 @@
 """REST over the same store: `create_app(store)`. The schema is at /openapi.json, a page at /docs."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 from fastapi import APIRouter, Depends, FastAPI
 
 from services.map_store import archive_routes, care_routes, graph_routes, history_routes, map_routes, problems
 from services.map_store.body_limit import BodyLimit
 from services.map_store.errors import UnavailableError
-from services.map_store.guard import writer_guard
+from services.map_store.guard import reader_guard, writer_guard
 from services.map_store.schemas import Health
 from services.map_store.store import MapStore
 from shared.openapi import describing_problems
@@ -24,6 +24,8 @@ def create_app(
     token: str = "",
     max_archive_bytes: int = 4_000_000_000,
     ready: Callable[[], bool] = lambda: True,
+    names: Collection[str] | None = None,
+    guard_reading: bool = False,
 ) -> FastAPI:
     """Build the application.
 
@@ -32,11 +34,14 @@ def create_app(
         token: bearer token that writes need; empty = none.
         max_archive_bytes: largest archive to import.
         ready: whether the bus side answers too.
+        names: what Host may say; None = anything.
+        guard_reading: reading needs the token as well.
     """
     app = FastAPI(title="topnav map store", version=VERSION, description=DESCRIPTION)
     app.add_middleware(BodyLimit, most=MAX_BODY_BYTES, exceptions={"/maps/import": max_archive_bytes})
     problems.install(app)
     write = [Depends(writer_guard(token))]
+    read = [Depends(reader_guard(token if guard_reading else "", names))]
     for router in (
         map_routes.build(store, write),
         history_routes.build(store, write),
@@ -44,7 +49,7 @@ def create_app(
         care_routes.build(store, write),
         archive_routes.build(store, write, max_archive_bytes),
     ):
-        app.include_router(router)
+        app.include_router(router, dependencies=read)
     app.include_router(_health(store, ready))
     app.openapi = describing_problems(app.openapi)  # type: ignore[method-assign]
     return app

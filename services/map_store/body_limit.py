@@ -1,5 +1,6 @@
-"""Longest request bodies, refused as a problem; the limit that FastAPI has answers in plain text."""
+"""Longest request bodies, and how long they may stall; the limit that FastAPI has answers in plain text."""
 
+import asyncio
 from collections.abc import Mapping
 
 from fastapi import HTTPException
@@ -8,7 +9,9 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from services.map_store.problems import problem
 
-TOO_LARGE = 413
+TOO_SLOW, TOO_LARGE = 408, 413
+STALLED_S = 30.0
+"""The gateway ends stalled senders earlier; this is for those that come here directly."""
 
 
 class BodyLimit:
@@ -34,12 +37,16 @@ class BodyLimit:
         if announced.isascii() and announced.isdigit() and int(announced[:20]) > most:
             await problem("content-too-large", TOO_LARGE, detail)(scope, receive, send)
             return
-        seen = 0
+        seen, more = 0, True
 
         async def counted() -> Message:
-            nonlocal seen
-            message = await receive()
-            seen += len(message.get("body", b""))
+            nonlocal seen, more
+            try:
+                async with asyncio.timeout(STALLED_S if more else None):
+                    message = await receive()
+            except TimeoutError:
+                raise HTTPException(TOO_SLOW, f"the next part of the body within {STALLED_S:g} s") from None
+            seen, more = seen + len(message.get("body", b"")), message.get("more_body", False)
             if seen > most:
                 raise HTTPException(TOO_LARGE, detail)
             return message

@@ -1,24 +1,50 @@
-"""Who may write over REST: holders of the token, and no page of another origin."""
+"""Who may use REST: holders of the token, under this machine's names, and no page of another origin."""
 
 import hmac
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from urllib.parse import urlsplit
 
 from fastapi import HTTPException, Request
 
+LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
+
+
+def reader_guard(token: str, names: Collection[str] | None) -> Callable[[Request], None]:
+    """A dependency of every route.
+
+    Args:
+        token: that reading needs; empty = none.
+        names: what Host may say, against DNS rebinding; None = anything.
+    """
+
+    def check(request: Request) -> None:
+        if names is not None and _name(request.headers.get("host", "")) not in names:
+            raise HTTPException(403, f"one of {sorted(names)} is expected as Host: others may not lead here")
+        _check_token(request, token, "this map store needs")
+
+    return check
+
 
 def writer_guard(token: str) -> Callable[[Request], None]:
     """A dependency for routes that write; an empty token lets everyone on this host write."""
-    expected = f"Bearer {token}".encode()
 
     def check(request: Request) -> None:
         origin = request.headers.get("origin")
         if origin is not None and urlsplit(origin).netloc != request.headers.get("host"):
             raise HTTPException(403, f"pages of {origin[:80]} may not write here")
-        given = request.headers.get("authorization", "").encode()
-        if token and not hmac.compare_digest(given, expected):
-            raise HTTPException(
-                401, "writes need 'Authorization: Bearer <token>'", {"WWW-Authenticate": "Bearer"}
-            )
+        _check_token(request, token, "writes need")
 
     return check
+
+
+def _check_token(request: Request, token: str, who: str) -> None:
+    given, expected = request.headers.get("authorization", "").encode(), f"Bearer {token}".encode()
+    if token and not hmac.compare_digest(given, expected):
+        raise HTTPException(401, f"{who} 'Authorization: Bearer <token>'", {"WWW-Authenticate": "Bearer"})
+
+
+def _name(host: str) -> str | None:
+    try:
+        return urlsplit(f"//{host}").hostname
+    except ValueError:
+        return None

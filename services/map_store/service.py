@@ -13,7 +13,7 @@ from services.map_store.store import MapStore
 from shared.bus import Bus, Publisher, Request
 from shared.messages.base import Message
 from shared.messages.maps import MapDelta, MapReply, MapRequest, MissionRecord, MissionRecordRequest
-from shared.topics import MAP, MAP_DELTA, MISSION_RECORD
+from shared.topics import MAP, MAP_DELTA, MAP_READ, MISSION_RECORD
 from shared.wire import encode
 
 Q = TypeVar("Q", bound=Message)
@@ -21,6 +21,7 @@ R = TypeVar("R", bound=Message)
 log = logging.getLogger(__name__)
 
 PERIOD_S = 0.5
+READING = frozenset({"read", "read_features"})
 
 
 class Deltas:
@@ -62,6 +63,13 @@ def answer_map(store: MapStore, name: str, request: MapRequest) -> MapReply:
     return MapReply(map=name, revision=revision, nodes=nodes, edges=tuple(graph.edges.values()))
 
 
+def answer_reader(store: MapStore, name: str, request: MapRequest) -> MapReply:
+    """Answer who may read only; raises MapError, also for a request that writes."""
+    if request.action not in READING:
+        raise InvalidError(f"this key only reads, one of {sorted(READING)} expected, got {request.action!r}")
+    return answer_map(store, name, request)
+
+
 def answer_mission(missions: MissionStore, robot: str, request: MissionRecordRequest) -> MissionRecord:
     """Claim or save the record of `robot`; raises MapError."""
     if request.record.robot != robot:
@@ -79,6 +87,7 @@ def run(
 ) -> None:
     """Answer until `stop`; `ready` is called once questions can be asked."""
     maps, records = bus.requests(MAP, map="*"), bus.requests(MISSION_RECORD, robot="*")
+    readers = bus.requests(MAP_READ, map="*")
     _reset_followers(store, deltas)
     ready()
     while not stop.is_set():
@@ -86,6 +95,8 @@ def run(
         while (question := maps.take()) is not None:
             _answer(question, partial(answer_map, store))
             deltas.publish()
+        while (reading := readers.take()) is not None:
+            _answer(reading, partial(answer_reader, store))
         while (mission := records.take()) is not None:
             _answer(mission, partial(answer_mission, missions))
         deltas.publish()

@@ -1,9 +1,14 @@
 """Settings of the map store."""
 
-from pydantic import Field, SecretStr
+import ipaddress
+from typing import Self
+
+from pydantic import Field, SecretStr, model_validator
 from pydantic_settings import SettingsConfigDict
 
+from shared.bus_security import credentials_in
 from shared.settings import ServiceSettings
+from shared.tokens.token import check_chosen
 
 
 class MapStoreSettings(ServiceSettings):
@@ -12,7 +17,9 @@ class MapStoreSettings(ServiceSettings):
     Attributes:
         database_url: SQLAlchemy URL; sqlite:///relative/file, sqlite:////absolute/file or postgresql+psycopg://...
         host, port: where REST listens; port 0 takes any free one.
-        token: bearer token that writes over REST need; empty = none.
+        token: bearer token that writes over REST need, off loopback reading as well; empty = none.
+        allow_open: listen on a reachable address without a token all the same, as in a network of
+            containers of which no port is published.
         max_archive_bytes: largest archive that may be imported, packed and unpacked.
     """
 
@@ -22,4 +29,29 @@ class MapStoreSettings(ServiceSettings):
     host: str = "127.0.0.1"
     port: int = Field(default=8001, ge=0, le=65_535)
     token: SecretStr = SecretStr("")
+    allow_open: bool = False
     max_archive_bytes: int = Field(default=4_000_000_000, ge=1)
+
+    @model_validator(mode="after")
+    def _closed_unless_asked(self) -> Self:
+        secret = self.token.get_secret_value()
+        if self.loopback or self.allow_open or credentials_in(self.certs) is not None:
+            return self
+        if not secret:
+            raise ValueError(
+                f"MAP_STORE_HOST {self.host} is reachable from other machines and MAP_STORE_TOKEN is empty: "
+                "set one (and GATEWAY_MAP_STORE_TOKEN), listen on 127.0.0.1, or where no port is published "
+                "let everybody there change maps with MAP_STORE_ALLOW_OPEN=true"
+            )
+        check_chosen(secret, "MAP_STORE_TOKEN")
+        return self
+
+    @property
+    def loopback(self) -> bool:
+        """Whether only this machine can connect."""
+        if self.host == "localhost":
+            return True
+        try:
+            return ipaddress.ip_address(self.host).is_loopback
+        except ValueError:
+            return False

@@ -15,10 +15,12 @@ from services.launcher.compose_file import COMPOSE_FILE, load_compose
 from services.launcher.interpolate import interpolate_tree
 from services.launcher.local import LocalMachine, local_process
 from services.launcher.stack_settings import Ports, StackSettings
+from shared.certificates.layout import AUTHORITY, everyone
 from shared.settings import ServiceSettings
 
 RAW = yaml.safe_load(COMPOSE_FILE.read_text(encoding="utf-8"))
-SERVICES = RAW["services"]
+EVERYTHING = RAW["services"]
+SERVICES = {name: service for name, service in EVERYTHING.items() if "profiles" not in service}
 SETTINGS = {
     "map-store": "services.map_store.settings",
     "simulator": "simulator.service_settings",
@@ -32,7 +34,13 @@ VARIABLE = re.compile(r"\$\{(\w+)")
 
 @pytest.fixture
 def schema(repository):
-    return json.loads((repository / "tests/contract/vendor/compose-spec.json").read_text(encoding="utf-8"))
+    text = (repository / "tests/contract/vendor/compose-spec.json").read_text(encoding="utf-8")
+    schema = json.loads(text)
+    # Docker Compose 2.20 brought `required`, which the published package of the schema does not have yet.
+    depends_on = schema["definitions"]["service"]["properties"]["depends_on"]["oneOf"][1]
+    (need,) = depends_on["patternProperties"].values()
+    need["properties"]["required"] = {"type": "boolean"}
+    return schema
 
 
 @pytest.fixture
@@ -44,7 +52,7 @@ def stack(tmp_path):
 def specs(stack):
     services = load_compose(COMPOSE_FILE, stack.variables({})).services
     machine = LocalMachine(sys.executable, stack.data_dir)
-    return {name: local_process(name, service, services, machine) for name, service in services.items()}
+    return {name: local_process(name, services[name], services, machine) for name in SERVICES}
 
 
 def test_the_file_follows_the_compose_specification(schema):
@@ -74,6 +82,8 @@ def test_docker_and_the_launcher_give_the_same_environment_up_to_host_names_and_
     ours = dict(specs[name].environment)
     dockers = interpolate_tree(SERVICES[name]["environment"], stack.variables({}))
     assert ours.keys() == dockers.keys()
+    assert ours.pop("TOPNAV_CERTS") == ""  # filled by nobody without --secure
+    assert dockers.pop("TOPNAV_CERTS") == "/run/topnav/certs"
     for key, value in dockers.items():
         local = re.sub(
             r"//map-store:|tcp/router:", lambda m: m[0][:4].replace("//ma", "//") + "127.0.0.1:", value
@@ -114,6 +124,59 @@ def test_every_variable_of_a_service_is_one_of_its_settings(name, specs, monkeyp
         monkeypatch.setenv(variable, value)
     settings = classes[0].from_environment()
     assert settings.endpoint == "tcp/127.0.0.1:17447"
+
+
+def test_only_the_certificates_belong_to_a_profile_and_no_service_needs_them():
+    assert {name: s["profiles"] for name, s in EVERYTHING.items() if "profiles" in s} == {"certs": ["secure"]}
+    for name, service in SERVICES.items():
+        need = service["depends_on"]["certs"]
+        assert need == {"condition": "service_completed_successfully", "required": False}, name
+
+
+def test_each_service_mounts_its_own_certificate_only_and_nobody_the_authority():
+    filled = dict(volume.split(":") for volume in EVERYTHING["certs"]["volumes"])
+    assert set(filled) >= {f"certs-{name}" for name in SERVICES}
+    holders = {holder.name for holder in everyone("r1")} | {AUTHORITY}
+    assert set(filled.values()) == {f"/certs/{name}" for name in holders}
+    for name, service in SERVICES.items():
+        mounted = [volume for volume in service["volumes"] if volume.startswith("certs-")]
+        assert mounted == [f"certs-{name}:/run/topnav/certs:ro"]
+        assert filled[f"certs-{name}"] == f"/certs/{name.replace('-', '_')}"
+
+
+def test_the_certificates_are_made_without_network_by_the_user_of_the_services(repository):
+    assert EVERYTHING["certs"]["network_mode"] == "none"
+    text = (repository / EVERYTHING["certs"]["build"]["dockerfile"]).read_text(encoding="utf-8")
+    made = re.search(r"for one in ([^;]+); do", text.replace("\\\n", " "))
+    assert made is not None
+    assert set(made[1].split()) == {holder.name for holder in everyone("r1")} | {AUTHORITY}
+    assert "COPY shared shared" in text
+    for name, service in EVERYTHING.items():
+        file = (repository / service["build"]["dockerfile"]).read_text(encoding="utf-8")
+        assert "--uid 10001" in file, name
+
+
+@pytest.mark.parametrize("name", EVERYTHING)
+def test_every_container_is_bounded_and_has_no_more_rights_than_it_needs(name):
+    service = EVERYTHING[name]
+    assert service["mem_limit"]
+    assert service["pids_limit"] <= 512
+    assert "cpus" in service or service["cpu_shares"] < 1024
+    assert service["read_only"] is True
+    assert service["cap_drop"] == ["ALL"]
+    assert service["security_opt"] == ["no-new-privileges:true"]
+
+
+def test_a_secured_stack_gives_each_process_its_own_certificate_and_endpoints_that_need_one(tmp_path):
+    stack = StackSettings(tmp_path, ports=Ports(17447, 18000, 18001), secure=True)
+    services = load_compose(COMPOSE_FILE, stack.variables({})).services
+    machine = LocalMachine(sys.executable, tmp_path, stack.certs)
+    for name in SERVICES:
+        spec = local_process(name, services[name], services, machine)
+        assert spec.environment["TOPNAV_CERTS"] == str(tmp_path / "certs" / name.replace("-", "_"))
+        assert spec.environment["TOPNAV_ENDPOINT"] == "tls/127.0.0.1:17447"
+        assert not [folder for folder in spec.data_folders if "certs" in folder.name]
+    assert services["router"].environment["TOPNAV_ROUTER_LISTEN"] == "tls/127.0.0.1:17447"
 
 
 def test_choices_reach_the_services(specs):

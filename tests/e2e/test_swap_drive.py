@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
+from experiments.address import Address
 from experiments.exploration import explore
 from experiments.rounds import Game
 from experiments.stack import ROBOT, Stack
@@ -30,7 +31,7 @@ def stack(tmp_path, repository) -> Iterator[Stack]:
         try:
             with open_bus(launcher.endpoint) as bus:
                 assert wait_until(lambda: bool(bus.alive("drive")), timeout_s=10.0)
-                yield Stack(bus, launcher.endpoint, None, launcher)
+                yield Stack(bus, Address(launcher.endpoint), None, launcher)
         finally:
             other.kill()
             other.wait()

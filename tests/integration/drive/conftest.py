@@ -26,13 +26,13 @@ class Neighbours:
         self._commands = bus.subscribe(COMMAND, robot="r1")
         self.stopped = bus.subscribe(STOPPED, robot="r1")
 
-    def see(self, seq: int, *, stamp_ns: int = 0, lockstep: bool = False) -> None:
-        """Distances of frame `seq`, measured now unless a time is given; nothing is near."""
+    def see(self, seq: int, *, stamp_ns: int = 0, lockstep: bool = False, near_m: float = 4.0) -> None:
+        """Distances of frame `seq`, measured now unless a time is given; nothing is near unless told."""
         angles = tuple(k * 0.5 for k in range(12))
         self._ranges.put(
             Ranges(
                 seq=seq, stamp_ns=stamp_ns or time.time_ns(), robot="r1", lockstep=lockstep,
-                angles_rad=angles, distances_m=(4.0,) * 12, max_range_m=4.0,
+                angles_rad=angles, distances_m=(near_m,) * 12, max_range_m=4.0,
             )
         )  # fmt: skip
 

@@ -1,6 +1,7 @@
 """The drive process over a real bus: the emergency stop, replaced planners, headings that were held up."""
 
 import time
+from itertools import count
 
 import pytest
 
@@ -111,7 +112,13 @@ def test_of_two_planners_the_lower_epoch_is_refused(start, neighbours):
 
 def test_a_heading_that_was_held_up_longer_than_it_lives_moves_nothing(start, neighbours):
     start()
-    neighbours.commands(0.3, lambda: neighbours.see(1))
-    answers = neighbours.commands(0.8, go(neighbours, age_s=4.0))
+    frames = count(1)
+    neighbours.commands(3.0, lambda: neighbours.see(next(frames)))  # 2 s to decide, 0.5 s to live
+    answers = neighbours.commands(0.6, lambda: (neighbours.see(next(frames)), neighbours.wish(2)))
     assert still(answers)
-    assert neighbours.drives(go(neighbours, age_s=0.3))
+
+    def act():
+        neighbours.see(seq := next(frames))
+        neighbours.wish(seq)
+
+    assert neighbours.drives(act)

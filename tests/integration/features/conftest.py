@@ -9,22 +9,25 @@ import zenoh
 
 from services.features.service import run
 from services.features.settings import FeaturesSettings
-from shared.bus import Bus, open_bus, wait_until
+from shared.bus import Bus, Request, open_bus, wait_until
 from shared.bus_config import router_config
 from shared.messages.features import Features
 from shared.messages.maps import AddNode, MapDelta, MapReply, MapRequest, Node, NodeFeatures
-from shared.topics import MAP, MAP_DELTA
+from shared.topics import MAP_DELTA, MAP_READ
 
 
 class StandInStore:
-    """Answers MAP read_features and publishes deltas, as the map store would."""
+    """Answers questions about a map and publishes deltas, as the map store would."""
 
     def __init__(self, bus: Bus, name: str) -> None:
         self.name, self.revision, self.reads = name, 0, 0
         self.nodes: dict[int, Features] = {}
+        self.pieces: list[int] = []
+        self.going: tuple[int, ...] = ()
+        """Nodes that are deleted right after the graph was read."""
         self._bus = bus
         self._deltas = bus.publisher(MAP_DELTA, map=name)
-        self._requests = bus.requests(MAP, map="*")
+        self._requests = bus.requests(MAP_READ, map="*")
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._serve)
         self._thread.start()
@@ -36,10 +39,25 @@ class StandInStore:
                 if request.name != self.name:
                     request.refuse(f"no map {request.name!r}")
                     continue
-                assert request.message == MapRequest(action="read_features")
-                self.reads += 1
-                features = tuple(NodeFeatures(node_id=n, features=f) for n, f in self.nodes.items())
-                request.reply(MapReply(map=self.name, revision=self.revision, features=features))
+                self._answer(request)
+
+    def _answer(self, request: Request[MapRequest, MapReply]) -> None:
+        asked = request.message
+        if asked.action == "read":
+            self.reads += 1
+            nodes = tuple(Node(node_id=node_id) for node_id in self.nodes)
+            request.reply(MapReply(map=self.name, revision=self.revision, nodes=nodes))
+            self.nodes = {n: f for n, f in self.nodes.items() if n not in self.going}
+            self.going = ()
+            return
+        assert asked.action == "read_features"
+        assert asked.node_ids
+        if gone := [node_id for node_id in asked.node_ids if node_id not in self.nodes]:
+            request.refuse(f"no node {gone}")
+            return
+        features = tuple(NodeFeatures(node_id=n, features=self.nodes[n]) for n in asked.node_ids)
+        self.pieces.append(len(features))
+        request.reply(MapReply(map=self.name, revision=self.revision, features=features))
 
     def add(self, node_id: int, features: Features, tell: bool = True) -> None:
         """Add a node; `tell` sends the delta."""

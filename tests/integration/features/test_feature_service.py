@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
+from services.features.map_reader import PIECE
 from shared.bus import Bus, wait_until
 from shared.messages.features import ExtractRequest, Features
 from shared.messages.matching import MatchReply, MatchRequest
@@ -105,6 +106,20 @@ def test_a_lost_delta_or_a_node_not_seen_yet_makes_it_read_the_map_again(bus: Bu
     store.add(8, current, tell=False)
     assert match(bus, features=current, best_k=2, map_revision=2).map_revision == 2
     assert store.reads == 3
+
+
+@pytest.mark.usefixtures("service")
+def test_a_large_map_is_read_in_pieces_and_a_place_that_goes_meanwhile_means_once_more(
+    bus: Bus, store
+) -> None:
+    current = extract(bus, frame_at(0.0, 0.0))
+    for node_id in range(PIECE + 3):
+        store.nodes[node_id] = current
+    store.going = (PIECE + 1,)
+    assert match(bus, features=current, node_ids=(PIECE + 2,)).results[0].status == "no_baseline"
+    assert (store.reads, store.pieces) == (2, [PIECE, PIECE, 2])
+    with pytest.raises(RefusedError, match=r"no node \[251\]"):
+        match(bus, features=current, node_ids=(PIECE + 1,))
 
 
 @pytest.mark.usefixtures("service")

@@ -20,6 +20,12 @@ Stored = tuple[int, list[tuple[str, str]]]
 """The map store's port and what it was asked: method and path."""
 
 
+UNHURRIED = {
+    name: 10_000 for name in ("writes_per_s", "write_burst", "uploads_per_s", "upload_burst", "failure_burst")
+}
+"""No rate limits: tests ask faster than people and programs do."""
+
+
 def free_port() -> int:
     """A port that was free a moment ago."""
     with socket.socket() as probe:
@@ -91,7 +97,7 @@ def serve_gateway(endpoint: str, **changes: object) -> Iterator[str]:
 
 def _serve(endpoint: str, **changes: object) -> Iterator[str]:
     port, stop = int(str(changes.pop("port", 0))) or free_port(), threading.Event()
-    settings = GatewaySettings(endpoint=endpoint, port=port, **changes)  # type: ignore[arg-type]
+    settings = GatewaySettings(endpoint=endpoint, port=port, **{**UNHURRIED, **changes})  # type: ignore[arg-type]
 
     def serve() -> None:
         with open_bus(endpoint) as bus:

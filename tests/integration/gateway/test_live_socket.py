@@ -86,16 +86,20 @@ def test_bad_names_are_refused(small: str, robot: str) -> None:
 def test_connections_are_limited_and_freed(small: str) -> None:
     def room() -> bool:
         try:
-            with opened(small):
+            with opened(small) as live:
+                live.recv(timeout=20.0)
                 return True
-        except InvalidStatus:
+        except ConnectionClosed:
             return False
 
     assert wait_until(room, 20.0)
-    with opened(small), opened(small), opened(small):
-        with pytest.raises(InvalidStatus) as caught:
-            opened(small)
-        assert caught.value.response.status_code == 503
+    with opened(small) as one, opened(small) as two, opened(small) as three:
+        for live in (one, two, three):
+            live.recv(timeout=20.0)
+        with opened(small) as fourth, pytest.raises(ConnectionClosed) as caught:
+            fourth.recv(timeout=20.0)
+        assert caught.value.rcvd is not None
+        assert (caught.value.rcvd.code, caught.value.rcvd.reason) == (1013, "too_many_sockets")
     assert wait_until(room, 20.0)
 
 

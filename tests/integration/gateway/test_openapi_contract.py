@@ -6,16 +6,21 @@ import sys
 import pytest
 
 from services.launcher.supervisor import Launcher
+from tests.integration.gateway.conftest import UNHURRIED
 
 CHECKS = "not_a_server_error,status_code_conformance,content_type_conformance,response_schema_conformance"
 EXAMPLES = 8
+
+
+NO_RATE_LIMITS = {f"GATEWAY_{name.upper()}": str(value) for name, value in UNHURRIED.items()}
 
 
 @pytest.fixture(scope="module")
 def stack(tmp_path_factory):
     """Every service but the simulator."""
     services = ["features", "map-store", "planner", "drive", "gateway"]
-    with Launcher(tmp_path_factory.mktemp("stack"), only=services, timeout_s=120.0) as launcher:
+    folder = tmp_path_factory.mktemp("stack")
+    with Launcher(folder, only=services, timeout_s=120.0, environment=NO_RATE_LIMITS) as launcher:
         yield launcher
 
 

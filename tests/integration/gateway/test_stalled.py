@@ -48,4 +48,7 @@ def test_stalled_uploads_hold_few_places_and_block_nothing_else(impatient: str) 
         assert wait_until(lambda: not free(), 20.0)
         assert httpx.get(f"{impatient}/healthz", trust_env=False, timeout=1.0).status_code == 200
     assert wait_until(free, 10.0)
-    assert 'uploads_refused_total{reason="busy"}' in httpx.get(f"{impatient}/metrics", trust_env=False).text
+    assert (
+        'uploads_refused_total{reason="too_many_uploads"}'
+        in httpx.get(f"{impatient}/metrics", trust_env=False).text
+    )

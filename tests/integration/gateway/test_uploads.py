@@ -17,7 +17,7 @@ from websockets.sync.client import connect
 
 from shared.bus import Bus, wait_until
 from shared.topics import MISSION
-from tests.integration.gateway.conftest import answers, free_port
+from tests.integration.gateway.conftest import UNHURRIED, answers, free_port
 from tests.integration.gateway.corpus import LIMIT_BYTES, Upload, bomb, broken, convertible
 from tests.integration.gateway.standins import FeatureService
 
@@ -49,6 +49,7 @@ def started(endpoint: str, folder: Path) -> Process:
         "TOPNAV_ENDPOINT": endpoint,
         "GATEWAY_PORT": str(port),
         "GATEWAY_MAX_UPLOAD_BYTES": str(LIMIT_BYTES),
+        **{f"GATEWAY_{name.upper()}": str(value) for name, value in UNHURRIED.items()},
         "PYTHONPATH": str(ROOT),
         "TMPDIR": str(folder),
     }

@@ -20,11 +20,18 @@ class Process:
     """
 
     def __init__(
-        self, repository: Path, folder: Path, endpoint: str, port: int, inside: Sequence[str] = ()
+        self,
+        repository: Path,
+        folder: Path,
+        endpoint: str,
+        port: int,
+        inside: Sequence[str] = (),
+        listen: str = "tcp/127.0.0.1:0",
     ) -> None:
         self._repository, self._inside = repository, inside
         self._environment = os.environ | {
             "TOPNAV_ENDPOINT": endpoint,
+            "TOPNAV_LISTEN": listen,
             "MAP_STORE_PORT": str(port),
             "MAP_STORE_DATABASE_URL": f"sqlite:///{folder}/maps.sqlite3",
         }

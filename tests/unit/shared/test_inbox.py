@@ -66,3 +66,19 @@ def test_a_flood_of_junk_is_logged_once_a_second(caplog: pytest.LogCaptureFixtur
             counters.count("malformed", "junk")
     assert counters.snapshot() == {"malformed": 1_000}
     assert len(caplog.records) <= 2
+
+
+def test_payloads_that_are_too_long_are_not_kept_and_all_together_are_bounded(
+    monkeypatch: pytest.MonkeyPatch,
+):
+    monkeypatch.setattr("shared.inbox.QUEUE_BYTES", 1_000)
+    counters = Counters()
+    box = Inbox(Command, 400, 1024, threading.Event(), counters)
+    box.push(bytes(401))
+    assert counters.snapshot() == {"malformed": 1}
+    for _ in range(10):
+        box.push(bytes(300))
+    assert box._waiting_bytes <= 1_000
+    assert counters.snapshot()["overflow"] == 7
+    assert box.take_all() == []
+    assert box._waiting_bytes == 0

@@ -16,7 +16,7 @@ def test_each_stage_needs_only_earlier_ones_and_keeps_the_order_of_the_file():
 
 
 def test_the_router_starts_first_and_planner_waits_for_the_map_store():
-    services = load_compose(COMPOSE_FILE, {"TOPNAV_TOKEN": ""}).services
+    services = active_services(load_compose(COMPOSE_FILE, {"TOPNAV_TOKEN": ""}).services)
     rank = {name: index for index, stage in enumerate(start_stages(services)) for name in stage}
     assert rank["router"] == 0
     assert [name for name, index in rank.items() if index == 0] == ["router"]
@@ -33,6 +33,15 @@ def test_a_circle_is_refused_with_its_members():
 def test_a_dependency_that_will_not_run_is_named():
     with pytest.raises(ValueError, match=r"a depends on \['gone'\]"):
         start_stages({"a": service("gone")})
+
+
+def test_what_is_not_required_counts_only_where_it_runs():
+    optional = Service(command=("x",), depends_on={"b": {"required": False}, "c": {}})
+    services = {"a": optional, "b": service(profiles=("secure",)), "c": service()}
+    assert start_stages(active_services(services)) == [["c"], ["a"]]
+    assert list(active_services(services, only=["a"])) == ["a", "c"]
+    assert start_stages(active_services(services, profiles=["secure"])) == [["b", "c"], ["a"]]
+    assert list(active_services(services, profiles=["secure"], only=["a"])) == ["a", "b", "c"]
 
 
 def test_a_profile_is_off_until_chosen():

@@ -1,0 +1,16 @@
+# topnav: the one-shot that makes certificates, with the core and its own extra and nothing else.
+FROM python:3.11-slim-trixie
+
+WORKDIR /app
+COPY pyproject.toml constraints.txt README.md LICENSE ./
+RUN pip install --no-cache-dir --constraint constraints.txt '.[certs]'
+
+COPY shared shared
+
+# An empty volume takes the owner of the folder it covers: all services run as the same user.
+RUN useradd --system --uid 10001 topnav \
+    && for one in authority router simulator features map_store planner drive \
+        gateway recorder operator viewer; do install --directory --owner topnav --mode 700 "/certs/$one"; done
+USER topnav
+# The root file system is read-only: caches go to the tmpfs.
+ENV HOME=/tmp PYTHONDONTWRITEBYTECODE=1 PYTHONUNBUFFERED=1

@@ -1,0 +1,1 @@
+"""`topnav soak`: missions without end while services are killed, frozen and cut off."""

@@ -1,0 +1,65 @@
+"""Looks on: whether the robot touches anything, and how much memory everybody holds."""
+
+import threading
+import time
+from pathlib import Path
+
+from experiments.soak.growth import Sample
+from experiments.soak.journal import Journal
+from services.launcher.supervisor import Launcher
+from shared.bus import open_bus
+from shared.messages import Truth
+from shared.topics import TRUTH
+
+PERIOD_S = 0.5
+MEMORY_PERIOD_S = 30.0
+KB_PER_MB = 1024.0
+
+
+class Monitor:
+    """Counts collisions from the simulator's truth and samples resident memory."""
+
+    def __init__(self, launcher: Launcher, robot: str, journal: Journal, most_mb: float) -> None:
+        self._launcher, self._robot, self._journal = launcher, robot, journal
+        self._most_mb, self._too_large = most_mb, set[str]()
+        self._last: Truth | None = None
+
+    def run(self, stop: threading.Event) -> None:
+        """Until `stop`."""
+        sampled_s = -MEMORY_PERIOD_S
+        with open_bus(self._launcher.endpoint) as bus:
+            truths = bus.subscribe(TRUTH, robot=self._robot)
+            while not stop.wait(PERIOD_S):
+                for truth in truths.take_all():
+                    self._look(truth)
+                if time.monotonic() - sampled_s >= MEMORY_PERIOD_S:
+                    sampled_s = time.monotonic()
+                    self._sample()
+
+    def _look(self, truth: Truth) -> None:
+        """The counter starts again at 0 with the simulator."""
+        before = self._last.collisions if self._last is not None else truth.collisions
+        if truth.collisions > before:
+            where = f"({truth.pose.x_m:.2f}, {truth.pose.y_m:.2f}) at {truth.speed_mps:.2f} m/s"
+            self._journal.violation("no collision", f"{truth.collisions - before} at {where}")
+        self._last = truth
+
+    def _sample(self) -> None:
+        at_s, samples = self._journal.elapsed_s, list[Sample]()
+        for name, status in self._launcher.status().items():
+            mb = _resident_mb(status.pid) if status.pid is not None else None
+            if mb is not None and status.pid is not None:
+                samples.append(Sample(name, status.pid, round(at_s, 1), mb))
+                if mb > self._most_mb and name not in self._too_large:
+                    self._too_large.add(name)
+                    self._journal.violation("memory is bounded", f"{name} holds {mb} MB")
+        self._journal.memory(samples)
+
+
+def _resident_mb(pid: int) -> float | None:
+    try:
+        lines = Path(f"/proc/{pid}/status").read_text(encoding="ascii", errors="replace").splitlines()
+    except OSError:
+        return None
+    sizes = [float(line.split()[1]) / KB_PER_MB for line in lines if line.startswith("VmRSS:")]
+    return round(sizes[0], 1) if sizes else None

@@ -1,0 +1,93 @@
+"""Who may say, hear, ask and answer what on the secured bus: one table beside `shared.topics`.
+
+A certificate's common name is its role, followed by ".ROBOT" for roles that belong to one robot: "drive.r1".
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from shared import topics
+from shared.topics import NAME, Query, Topic
+
+
+class Role(Enum):
+    """What a certificate says that its owner is; the value starts the common name."""
+
+    ROUTER = "router"
+    ROBOT = "robot"
+    SIMULATOR = "simulator"
+    FEATURES = "features"
+    MAP_STORE = "map_store"
+    PLANNER = "planner"
+    DRIVE = "drive"
+    GATEWAY = "gateway"
+    RECORDER = "recorder"
+    OPERATOR = "operator"
+    VIEWER = "viewer"
+
+    @property
+    def of_one_robot(self) -> bool:
+        """Whether such a service belongs to one robot and may touch the keys of no other."""
+        return self in (Role.ROBOT, Role.SIMULATOR, Role.FEATURES, Role.PLANNER, Role.DRIVE)
+
+    def common_name(self, robot: str) -> str:
+        """Common name of a certificate, "drive.r1" or "map_store".
+
+        Raises:
+            ValueError: not a robot's name.
+        """
+        if not NAME.match(robot):
+            raise ValueError(f"a robot's name must match [a-z0-9_-]{{1,64}}, got {robot[:80]!r}")
+        return f"{self.value}.{robot}" if self.of_one_robot else self.value
+
+
+def robot_names(variables: Mapping[str, str]) -> tuple[str, ...]:
+    """Robots of a stack: TOPNAV_ROBOTS, else TOPNAV_ROBOT; the first is that of the stack's own services."""
+    given = variables.get("TOPNAV_ROBOTS") or variables.get("TOPNAV_ROBOT") or "r1"
+    return tuple(name.strip() for name in given.split(","))
+
+
+@dataclass(frozen=True)
+class Grant:
+    """Of a topic: who may publish and who may subscribe. Of a query: who may answer and who may ask."""
+
+    speakers: frozenset[Role]
+    hearers: frozenset[Role]
+
+
+def _grant(speakers: Iterable[Role], hearers: Iterable[Role]) -> Grant:
+    return Grant(frozenset(speakers), frozenset(hearers))
+
+
+BODIES = (Role.ROBOT, Role.SIMULATOR)
+PEOPLE = (Role.GATEWAY, Role.OPERATOR)
+"""The two ways in which people's wishes reach the bus: the web console and the shell."""
+WATCHERS = (*PEOPLE, Role.RECORDER, Role.VIEWER)
+
+STREAMS: dict[Topic[Any], Grant] = {
+    topics.FRAME: _grant(BODIES, [Role.FEATURES, *WATCHERS]),
+    topics.RANGES: _grant(BODIES, [Role.DRIVE, Role.PLANNER, *WATCHERS]),
+    topics.FEATURES: _grant([Role.FEATURES], [Role.PLANNER, *WATCHERS]),
+    topics.HEADING: _grant([Role.PLANNER], [Role.DRIVE, *WATCHERS]),
+    topics.COMMAND: _grant([Role.DRIVE], [*BODIES, *WATCHERS]),
+    topics.STOPPED: _grant([Role.DRIVE], [*BODIES, Role.PLANNER, *WATCHERS]),
+    topics.STANDING: _grant(BODIES, [Role.DRIVE, *WATCHERS]),
+    topics.STATUS: _grant([Role.PLANNER], [Role.PLANNER, *WATCHERS]),
+    topics.EVENT: _grant([Role.PLANNER], WATCHERS),
+    # Only evaluation may know where the robot really is.
+    topics.TRUTH: _grant([Role.SIMULATOR], [*PEOPLE, Role.RECORDER]),
+    topics.MAP_DELTA: _grant([Role.MAP_STORE], [Role.FEATURES, Role.PLANNER, *WATCHERS]),
+}
+QUESTIONS: dict[Query[Any, Any], Grant] = {
+    topics.MATCH: _grant([Role.FEATURES], [Role.PLANNER, *PEOPLE]),
+    topics.EXTRACT: _grant([Role.FEATURES], PEOPLE),
+    topics.MISSION: _grant([Role.PLANNER], PEOPLE),
+    topics.ESTOP: _grant([Role.DRIVE], PEOPLE),
+    # One key reads and writes: who only reads has a key of its own.
+    topics.MAP: _grant([Role.MAP_STORE], [Role.PLANNER, *PEOPLE]),
+    topics.MAP_READ: _grant([Role.MAP_STORE], [Role.FEATURES]),
+    topics.MISSION_RECORD: _grant([Role.MAP_STORE], [Role.PLANNER]),
+    topics.SIMULATION: _grant([Role.SIMULATOR], [Role.OPERATOR]),
+}

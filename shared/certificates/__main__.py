@@ -1,0 +1,33 @@
+"""`python -m shared.certificates FOLDER`: make what is missing there; the one-shot service of Docker Compose.
+
+`topnav certs` can do more.
+"""
+
+import datetime as dt
+import os
+import sys
+from pathlib import Path
+
+from shared.access_rules import robot_names
+from shared.certificates.issuing import make
+from shared.certificates.layout import another_robot, everyone
+
+
+def main(arguments: list[str]) -> int:
+    """Make missing certificates; 1 with one line when that fails."""
+    if len(arguments) != 1:
+        sys.stderr.write("usage: python -m shared.certificates FOLDER\n")
+        return 2
+    first, *others = robot_names(os.environ)
+    try:
+        holders = [*everyone(first), *(holder for robot in others for holder in another_robot(robot))]
+        made = make(Path(arguments[0]), holders, dt.datetime.now(dt.UTC), keep=True)
+    except (ValueError, OSError) as error:
+        sys.stderr.write(f"certificates: {error}\n")
+        return 1
+    sys.stdout.write(f"{len(made)} made, {len(holders) - len(made)} kept in {arguments[0]}\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,89 @@
+"""Making certificates for a folder of holders, and making them again; nothing is overwritten unasked."""
+
+import datetime as dt
+from collections.abc import Iterable
+from pathlib import Path
+
+from cryptography import x509
+
+from shared.bus_security import CERTIFICATE_FILE
+from shared.certificates.authority import Authority, CertificatesError, has_authority
+from shared.certificates.layout import AUTHORITY, Holder
+from shared.certificates.reading import holder_of, hosts_of, read_certificate
+
+
+def make(
+    folder: Path,
+    holders: Iterable[Holder],
+    now: dt.datetime,
+    hosts: tuple[str, ...] = (),
+    keep: bool = False,
+) -> list[Holder]:
+    """Make certificates, and the authority if there is none; returns whose were made.
+
+    Args:
+        folder: of all certificates.
+        holders: who needs one.
+        now: time with a time zone.
+        hosts: further names at which the router is reached.
+        keep: leave those who have one alone.
+
+    Raises:
+        CertificatesError: one has a certificate already, or a name that is not a plain word.
+    """
+    wanted = list(holders)
+    for holder in wanted:
+        _require_plain(holder.name)
+    there = [holder for holder in wanted if (folder / holder.name / CERTIFICATE_FILE).exists()]
+    if there and not keep:
+        raise CertificatesError(
+            f"{folder}: {', '.join(h.name for h in there)} have certificates; "
+            "--renew makes new ones, --keep only those that are missing"
+        )
+    for holder in there:
+        _require_same(folder, holder)
+    authority = Authority.read(folder) if has_authority(folder) else Authority.made(folder, now)
+    made = [holder for holder in wanted if holder not in there]
+    for holder in made:
+        authority.issue(folder, holder, hosts, now)
+    return made
+
+
+def renew(folder: Path, now: dt.datetime, hosts: tuple[str, ...] = ()) -> list[Holder]:
+    """Make a new key and certificate for everybody in `folder`, with the same authority, names and hosts.
+
+    Services take them when they are started again.
+
+    Raises:
+        CertificatesError: no authority that can sign, or a certificate that is not ours.
+    """
+    authority = Authority.read(folder)
+    renewed = []
+    for path in sorted(folder.glob(f"*/{CERTIFICATE_FILE}")):
+        certificate = read_certificate(path)
+        holder = holder_of(path.parent.name, certificate)
+        authority.issue(folder, holder, tuple(dict.fromkeys((*hosts_of(certificate), *hosts))), now)
+        renewed.append(holder)
+    if not renewed:
+        raise CertificatesError(f"{folder}: certificates to renew expected, found none")
+    return renewed
+
+
+def _require_plain(name: str) -> None:
+    parts = name.split(".")
+    if name == AUTHORITY or not all(
+        part and part.replace("-", "").replace("_", "").isalnum() for part in parts
+    ):
+        raise CertificatesError(
+            f"a holder's name is a plain word other than {AUTHORITY!r}, got {name[:80]!r}"
+        )
+
+
+def _require_same(folder: Path, holder: Holder) -> None:
+    """What is kept must be what was asked for: another robot's certificate would be refused by the router."""
+    certificate: x509.Certificate = read_certificate(folder / holder.name / CERTIFICATE_FILE)
+    found = holder_of(holder.name, certificate).common_name
+    if found != holder.common_name:
+        raise CertificatesError(
+            f"{folder / holder.name}: a certificate of {holder.common_name} expected, found one of {found}"
+        )

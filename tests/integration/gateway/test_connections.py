@@ -1,0 +1,124 @@
+"""Connections that stall or are too many: ended or refused, while others are served."""
+
+import asyncio
+import contextlib
+import socket
+import time
+from collections.abc import Iterator
+
+import httpx
+import pytest
+from fastapi import FastAPI, Request
+
+from shared.bus import wait_until
+from tests.integration.gateway import standins
+from tests.integration.gateway.conftest import serve_gateway
+
+HEADER_S = 2.0
+PER_CLIENT = 12
+MUST_END_S = 20.0
+"""Long, for busy machines: without a time-out nothing would end at all."""
+
+
+@pytest.fixture(scope="module")
+def slow_store() -> Iterator[str]:
+    """A map store that thinks for longer than the head of a request may take."""
+    app = FastAPI()
+
+    @app.get("/maps")
+    async def maps() -> list[str]:
+        await asyncio.sleep(2 * HEADER_S)
+        return []
+
+    @app.post("/maps/import")
+    async def take(request: Request) -> list[str]:
+        await request.body()
+        return []
+
+    with standins.served(app) as port:
+        yield f"http://127.0.0.1:{port}"
+
+
+@pytest.fixture(scope="module")
+def impatient(endpoint: str, slow_store: str) -> Iterator[str]:
+    """A gateway that waits two seconds for the head of a request or the next part of a body."""
+    yield from serve_gateway(
+        endpoint,
+        header_timeout_s=HEADER_S,
+        upload_timeout_s=2.0,
+        max_connections_per_client=PER_CLIENT,
+        map_store_url=slow_store,
+    )
+
+
+def opened(address: str, source: str = "127.0.0.1") -> socket.socket:
+    host, port = address.removeprefix("http://").split(":")
+    return socket.create_connection((host, int(port)), timeout=MUST_END_S, source_address=(source, 0))
+
+
+def ended_while_trickling(sender: socket.socket, drop: bytes) -> bool:
+    """Whether the other side ends the connection though a byte comes now and then."""
+    sender.settimeout(0.3)
+    deadline_s = time.monotonic() + MUST_END_S
+    while time.monotonic() < deadline_s:
+        try:
+            sender.sendall(drop)
+            if sender.recv(65_536) == b"":
+                return True
+        except TimeoutError:
+            continue
+        except OSError:
+            return True
+    return False
+
+
+def served(address: str, source: str = "127.0.0.1") -> bool:
+    transport = httpx.HTTPTransport(local_address=source)
+    with httpx.Client(transport=transport, timeout=20.0) as client:
+        return client.get(f"{address}/healthz").status_code == 200
+
+
+@pytest.mark.parametrize("head", [b"", b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Slow: "])
+def test_a_head_that_never_ends_ends_the_connection(impatient: str, head: bytes) -> None:
+    with contextlib.closing(opened(impatient)) as sender:
+        sender.sendall(head)
+        assert ended_while_trickling(sender, b"x")
+
+
+def test_what_trickles_in_after_an_answer_does_not_keep_a_connection(impatient: str) -> None:
+    with contextlib.closing(opened(impatient)) as sender:
+        sender.sendall(b"POST /nowhere HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 100000\r\n\r\n")
+        assert b" 404 " in sender.recv(4096)
+        assert ended_while_trickling(sender, b"x")
+
+
+def test_a_request_that_waits_for_its_answer_is_not_ended(impatient: str) -> None:
+    began_s = time.monotonic()
+    answer = httpx.get(f"{impatient}/api/maps", trust_env=False, timeout=20.0)
+    assert (answer.status_code, answer.json()) == (200, [])
+    assert time.monotonic() - began_s > HEADER_S
+
+
+def test_an_archive_that_stops_flowing_is_refused(impatient: str) -> None:
+    with contextlib.closing(opened(impatient)) as sender:
+        sender.sendall(
+            b"POST /api/maps/import HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/zip\r\n"
+            b"Content-Length: 1000000\r\n\r\nPK"
+        )
+        assert b" 408 " in sender.recv(4096)
+
+
+def test_one_address_has_so_many_connections_and_others_are_served(impatient: str) -> None:
+    def room() -> bool:
+        with contextlib.suppress(httpx.HTTPError):
+            return served(impatient)
+        return False
+
+    assert wait_until(room, MUST_END_S)
+    with contextlib.ExitStack() as stack:
+        for _ in range(PER_CLIENT):
+            stack.enter_context(contextlib.closing(opened(impatient)))
+        with contextlib.closing(opened(impatient)) as one_more:
+            assert one_more.recv(4096).startswith(b"HTTP/1.1 429 ")
+        assert served(impatient, "127.0.0.2")
+    assert wait_until(room, MUST_END_S)
