@@ -2,6 +2,7 @@
 
 import sys
 
+from services.gateway.book import open_book
 from services.gateway.service import run
 from services.gateway.settings import GatewaySettings
 from shared.lifecycle import run_service
@@ -11,6 +12,7 @@ def main() -> int:
     """Run until told to stop; 2 when the settings are wrong."""
     try:
         settings = GatewaySettings.from_environment()
+        open_book(settings)
     except ValueError as error:
         sys.stderr.write(f"gateway: {error}\n")
         return 2

@@ -1,79 +1,116 @@
-"""Who may do what: host names, origins of web pages, and the token for writes."""
+"""Who may do what: tokens, passes and roles."""
 
-import hmac
-from urllib.parse import urlsplit
+import time
+from dataclasses import dataclass
 
 from starlette.requests import HTTPConnection
 
+from services.gateway.book import TokenBook
+from services.gateway.limits import Limits, address_of
+from services.gateway.passes import Passes
 from services.gateway.problems import ProblemError
+from services.gateway.rules import READS
 from services.gateway.settings import GatewaySettings
-from services.gateway.state import GatewayDep
+from shared.tokens.roles import Role, includes
+from shared.tokens.token import Token, digest_of
 
-READS = frozenset({"GET", "HEAD", "OPTIONS"})
-LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
+EVERYBODY = Token(role="admin", sha256="0" * 64)
+"""Whoever comes while no token is set."""
 
 
-def guard(connection: HTTPConnection, gateway: GatewayDep) -> None:
-    """Dependency of every API route.
+@dataclass(frozen=True)
+class Person:
+    """Who sent a request.
 
-    Raises:
-        ProblemError: 403 foreign host or page, 401 a write without the token.
+    Attributes:
+        token: theirs; None when they showed none and needed none.
+        client: what their requests are counted by.
     """
-    settings = gateway.settings
-    check_host(connection, settings)
-    if connection.scope.get("method") in READS:
-        return
-    check_origin(connection, settings)
-    if connection.scope["type"] == "http":
-        _check_token(connection, settings)
+
+    token: Token | None
+    client: str
+
+    @property
+    def name(self) -> str:
+        """The token's name; empty where there is none."""
+        return self.token.name if self.token is not None else ""
 
 
-def check_host(connection: HTTPConnection, settings: GatewaySettings) -> None:
-    """On loopback, answer only to this machine's names: a foreign one here is DNS rebinding."""
-    host = connection.headers.get("host", "")
-    name = urlsplit(f"//{host}").hostname if _parses(f"//{host}") else None
-    if settings.loopback and name not in {*LOOPBACK_NAMES, settings.host, *settings.allowed_hosts}:
-        raise ProblemError(
-            403,
-            "foreign_host",
-            expected=f"one of {sorted(LOOPBACK_NAMES)} as Host",
-            got=host[:80] or "none",
-            next_step="use http://127.0.0.1 or add the name to GATEWAY_ALLOWED_HOSTS",
-        )
+class Access:
+    """Tokens, passes and rate limits of one gateway. Lives in the asyncio thread."""
+
+    def __init__(self, settings: GatewaySettings, book: TokenBook) -> None:
+        self.settings, self.book = settings, book
+        self.passes, self.limits = Passes(), Limits(settings)
+        self.cookie = f"topnav_pass_{settings.port}"  # cookies are one host's, whatever the port
+
+    def admit(self, connection: HTTPConnection, method: str, needed: Role | None) -> Person:
+        """Let a request in that may be sent with role `needed`.
+
+        Raises:
+            ProblemError: 401 no valid token, 403 its role is too low, 429 too many wrong ones.
+        """
+        address = address_of(connection)
+        if not self.book.guards:
+            return Person(EVERYBODY, address)
+        free = method in READS and not self.settings.reading_guarded
+        token = self._token(connection, address, method, lenient=needed is None or free)
+        if needed is None or free:
+            return Person(token, _client(address, token))
+        if token is None:
+            raise _token_required(sent=False)
+        if not includes(token.role, needed):
+            raise _role_too_low(token, needed)
+        return Person(token, _client(address, token))
+
+    def holds(self, person: Person) -> bool:
+        """Whether what let a person in is still valid."""
+        return person.token in (None, EVERYBODY) or self.book.holds(person.token)
+
+    def _token(self, connection: HTTPConnection, address: str, method: str, lenient: bool) -> Token | None:
+        """The token in the header or, to read, that of a pass; `lenient` takes a wrong one for none."""
+        scheme, _, sent = connection.headers.get("authorization", "").partition(" ")
+        if not scheme:
+            return self._of_pass(connection) if method in READS else None
+        digest = digest_of(sent.strip())
+        if not lenient:
+            self.limits.before_token(address, digest)
+        token = self.book.find(sent.strip()) if scheme.lower() == "bearer" else None
+        if not lenient:
+            self.limits.after_token(address, digest, token is not None)
+        if token is None and not lenient:
+            raise _token_required(sent=True)
+        return token
+
+    def _of_pass(self, connection: HTTPConnection) -> Token | None:
+        value = connection.cookies.get(self.cookie, "")
+        name = self.passes.name_of(value)
+        token = None if name is None else self.book.named(name)
+        return token if token is not None and self.passes.good(value, token, time.time()) else None
 
 
-def check_origin(connection: HTTPConnection, settings: GatewaySettings) -> None:
-    """Refuse pages of other sites; programs send no Origin and pass."""
-    origin = connection.headers.get("origin")
-    if origin is None or origin in settings.allowed_origins:
-        return
-    if not _parses(origin) or urlsplit(origin).netloc.lower() != connection.headers.get("host", "").lower():
-        raise ProblemError(
-            403,
-            "foreign_origin",
-            expected="a page of this gateway",
-            got=origin[:80],
-            next_step="open the gateway's own page or add the origin to GATEWAY_ALLOWED_ORIGINS",
-        )
+def _client(address: str, token: Token | None) -> str:
+    return f"token {token.name}" if token is not None and token.name else address
 
 
-def _check_token(connection: HTTPConnection, settings: GatewaySettings) -> None:
-    token = settings.token.get_secret_value()
-    if not token:
-        return
-    scheme, _, sent = connection.headers.get("authorization", "").partition(" ")
-    if scheme.lower() != "bearer" or not hmac.compare_digest(sent.strip().encode(), token.encode()):
-        raise ProblemError(
-            401,
-            "token_required",
-            expected="Authorization: Bearer with the gateway's token",
-            got="another token" if sent else "no token",
-            next_step="ask whoever set GATEWAY_TOKEN",
-        )
+def _token_required(sent: bool) -> ProblemError:
+    return ProblemError(
+        401,
+        "token_required",
+        expected="Authorization: Bearer with a token of this gateway",
+        got="another token" if sent else "no token",
+        next_step="ask whoever runs the gateway for one (topnav token add)",
+    )
 
 
-def _parses(url: str) -> bool:
-    try:
-        return bool(urlsplit(url).netloc)
-    except ValueError:
-        return False
+def _role_too_low(token: Token, needed: Role) -> ProblemError:
+    whose = f" (token {token.name})" if token.name else ""
+    return ProblemError(
+        403,
+        "role_too_low",
+        expected=f"role {needed}",
+        got=f"{token.role}{whose}",
+        next_step=f"ask somebody who is {needed}",
+        needed=needed,
+        role=token.role,
+    )

@@ -7,10 +7,13 @@ from contextlib import asynccontextmanager
 from fastapi import Depends, FastAPI
 
 from services.gateway import problems
-from services.gateway.access import guard
+from services.gateway.access import Access
 from services.gateway.asking import Asker
+from services.gateway.book import open_book
 from services.gateway.bridge import BEAT_S, Bridge
+from services.gateway.described import describing_roles
 from services.gateway.edge import Edge
+from services.gateway.guard import guard
 from services.gateway.live import Hub
 from services.gateway.merging.desk import MergeDesk
 from services.gateway.metrics import Metrics
@@ -27,6 +30,7 @@ from services.gateway.routes import (
     pages,
     robots,
     runs,
+    session,
 )
 from services.gateway.settings import GatewaySettings
 from services.gateway.state import Gateway
@@ -35,15 +39,21 @@ from shared.bus import Bus
 
 
 def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
-    """Build the application; the bridge to `bus` runs from its start to its end."""
+    """Build the application; the bridge to `bus` runs from its start to its end.
+
+    Raises:
+        ValueError: the token file cannot be read or holds none.
+    """
     metrics = Metrics(bus.counters.snapshot)
+    access = Access(settings, open_book(settings))
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         log = MissionLog(settings.runs_dir, metrics)
         hub = Hub(metrics, settings.max_robots, log.take)
-        store = open_client(str(settings.map_store_url), settings.map_store_token.get_secret_value())
-        gateway = Gateway(settings, metrics, Asker(bus, metrics), hub, log, store)
+        secret = settings.map_store_token.get_secret_value()
+        store = open_client(str(settings.map_store_url), secret, settings.certs)
+        gateway = Gateway(settings, metrics, access, Asker(bus, metrics), hub, log, store)
         app.state.gateway = gateway
         app.state.merges = merges = MergeDesk(gateway)
         bridge = Bridge(bus, hub, asyncio.get_running_loop(), settings.robot, settings.max_robots)
@@ -63,11 +73,12 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
     app = FastAPI(title="topnav gateway", version="1", lifespan=lifespan, docs_url=None, redoc_url=None)
     problems.install(app, metrics)
     app.add_middleware(Edge, metrics=metrics)
-    for resource in (estop, evidence, goals, missions, maps, merging, robots, runs):
+    for resource in (estop, evidence, goals, missions, maps, merging, robots, runs, session):
         app.include_router(resource.router, dependencies=[Depends(guard)])
     for resource in (live, health, pages):
         app.include_router(resource.router)
     pages.mount_static(app)
+    app.openapi = describing_roles(app.openapi)  # type: ignore[method-assign]
     return app
 
 

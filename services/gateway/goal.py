@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from fastapi import Request
 
 from services.gateway.bodies import read_picture
+from services.gateway.guard import person_of
 from services.gateway.picture import PictureError, check_header, decode_bgr
 from services.gateway.picture_header import PictureHeader
 from services.gateway.problems import ProblemError
@@ -29,18 +30,18 @@ async def goal_of(request: Request, gateway: Gateway, robot: str) -> Goal:
         PictureError, ProblemError: 4xx the picture cannot be a goal, 503/504 nobody extracts its features.
     """
     settings = gateway.settings
-    with gateway.upload_slot():
-        try:
+    try:
+        with gateway.uploads.hold(person_of(request).client):
             limit_bytes, timeout_s = settings.max_upload_bytes, settings.upload_timeout_s
             data, declared_type = await read_picture(request, limit_bytes, timeout_s)
             header = check_header(data, declared_type)
             frame = await gateway.work(lambda: _frame(data, header, robot))
-        except PictureError as error:
-            gateway.metrics.refused.labels(error.reason).inc()
-            raise
-        except ProblemError as error:
-            gateway.metrics.refused.labels(error.code).inc()
-            raise
+    except PictureError as error:
+        gateway.metrics.refused.labels(error.reason).inc()
+        raise
+    except ProblemError as error:
+        gateway.metrics.refused.labels(error.code).inc()
+        raise
     gateway.metrics.uploads.labels(header.format).inc()
     question = ExtractRequest(frame=frame)
     features = await gateway.asker.ask("features", EXTRACT, question, settings.compute_timeout_s)

@@ -50,7 +50,7 @@ def problem_response(problem: ProblemError, path: str, metrics: Metrics) -> JSON
     metrics.problems.labels(problem.code, str(problem.status)).inc()
     headers = {"Cache-Control": "no-store"}
     if problem.status in (HTTPStatus.SERVICE_UNAVAILABLE, HTTPStatus.TOO_MANY_REQUESTS):
-        headers["Retry-After"] = "1"
+        headers["Retry-After"] = str(problem.members.get("retry_after_s", 1))
     if problem.status == HTTPStatus.UNAUTHORIZED:
         headers["WWW-Authenticate"] = "Bearer"
     return JSONResponse(problem.body(path), problem.status, headers, media_type=MEDIA_TYPE)

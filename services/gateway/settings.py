@@ -4,10 +4,11 @@ import ipaddress
 from pathlib import Path
 from typing import Self
 
-from pydantic import Field, HttpUrl, SecretStr, model_validator
+from pydantic import Field, HttpUrl, SecretStr, field_validator, model_validator
 from pydantic_settings import SettingsConfigDict
 
 from shared.settings import ServiceSettings
+from shared.tokens.token import check_chosen
 
 MB = 1_000_000
 
@@ -19,15 +20,28 @@ class GatewaySettings(ServiceSettings):
         host, port: address to serve on.
         map_store_url: where the map store's REST interface is.
         map_store_token: secret of the map store, if it asks for one.
-        token: secret every write must carry as `Authorization: Bearer`; empty asks for none.
+        token: secret of the one admin token without a name, sent as `Authorization: Bearer`; empty for none.
+        tokens_file: tokens with names and roles, made by `topnav token add`; read again when it changes.
+        guard_reading: reading needs a token, too; unset: off loopback only.
+        estop_needs_token: engaging the emergency stop asks for a token (any role); off: anybody may stop.
         allow_open: serve on a reachable address without a token all the same.
         allowed_origins: further origins whose pages may use this gateway, for example "https://lab.example".
         allowed_hosts: further host names it answers to while on loopback; they stop DNS rebinding.
+        proxies: addresses of reverse proxies whose X-Forwarded-For is believed.
         max_upload_bytes: longest goal picture.
         max_import_bytes: longest map archive.
-        upload_timeout_s: how long one body may take to arrive.
+        upload_timeout_s: how long one body may take to arrive; an archive gets longer as long as it flows.
+        header_timeout_s: how long a connection may take to send the head of a request.
         max_uploads: pictures read at once; more are told to come again.
+        max_uploads_per_client: of these by one address.
+        max_imports: archives received at once.
+        writes_per_s, write_burst: of one client: address, or token where there is one.
+        uploads_per_s, upload_burst: pictures and archives of one client.
+        failures_per_s, failure_burst: wrong tokens of one address; more are not looked at.
+        max_connections: connections open at once.
+        max_connections_per_client: of these by one address, WebSockets not counted.
         max_sockets: WebSockets open at once.
+        max_sockets_per_client: of these by one address.
         send_timeout_s: how long one WebSocket may take to accept a message before it is dropped.
         max_robots: robots followed at once; further names are ignored.
         ask_timeout_s: how long planner and map store may take.
@@ -43,14 +57,30 @@ class GatewaySettings(ServiceSettings):
     map_store_url: HttpUrl = HttpUrl("http://127.0.0.1:8001")
     map_store_token: SecretStr = SecretStr("")
     token: SecretStr = SecretStr("")
+    tokens_file: Path | None = None
+    guard_reading: bool | None = None
+    estop_needs_token: bool = False
     allow_open: bool = False
     allowed_origins: tuple[str, ...] = ()
     allowed_hosts: tuple[str, ...] = ()
+    proxies: tuple[str, ...] = ()
     max_upload_bytes: int = Field(default=20 * MB, ge=1_000, le=60 * MB)
     max_import_bytes: int = Field(default=512 * MB, ge=1_000)
     upload_timeout_s: float = Field(default=30.0, gt=0.0)
+    header_timeout_s: float = Field(default=10.0, gt=0.0)
     max_uploads: int = Field(default=8, ge=1)
-    max_sockets: int = Field(default=32, ge=1)
+    max_uploads_per_client: int = Field(default=4, ge=1)
+    max_imports: int = Field(default=2, ge=1)
+    writes_per_s: float = Field(default=10.0, gt=0.0)
+    write_burst: int = Field(default=100, ge=1)
+    uploads_per_s: float = Field(default=2.0, gt=0.0)
+    upload_burst: int = Field(default=20, ge=1)
+    failures_per_s: float = Field(default=0.2, gt=0.0)
+    failure_burst: int = Field(default=10, ge=1)
+    max_connections: int = Field(default=1024, ge=1)
+    max_connections_per_client: int = Field(default=256, ge=1)
+    max_sockets: int = Field(default=256, ge=1)
+    max_sockets_per_client: int = Field(default=64, ge=1)
     max_robots: int = Field(default=32, ge=1)
     send_timeout_s: float = Field(default=5.0, gt=0.0)
     ask_timeout_s: float = Field(default=5.0, gt=0.0)
@@ -58,12 +88,23 @@ class GatewaySettings(ServiceSettings):
     runs_dir: Path = Path("data/runs")
     required_services: tuple[str, ...] = ("features", "map_store", "planner")
 
+    @field_validator("tokens_file", mode="before")
+    @classmethod
+    def _empty_is_none(cls, path: object) -> object:
+        return None if path == "" else path  # a variable that Compose passes on without a value
+
     @model_validator(mode="after")
     def _closed_unless_asked(self) -> Self:
-        if not self.loopback and not self.token.get_secret_value() and not self.allow_open:
+        secret = self.token.get_secret_value()
+        if self.loopback or self.allow_open:
+            return self
+        if secret:
+            check_chosen(secret, "GATEWAY_TOKEN")
+        elif self.tokens_file is None:
             raise ValueError(
                 f"GATEWAY_HOST {self.host} is reachable from other machines and GATEWAY_TOKEN is empty: "
-                "set a token, serve on 127.0.0.1, or let anyone drive the robot with GATEWAY_ALLOW_OPEN=true"
+                "set a token or GATEWAY_TOKENS_FILE, serve on 127.0.0.1, or let anyone drive the robot "
+                "with GATEWAY_ALLOW_OPEN=true"
             )
         return self
 
@@ -76,3 +117,8 @@ class GatewaySettings(ServiceSettings):
             return ipaddress.ip_address(self.host).is_loopback
         except ValueError:
             return False
+
+    @property
+    def reading_guarded(self) -> bool:
+        """Whether reading asks for a token, where there are tokens at all."""
+        return not self.loopback if self.guard_reading is None else self.guard_reading

@@ -1,9 +1,8 @@
 """What the routes share: one object per application, reached by dependency injection."""
 
 import asyncio
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Annotated, TypeVar
 
@@ -11,12 +10,13 @@ import httpx
 from fastapi import Depends, Path, Query
 from starlette.requests import HTTPConnection
 
+from services.gateway.access import Access
 from services.gateway.asking import Asker
 from services.gateway.live import Hub
 from services.gateway.metrics import Metrics
 from services.gateway.mission_log import MissionLog
-from services.gateway.problems import ProblemError
 from services.gateway.settings import GatewaySettings
+from services.gateway.slots import Slots
 
 T = TypeVar("T")
 
@@ -26,46 +26,31 @@ class Gateway:
     """Settings and everything that lives as long as the application.
 
     Attributes:
+        access: who may do what.
         missions: record of those that ended.
         store: client of the map store's REST interface.
         pictures: the one thread that decodes and encodes pictures: a large one needs 200 MB while it decodes.
+        uploads, imports, sockets: places for pictures and archives on their way in, and for WebSockets.
     """
 
     settings: GatewaySettings
     metrics: Metrics
+    access: Access
     asker: Asker
     hub: Hub
     missions: MissionLog
     store: httpx.AsyncClient
     pictures: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1, "pictures"))
-    uploading: int = 0
-    sockets: int = 0
+
+    def __post_init__(self) -> None:
+        chosen = self.settings
+        self.uploads = Slots("uploads", chosen.max_uploads, chosen.max_uploads_per_client)
+        self.imports = Slots("imports", chosen.max_imports, chosen.max_imports)
+        self.sockets = Slots("sockets", chosen.max_sockets, chosen.max_sockets_per_client)
 
     async def work(self, job: Callable[[], T]) -> T:
         """Run a picture job on its thread."""
         return await asyncio.get_running_loop().run_in_executor(self.pictures, job)
-
-    @contextmanager
-    def upload_slot(self) -> Iterator[None]:
-        """Hold one of the places for uploads.
-
-        Raises:
-            ProblemError: 503, all are taken.
-        """
-        if self.uploading >= self.settings.max_uploads:
-            self.metrics.refused.labels("busy").inc()
-            raise ProblemError(
-                503,
-                "too_many_uploads",
-                expected=f"at most {self.settings.max_uploads} pictures at once",
-                got="one more",
-                next_step="send it again in a second",
-            )
-        self.uploading += 1
-        try:
-            yield
-        finally:
-            self.uploading -= 1
 
 
 def gateway_of(connection: HTTPConnection) -> Gateway:

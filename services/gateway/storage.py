@@ -1,28 +1,59 @@
 """Requests passed on to the map store's REST interface, answers and problems passed back."""
 
+import asyncio
+import ssl
+import time
 from collections.abc import AsyncIterator
 from http import HTTPStatus
+from pathlib import Path
 
 import httpx
 from fastapi import Request
 from fastapi.responses import Response, StreamingResponse
 from starlette.background import BackgroundTask
 
+from services.gateway.guard import person_of
 from services.gateway.problems import ProblemError
+from services.gateway.settings import GatewaySettings
 from services.gateway.state import Gateway
+from shared.bus_security import MAP_STORE_HOST, credentials_in, secured_url
 from shared.openapi import MEDIA_TYPE
 
-SENT_ON = ("accept", "content-type", "if-match", "if-none-match", "x-topnav-author")
+AUTHOR = "x-topnav-author"
+SENT_ON = ("accept", "content-type", "if-match", "if-none-match", AUTHOR)
 SENT_BACK = ("content-type", "content-length", "content-disposition", "etag", "cache-control", "location")
 MAX_PROBLEM_BYTES = 64_000
 TIMEOUTS = httpx.Timeout(10.0, connect=2.0)
 STREAM_TIMEOUTS = httpx.Timeout(120.0, connect=2.0)
+LEAST_BYTES_PER_S = 50_000
 
 
-def open_client(url: str, token: str) -> httpx.AsyncClient:
-    """A client of the map store at `url`; no proxy settings of the environment apply inside the system."""
+def open_client(url: str, token: str, certs: Path | None = None) -> httpx.AsyncClient:
+    """A client of the map store at `url`; no proxy settings of the environment apply inside the system.
+
+    With a certificate in the folder `certs` it is HTTPS, and each side shows the other who it is.
+
+    Raises:
+        CredentialsError: the folder cannot be used.
+    """
     headers = {"Authorization": f"Bearer {token}"} if token else {}
-    return httpx.AsyncClient(base_url=url, headers=headers, timeout=TIMEOUTS, trust_env=False)
+    credentials = credentials_in(certs)
+    if credentials is None:
+        return httpx.AsyncClient(base_url=url, headers=headers, timeout=TIMEOUTS, trust_env=False)
+    trust = credentials.tls_context(ssl.Purpose.SERVER_AUTH)
+    return httpx.AsyncClient(
+        base_url=secured_url(url),
+        headers=headers,
+        timeout=TIMEOUTS,
+        trust_env=False,
+        verify=trust,
+        event_hooks={"request": [_expect_the_map_store]},
+    )
+
+
+async def _expect_the_map_store(request: httpx.Request) -> None:
+    """Its certificate is compared with this name instead of the address."""
+    request.extensions = {**request.extensions, "sni_hostname": MAP_STORE_HOST}
 
 
 async def forward(gateway: Gateway, request: Request, path: str, body: bytes = b"") -> Response:
@@ -45,10 +76,11 @@ async def forward_stream(gateway: Gateway, request: Request, path: str) -> Respo
         path,
         params=request.url.query,
         headers=_headers(request),
-        content=_limited(request, gateway.settings.max_import_bytes),
+        content=_limited(request, gateway.settings),
         timeout=STREAM_TIMEOUTS,
     )
-    return await _answer(gateway, wish)
+    with gateway.imports.hold(person_of(request).client):
+        return await _answer(gateway, wish)
 
 
 async def fetch(store: httpx.AsyncClient, path: str) -> bytes | None:
@@ -123,15 +155,30 @@ async def _problem(answer: httpx.Response) -> Response:
     raise _nonsense(f"status {answer.status_code} with {kind}")
 
 
-async def _limited(request: Request, limit_bytes: int) -> AsyncIterator[bytes]:
-    length = 0
-    async for chunk in request.stream():
+async def _limited(request: Request, settings: GatewaySettings) -> AsyncIterator[bytes]:
+    """A body while it arrives; it must flow, and at the least rate on average."""
+    length, stream, began_s = 0, request.stream(), time.monotonic()
+    while True:
+        left_s = settings.upload_timeout_s + length / LEAST_BYTES_PER_S - (time.monotonic() - began_s)
+        try:
+            async with asyncio.timeout(min(left_s, settings.upload_timeout_s)):
+                chunk = await anext(stream, None)
+        except TimeoutError:
+            raise ProblemError(
+                408,
+                "body_too_slow",
+                expected=f"{LEAST_BYTES_PER_S} bytes a second",
+                got=f"{length} bytes in {time.monotonic() - began_s:.0f} s",
+                next_step="send it over a faster link, or import at the map store",
+            ) from None
+        if chunk is None:
+            return
         length += len(chunk)
-        if length > limit_bytes:
+        if length > settings.max_import_bytes:
             raise ProblemError(
                 413,
                 "body_too_large",
-                expected=f"at most {limit_bytes} bytes",
+                expected=f"at most {settings.max_import_bytes} bytes",
                 got=f"at least {length} bytes",
                 next_step="raise GATEWAY_MAX_IMPORT_BYTES or import at the map store",
             )
@@ -139,7 +186,11 @@ async def _limited(request: Request, limit_bytes: int) -> AsyncIterator[bytes]:
 
 
 def _headers(request: Request) -> dict[str, str]:
-    return {name: request.headers[name] for name in SENT_ON if name in request.headers}
+    """What is passed on; the author in a map's history is the token's name where there is one."""
+    headers = {name: request.headers[name] for name in SENT_ON if name in request.headers}
+    if name := person_of(request).name:
+        headers[AUTHOR] = name
+    return headers
 
 
 def _nonsense(got: str) -> ProblemError:

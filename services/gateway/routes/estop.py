@@ -1,4 +1,4 @@
-"""The emergency stop: anybody who may write engages it, a person with a name clears it."""
+"""The emergency stop: anybody engages it, without a token; an operator who gives a name clears it."""
 
 from typing import Annotated, Any
 
@@ -6,6 +6,7 @@ from fastapi import APIRouter, Query, Request
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
 from services.gateway.bodies import read_json
+from services.gateway.guard import person_of
 from services.gateway.live import estop_facts
 from services.gateway.problems import ProblemError
 from services.gateway.routes.robots import known
@@ -66,7 +67,10 @@ async def engage_estop(request: Request, robot: RobotPath, gateway: GatewayDep) 
     wish = Engage()
     if "content-type" in request.headers:
         wish = await read_json(request, Engage, gateway.settings.upload_timeout_s)
-    engage = EStopRequest(action="engage", who=wish.who[:LONGEST_WHO], why=wish.why[:LONGEST_WHY])
+    if (known_state := _known_engaged(gateway, robot)) and not gateway.access.limits.stop(robot):
+        return known_state
+    who = _signed(wish.who, person_of(request).name)
+    engage = EStopRequest(action="engage", who=who, why=wish.why[:LONGEST_WHY])
     return await _ask(gateway, robot, engage)
 
 
@@ -85,7 +89,21 @@ async def clear_estop(request: Request, robot: RobotPath, gateway: GatewayDep, w
             got="none",
             next_step="look whether the robot may move, then clear it in your name",
         )
-    return await _ask(gateway, robot, EStopRequest(action="clear", who=name, why=wish.why))
+    signed = _signed(name, person_of(request).name)
+    return await _ask(gateway, robot, EStopRequest(action="clear", who=signed, why=wish.why))
+
+
+def _signed(who: str, token: str) -> str:
+    """What somebody says to be called, and what is known of them."""
+    known_as = f" (token {token})" if token and token != who else ""
+    return who[: LONGEST_WHO - len(known_as)] + known_as
+
+
+def _known_engaged(gateway: Gateway, robot: str) -> EStopAnswer | None:
+    """The stop as last told, if engaged: a flood of stops must not reach the service that drives."""
+    view = gateway.hub.robots.get(robot)
+    state = view.estop if view is not None else None
+    return EStopAnswer(**estop_facts(state)) if state is not None and state.engaged else None
 
 
 async def _ask(gateway: Gateway, robot: str, request: EStopRequest) -> EStopAnswer:

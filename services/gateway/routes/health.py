@@ -1,9 +1,10 @@
-"""Liveness, readiness and metrics."""
+"""Liveness, readiness and metrics. Whoever supervises the process needs no token for the first two."""
 
 from typing import Any
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Depends, Response
 
+from services.gateway.guard import guard
 from services.gateway.problems import ProblemError
 from services.gateway.state import GatewayDep
 
@@ -34,7 +35,7 @@ async def readyz(gateway: GatewayDep) -> dict[str, Any]:
     return {"status": "ready", "services": services}
 
 
-@router.get("/metrics", response_class=Response)
+@router.get("/metrics", response_class=Response, dependencies=[Depends(guard)])
 async def metrics(gateway: GatewayDep) -> Response:
     """Counts in Prometheus's text format."""
     return Response(gateway.metrics.text(), media_type="text/plain; version=0.0.4; charset=utf-8")

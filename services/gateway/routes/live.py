@@ -5,7 +5,9 @@ import contextlib
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
-from services.gateway.access import check_host, check_origin
+from services.gateway.access import Person
+from services.gateway.guard import admit_socket
+from services.gateway.limits import address_of
 from services.gateway.outbox import Outbox
 from services.gateway.problems import ProblemError, problem_response
 from services.gateway.state import Gateway, gateway_of
@@ -14,32 +16,40 @@ from shared.topics import NAME
 router = APIRouter(tags=["live"])
 
 CLOSE_S = 1.0
-TRY_LATER = 1013
+POLICY, TRY_LATER = 1008, 1013
+PACE_S = 0.04
+PACE_PER_SOCKET_S = 0.002
 
 
 @router.websocket("/api/robots/{robot}/live")
 async def live(socket: WebSocket, robot: str) -> None:
-    """Send `{"type": ..., "data": ...}`: first what is known, then the news."""
+    """Send `{"type": ..., "data": ...}`: first what is known, then the news.
+
+    Who may not come in gets an HTTP answer instead; where there is no room, close code 1013 after the start,
+    because pages cannot read the former.
+    """
     gateway = gateway_of(socket)
     try:
-        _admit(socket, gateway, robot)
+        person = admit_socket(socket)
+        _check_name(robot)
     except ProblemError as problem:
         gateway.metrics.sockets_refused.labels(problem.code).inc()
         await socket.send_denial_response(problem_response(problem, socket.url.path, gateway.metrics))
         return
-    gateway.sockets += 1
-    gateway.metrics.sockets.set(gateway.sockets)
     try:
+        with gateway.sockets.hold(address_of(socket)):
+            gateway.metrics.sockets.set(gateway.sockets.taken)
+            await socket.accept()
+            await _serve(socket, gateway, robot, person)
+    except ProblemError as problem:
+        gateway.metrics.sockets_refused.labels(problem.code).inc()
         await socket.accept()
-        await _serve(socket, gateway, robot)
+        await _close(socket, TRY_LATER, problem.code)
     finally:
-        gateway.sockets -= 1
-        gateway.metrics.sockets.set(gateway.sockets)
+        gateway.metrics.sockets.set(gateway.sockets.taken)
 
 
-def _admit(socket: WebSocket, gateway: Gateway, robot: str) -> None:
-    check_host(socket, gateway.settings)
-    check_origin(socket, gateway.settings)
+def _check_name(robot: str) -> None:
     if not NAME.match(robot):
         raise ProblemError(
             422,
@@ -48,21 +58,15 @@ def _admit(socket: WebSocket, gateway: Gateway, robot: str) -> None:
             got=repr(robot[:80]),
             next_step="see /api/robots",
         )
-    if gateway.sockets >= gateway.settings.max_sockets or gateway.hub.view(robot) is None:
-        raise ProblemError(
-            503,
-            "too_many_sockets",
-            expected=f"at most {gateway.settings.max_sockets} connections",
-            got="one more",
-            next_step="close another page, or raise GATEWAY_MAX_SOCKETS",
-        )
 
 
-async def _serve(socket: WebSocket, gateway: Gateway, robot: str) -> None:
+async def _serve(socket: WebSocket, gateway: Gateway, robot: str, person: Person) -> None:
     outbox = gateway.hub.join(robot)
-    assert outbox is not None
+    if outbox is None:
+        await _close(socket, TRY_LATER, "too_many_robots")
+        return
     tasks = [
-        asyncio.create_task(_send(socket, outbox, gateway.settings.send_timeout_s)),
+        asyncio.create_task(_send(socket, outbox, gateway, person)),
         asyncio.create_task(_receive(socket)),
     ]
     try:
@@ -70,8 +74,7 @@ async def _serve(socket: WebSocket, gateway: Gateway, robot: str) -> None:
         reason = next(iter(done)).result()
         if reason:
             gateway.metrics.sockets_dropped.labels(reason).inc()
-            with contextlib.suppress(TimeoutError, RuntimeError, WebSocketDisconnect):
-                await asyncio.wait_for(socket.close(TRY_LATER, reason), CLOSE_S)
+            await _close(socket, POLICY if reason == "token_removed" else TRY_LATER, reason)
     finally:
         gateway.hub.leave(robot, outbox)
         for task in tasks:
@@ -79,13 +82,25 @@ async def _serve(socket: WebSocket, gateway: Gateway, robot: str) -> None:
         await asyncio.gather(*tasks, return_exceptions=True)
 
 
-async def _send(socket: WebSocket, outbox: Outbox, timeout_s: float) -> str:
-    """Send until the reader leaves ("") or proves too slow."""
+async def _close(socket: WebSocket, code: int, reason: str) -> None:
+    with contextlib.suppress(TimeoutError, RuntimeError, WebSocketDisconnect):
+        await asyncio.wait_for(socket.close(code, reason), CLOSE_S)
+
+
+async def _send(socket: WebSocket, outbox: Outbox, gateway: Gateway, person: Person) -> str:
+    """Send until the reader leaves ("") or has to: too slow, or no longer somebody who may read.
+
+    The more readers there are, the longer each waits for the next batch of news: their number must not take
+    the processor from the services that drive.
+    """
     try:
         while not outbox.overflowed:
             for text in await outbox.take():
-                async with asyncio.timeout(timeout_s):
+                async with asyncio.timeout(gateway.settings.send_timeout_s):
                     await socket.send_text(text)
+            if not gateway.access.holds(person):
+                return "token_removed"
+            await asyncio.sleep(max(PACE_S, gateway.sockets.taken * PACE_PER_SOCKET_S))
     except TimeoutError:
         return "slow"
     except (WebSocketDisconnect, RuntimeError):

@@ -1,36 +1,22 @@
-// Requests to the gateway: one place for the token and for problem documents.
+// Requests to the gateway, with the token of this tab; its problem documents as errors.
 
+import { another, token } from "./session.js";
 import { TEXT } from "./text.js";
 
-const TOKEN = "topnav-token";
 const AUTHOR = "console";
+const ROLE_TOO_LOW = "urn:topnav:problem:role_too_low";
 
 export class Problem extends Error {
   constructor(status, body) {
-    super(body.detail || `status ${status}`);
+    super(body.type === ROLE_TOO_LOW ? TEXT.roleTooLow(body) : body.detail || `status ${status}`);
     this.status = status;
     this.body = body;
   }
 }
 
-/** Ask for a token in a dialog; resolves to whether one was given. */
-function askForToken() {
-  const dialog = document.getElementById("token-dialog");
-  dialog.returnValue = "";
-  dialog.showModal();
-  return new Promise((resolve) => {
-    dialog.addEventListener("close", () => {
-      const token = document.getElementById("token").value;
-      if (dialog.returnValue === "ok" && token) sessionStorage.setItem(TOKEN, token);
-      resolve(dialog.returnValue === "ok" && Boolean(token));
-    }, { once: true });
-  });
-}
-
-async function send(method, path, body, type) {
+async function send(method, path, body, type, secret) {
   const headers = method === "GET" ? {} : { "X-Topnav-Author": AUTHOR };
-  const token = sessionStorage.getItem(TOKEN);
-  if (token) headers.Authorization = `Bearer ${token}`;
+  if (secret) headers.Authorization = `Bearer ${secret}`;
   if (type) headers["Content-Type"] = type;
   return fetch(path, { method, headers, body, cache: "no-store" });
 }
@@ -39,8 +25,9 @@ async function send(method, path, body, type) {
 export async function call(method, path, body, type) {
   let answer;
   try {
-    answer = await send(method, path, body, type);
-    if (answer.status === 401 && (await askForToken())) answer = await send(method, path, body, type);
+    const secret = token();
+    answer = await send(method, path, body, type, secret);
+    if (answer.status === 401 && (await another(secret, method))) answer = await send(method, path, body, type, token());
   } catch {
     throw new Problem(0, { detail: TEXT.gatewaySilent });
   }

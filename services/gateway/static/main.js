@@ -16,6 +16,7 @@ import { Mission } from "./mission.js";
 import { Panorama } from "./panorama.js";
 import { Polar } from "./polar.js";
 import { Runs } from "./runs.js";
+import { locked } from "./session.js";
 import { TEXT } from "./text.js";
 import { Views } from "./views.js";
 
@@ -26,6 +27,7 @@ const SAID_MS = 8000;
 
 let robot = "";
 let connected = false;
+let turnedAway = false;
 let shownMap = "";
 let saying = 0;
 
@@ -110,8 +112,9 @@ function heard(type, data) {
   }
 }
 
-function changed(up) {
+function changed(up, full = false) {
   connected = up;
+  turnedAway = full;
   $("connection").textContent = up ? TEXT.live : TEXT.reconnecting;
   $("connection").classList.toggle("up", up);
   if (!up) showServices(null);
@@ -130,7 +133,8 @@ function showServices(counts) {
 /** Say what on the page is old. */
 function checkAge() {
   const age = panorama.stale(mission.status?.state === "running");
-  const text = !connected ? TEXT.lost : age ? TEXT.old(Math.round(age / 1000)) : "";
+  const lost = locked ? TEXT.tokenNeeded : turnedAway ? TEXT.full : TEXT.lost;
+  const text = !connected ? lost : age ? TEXT.old(Math.round(age / 1000)) : "";
   if ($("notice").textContent !== text) $("notice").textContent = text;
   $("notice").hidden = !text;
 }

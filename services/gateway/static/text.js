@@ -4,6 +4,12 @@ export const TEXT = {
   live: "live",
   reconnecting: "reconnecting",
   lost: "Connection to the gateway lost. What you see is old; trying again …",
+  full: "The gateway has no room for this page now; trying again …",
+  tokenNeeded: "This gateway shows nothing without a token.",
+  tokenRefused: "The gateway does not take this token (any more).",
+  enterToken: "Enter token",
+  identity: (name, role) => `${name || "gateway token"}, ${role}`,
+  roleTooLow: ({ needed, role, got }) => `Not with this token: it takes role ${needed}, yours is ${got || role}.`,
   old: (seconds) => `No new picture for ${seconds} s: what you see is old.`,
   gatewaySilent: "the gateway does not answer",
   frame: ({ seq, width_px: width, height_px: height, lockstep }, rate) =>

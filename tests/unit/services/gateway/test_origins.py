@@ -1,9 +1,9 @@
-"""Host names, origins and the token."""
+"""Host names and origins."""
 
 import pytest
 from starlette.requests import HTTPConnection
 
-from services.gateway.access import check_host, check_origin
+from services.gateway.origins import check_host, check_origin
 from services.gateway.problems import ProblemError
 from services.gateway.settings import GatewaySettings
 
