@@ -75,10 +75,22 @@ def stop_command(heading: Heading, why: str, limits: DriveLimits) -> Command:
     )
 
 
-def is_stale(heading: Heading, ranges: Ranges) -> bool:
-    """Whether a heading outlived its ttl on its way, by the robot's clock: both stamps are the robot's."""
-    age_s = (ranges.stamp_ns - heading.stamp_ns) / 1e9
+def is_stale(heading: Heading, age_s: float) -> bool:
+    """Whether a heading outlived its ttl on its way; `age_s` is that of its frame."""
     return age_s > DECIDING_S + heading.ttl_ms / 1000.0
+
+
+def is_behind(message: Heading | Ranges, newest: Heading | Ranges) -> bool:
+    """Whether a message is older than `newest`, by number and by time: a restarted robot counts anew."""
+    return message.seq < newest.seq and message.stamp_ns < newest.stamp_ns
+
+
+def is_overtaken(heading: Heading, last: Heading) -> bool:
+    """Whether a planner's newer answer came before this one. One said twice does not live longer for that."""
+    if heading.epoch != last.epoch:
+        return False
+    again = (heading.seq, heading.stamp_ns, heading.mission_id) == (last.seq, last.stamp_ns, last.mission_id)
+    return again or is_behind(heading, last)
 
 
 def _steer(

@@ -7,7 +7,8 @@ import time
 
 import numpy as np
 
-from services.drive.core import compute_command, is_stale, stop_command
+from services.drive.ages import FrameAges
+from services.drive.core import compute_command, is_behind, is_overtaken, is_stale, stop_command
 from services.drive.passing import Passing
 from services.drive.settings import DriveSettings
 from shared.bus import Bus
@@ -23,7 +24,7 @@ EXPIRED_S = -1.0e9
 SUSPENDED_S = 0.5
 """A loop that turns 20 times a second and missed this long stood still itself, with everything it heard."""
 BURST_S = 0.2
-"""After that, what had piled up arrives within this."""
+"""After that, or after the network was cut, what had piled up arrives within this."""
 HEADINGS_NEED = ("planner", "features")
 
 
@@ -38,7 +39,10 @@ class Drive:
         self._memory = Passing()
         self._heading: Heading | None = None
         self._ranges: Ranges | None = None
-        self._heading_s = self._ranges_s = EXPIRED_S
+        self._heading_s = self._ranges_s = self._sensed_s = EXPIRED_S
+        self._ages, self._lockstep = FrameAges(), False
+        self._last_heading: Heading | None = None  # for the order; a silent robot may come back restarted
+        self._last_ranges: Ranges | None = None
         self._answered: Command | None = None
         self._moving = False
         self._counters = bus.counters
@@ -71,21 +75,45 @@ class Drive:
     def _listen(self, now_s: float) -> bool:
         """Take the newest heading and distances; whether there was news.
 
-        What waited while this process was suspended may be as old as the suspension, and looks fresh when it
-        is read: it is thrown away.
+        What waited while this process was suspended, or cut off from the robot, may be as old as that, and
+        looks fresh when it is read: it is thrown away.
         """
         if now_s - self._turned_s > SUSPENDED_S:
             log.warning("suspended for %.1f s: what came meanwhile is thrown away", now_s - self._turned_s)
-            self._heading_s, self._deaf_until_s = EXPIRED_S, now_s + BURST_S
+            self._be_deaf(now_s)
         self._turned_s = now_s
         ranges, heading = self._ranges_in.take(), self._headings.take()
+        if ranges is not None:
+            self._sense(ranges, now_s)
         if now_s < self._deaf_until_s:
             return False
-        if ranges is not None:
-            self._ranges, self._ranges_s = ranges, now_s
-        if heading is None or not self._accept(heading):
-            return ranges is not None
+        fresh = ranges is not None and self._take_ranges(ranges, now_s)
+        if heading is None or not self._accept(heading, now_s):
+            return fresh
         self._heading, self._heading_s = heading, now_s
+        self._last_heading = heading
+        return True
+
+    def _sense(self, ranges: Ranges, now_s: float) -> None:
+        """The robot is heard; after a silence what comes first may have been sent long ago."""
+        silent_s = now_s - self._sensed_s
+        if not ranges.lockstep and self._ranges is not None and silent_s > RANGES_TTL_S:
+            self._counters.count("silence", f"nothing from the robot for {silent_s:.1f} s")
+            self._be_deaf(now_s)
+            self._last_heading = self._last_ranges = None
+        self._sensed_s = now_s
+
+    def _be_deaf(self, now_s: float) -> None:
+        self._heading_s, self._deaf_until_s = EXPIRED_S, now_s + BURST_S
+
+    def _take_ranges(self, ranges: Ranges, now_s: float) -> bool:
+        last = self._last_ranges
+        if last is not None and is_behind(ranges, last):
+            self._counters.count("late", f"distances of frame {ranges.seq} after those of {last.seq}")
+            return False
+        self._ranges = self._last_ranges = ranges
+        self._ranges_s, self._lockstep = now_s, ranges.lockstep
+        self._ages.heard(ranges.seq, now_s)
         return True
 
     def _watch(self, _service: str, _instance: str, alive: bool) -> None:
@@ -94,17 +122,18 @@ class Drive:
             self._bereft.set()
             self._wake.set()
 
-    def _accept(self, heading: Heading) -> bool:
-        """Refuse headings of a planner that has been replaced, and those that were held up on their way."""
-        if self._heading is not None and heading.epoch < self._heading.epoch:
-            self._counters.count(
-                "old_epoch", f"heading of epoch {heading.epoch}, newest is {self._heading.epoch}"
-            )
+    def _accept(self, heading: Heading, now_s: float) -> bool:
+        """Refuse headings of a planner that was replaced, that were overtaken, or held up on their way."""
+        newest, last = self._heading, self._last_heading
+        if newest is not None and heading.epoch < newest.epoch:
+            self._counters.count("old_epoch", f"heading of epoch {heading.epoch}, newest is {newest.epoch}")
             return False
-        if self._ranges is not None and is_stale(heading, self._ranges):
-            self._counters.count(
-                "stale", f"heading of frame {heading.seq}, the robot is at {self._ranges.seq}"
-            )
+        if last is not None and not self._lockstep and is_overtaken(heading, last):
+            self._counters.count("late", f"heading of frame {heading.seq} after that of {last.seq}")
+            return False
+        age_s = self._ages.age_s(heading.seq, now_s)
+        if not self._lockstep and is_stale(heading, age_s):
+            self._counters.count("stale", f"heading of frame {heading.seq}, which is {age_s:.1f} s old")
             return False
         if self._heading is None or heading.mission_id != self._heading.mission_id:
             self._memory = Passing()

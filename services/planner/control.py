@@ -16,6 +16,7 @@ from services.planner.strategies import ThesisExploration
 from shared.bus import Bus
 from shared.messages import MissionRecord, MissionRecordRequest, MissionRequest, MissionStatus
 from shared.messages.missions import FailureKind, MissionState
+from shared.queries import RefusedError
 from shared.topics import MISSION_RECORD
 
 log = logging.getLogger(__name__)
@@ -37,6 +38,7 @@ class MissionControl:
         self.state: MissionState = "idle"
         self._failure: FailureKind = ""
         self._reason = ""
+        self._places: frozenset[int] = frozenset()
         self.step_count = 0
 
     @property
@@ -80,7 +82,9 @@ class MissionControl:
         assert self._mission is not None
         assert self._matcher is not None
         self._matcher.begin(observation.features.seq, observation.features.stamp_ns)
-        if self.step_count >= self._record.max_steps:
+        if (lost := self._notice_lost_places()) is not None:
+            decision = lost
+        elif self.step_count >= self._record.max_steps:
             why = f"not done within {self._record.max_steps} steps"
             decision = Decision("hold", why=why, outcome="failed", failure="timeout")
         else:
@@ -117,10 +121,37 @@ class MissionControl:
             epoch=self.epoch,
         )
 
-    def follow_store(self, revision: int, author: str) -> None:
-        """Somebody else changed the map: read it again."""
-        if self.map is not None and revision > self.map.revision and author != "planner":
+    def follow_store(self, revision: int, author: str, *, reset: bool = False) -> None:
+        """Somebody else changed the map: read it again. One that is gone ends the mission."""
+        if self.map is None or author == "planner" or (revision <= self.map.revision and not reset):
+            return
+        try:
             self.map.load(create=False)
+        except RefusedError as error:
+            if "no map" not in str(error):
+                raise
+            if self.state in ("running", "paused"):
+                kind: FailureKind = "goal_not_in_map" if self._record.action == "goto" else "lost"
+                self._finish("failed", kind, f"the map is gone: {error}")
+
+    def _notice_lost_places(self) -> Decision | None:
+        """Somebody took places away: plan anew, from what is left, and never lead to one that is gone.
+
+        Returns the end of a mission whose goal is among them.
+        """
+        assert self.map is not None
+        assert self._matcher is not None
+        lost = self._places - self.map.graph.nodes.keys()
+        if not lost:
+            self._places = frozenset(self.map.graph.nodes)
+            return None
+        why = f"places {sorted(lost)[:8]} were taken out of the map"
+        if self._record.goal_node in lost:
+            return Decision("hold", why=why, outcome="failed", failure="goal_not_in_map")
+        log.info("%s: planning anew", why)
+        self._mission = self._make(self.map, self._matcher)
+        self._places = frozenset(self.map.graph.nodes)
+        return None
 
     def _start(self, request: MissionRequest) -> None:
         if self.state in ("running", "paused"):
@@ -146,6 +177,7 @@ class MissionControl:
         record = self._record
         self.map = RemoteMap(self._bus, record.map, self._settings.map_timeout_s)
         self.map.load(create=create)
+        self._places = frozenset(self.map.graph.nodes)
         self._matcher = RemoteMatcher(self._bus, record.robot, self.map, self._settings.query_timeout_s)
         self._mission = self._make(self.map, self._matcher)
 

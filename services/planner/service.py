@@ -32,11 +32,13 @@ class Planner:
         self._ranges_in = bus.subscribe(RANGES, robot=robot)
         self._deltas = bus.subscribe(MAP_DELTA, map="*")
         self._stops = bus.subscribe(STOPPED, robot=robot)
+        self._planners = bus.subscribe(STATUS, robot=robot)
         self._requests = bus.requests(MISSION, robot=robot)
         self._headings = bus.publisher(HEADING, robot=robot)
         self._statuses = bus.publisher(STATUS, robot=robot)
         self._events = bus.publisher(EVENT, robot=robot)
         self.control = MissionControl(settings, self._profile, bus)
+        self._replaced = False
         self._stopped: EStopState | None = None
         self._features: Features | None = None
         self._ranges: Ranges | None = None
@@ -45,7 +47,10 @@ class Planner:
         self._heartbeat_s = 0.0
 
     def turn(self, now_s: float) -> None:
-        """Requests first, then the newest frame."""
+        """Requests first, then the newest frame; a planner that was replaced does neither."""
+        if self._is_replaced():
+            self._stand_by()
+            return
         self._stopped = self._stops.take() or self._stopped
         while (request := self._requests.take()) is not None:
             self._handle(request)
@@ -54,7 +59,9 @@ class Planner:
             self._publish_status(now_s)
         for delta in self._deltas.take_all():
             if self.control.map is not None and delta.map == self.control.map.name:
-                self.control.follow_store(delta.revision, "" if delta.reset else delta.author)
+                self.control.follow_store(
+                    delta.revision, "" if delta.reset else delta.author, reset=delta.reset
+                )
         self._ranges = self._ranges_in.take() or self._ranges
         self._features = self._features_in.take() or self._features
         if (
@@ -65,6 +72,24 @@ class Planner:
             self._answer(Observation(self._features, self._ranges))
         if now_s - self._heartbeat_s > HEARTBEAT_S:
             self._publish_status(now_s)
+
+    def _is_replaced(self) -> bool:
+        """Whether a planner with a later epoch speaks for this robot: then it alone decides, for good."""
+        newest = max((status.epoch for status in self._planners.take_all()), default=0)
+        if newest > self.control.epoch and not self._replaced:
+            log.error(
+                "alarm: another planner drives this robot: epoch %d, this one has %d and stands by",
+                newest,
+                self.control.epoch,
+            )
+            self._replaced = True
+        return self._replaced
+
+    def _stand_by(self) -> None:
+        """Leave every question to the other planner, and the robot too."""
+        while (request := self._requests.take()) is not None:
+            request.leave()
+        self._deltas.take_all()
 
     def _ready(self, features: Features, ranges: Ranges) -> bool:
         """In lockstep both must be of one frame; the simulator repeats them until they are answered."""

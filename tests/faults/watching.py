@@ -2,10 +2,12 @@
 
 import threading
 import time
+from itertools import pairwise
 from types import TracebackType
 from typing import Self
 
 from shared.bus import Bus, open_bus
+from shared.messages import Command, Heading
 from shared.topics import COMMAND, FEATURES, HEADING, TRUTH
 
 TOPICS = {"truth": TRUTH, "features": FEATURES, "planner": HEADING, "drive": COMMAND}
@@ -21,7 +23,10 @@ class Watch:
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._listen, name="watch")
         self.speeds: list[tuple[float, float]] = []
+        self.frames: list[tuple[float, int]] = []
         self.arrivals: dict[str, list[float]] = {name: [] for name in TOPICS}
+        self.commands: list[tuple[float, Command]] = []
+        self.headings: list[tuple[float, Heading]] = []
 
     def __enter__(self) -> Self:
         self._thread.start()
@@ -51,6 +56,57 @@ class Watch:
         later = [time_s for time_s in self.arrivals.get(service, []) if time_s > since_s + quiet_s]
         return later[0] - since_s if later else None
 
+    def silent_s(self) -> dict[str, float]:
+        """How long ago each stream was heard last: where a link is missing."""
+        now_s = time.monotonic()
+        return {name: round(now_s - times[-1], 1) for name, times in self.arrivals.items() if times}
+
+    def told_to_stand_s(self, since_s: float) -> float | None:
+        """When the wheels' command was zero first, at `since_s` or later: said so, or run out unrenewed.
+
+        None when it never was.
+        """
+        ends, last = [], float("inf")
+        for (time_s, command), (next_s, _) in pairwise([*self.commands, (last, None)]):
+            moving_until_s = min(next_s, time_s + command.ttl_ms / 1000.0)
+            ends.append((time_s, time_s) if command.wheel_speed_radps == 0.0 else (time_s, moving_until_s))
+        still_s = max((end_s for time_s, end_s in ends if time_s <= since_s), default=since_s)
+        if still_s <= since_s:
+            return since_s
+        for (_, end_s), (next_s, next_end_s) in pairwise([*ends, (last, last)]):
+            if end_s > since_s and end_s < next_s:
+                return end_s
+            if next_s > since_s and next_end_s == next_s < last:
+                return next_s
+        return None
+
+    def ran_on_s(self, since_s: float = 0.0) -> float:
+        """Longest time from a heading that says go to a robot that moves, with none in between.
+
+        Only while the planner's headings reach this session: drive may hear what the watcher does not.
+        """
+        going = [time_s for time_s, heading in self.headings if heading.action == "go"]
+        answered = {command.seq for _, command in self.commands if command.wheel_speed_radps != 0.0}
+        unheard = answered - {heading.seq for _, heading in self.headings}
+        deaf = [time_s for time_s, command in self.commands if command.seq in unheard]
+        longest_s, place = 0.0, 0
+        for time_s, speed in self.speeds:
+            while place < len(going) and going[place] <= time_s:
+                place += 1
+            if place and speed > MOVING_MPS and time_s >= since_s:
+                heard_s = going[place - 1]
+                if not any(heard_s <= command_s <= time_s for command_s in deaf):
+                    longest_s = max(longest_s, time_s - heard_s)
+        return longest_s
+
+    def oldest_answer_s(self, since_s: float = 0.0) -> float:
+        """Largest age of a frame, since it was first heard of, whose command still turned the wheels."""
+        heard_s: dict[int, float] = {}
+        for time_s, seq in self.frames:
+            heard_s.setdefault(seq, time_s)
+        moving = [(t, c.seq) for t, c in self.commands if c.wheel_speed_radps != 0.0 and t >= since_s]
+        return max((time_s - heard_s[seq] for time_s, seq in moving if seq in heard_s), default=0.0)
+
     def _listen(self) -> None:
         with open_bus(self._endpoint) as bus:
             inboxes = {name: self._subscribe(bus, name) for name in TOPICS}
@@ -62,6 +118,11 @@ class Watch:
                         self.arrivals[name].append(now_s)
                         if name == "truth":
                             self.speeds.append((now_s, message.speed_mps))
+                            self.frames.append((now_s, message.seq))
+                        elif name == "drive":
+                            self.commands.append((now_s, message))
+                        elif name == "planner":
+                            self.headings.append((now_s, message))
 
     def _subscribe(self, bus: Bus, name: str):
         return bus.subscribe(TOPICS[name], robot=self._robot)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from services.features.frame_cache import FrameCache, FrameKey
+from services.features.frame_cache import RESTARTED_FRAMES, FrameCache, FrameKey
 from shared.messages.features import Features
 from shared.messages.sensors import Frame
 
@@ -43,6 +43,8 @@ def test_the_same_picture_is_sent_again_without_work(cache, lockstep):
     [
         pytest.param(FrameKey(10, 1000, 0), False, "new", id="next frame"),
         pytest.param(FrameKey(6, 600, 0), False, "stale", id="late frame"),
+        pytest.param(FrameKey(8, 800, 0), False, "stale", id="an older frame once more"),
+        pytest.param(FrameKey(8, 800, 0), True, "again", id="an older frame once more in lockstep"),
         pytest.param(FrameKey(9, 900, 1), False, "stale", id="other picture of the same number and time"),
         pytest.param(FrameKey(0, 950, 0), False, "new", id="restarted camera, clock moved on"),
         pytest.param(FrameKey(0, 0, 0), True, "new", id="restarted camera in lockstep, clock back at zero"),
@@ -57,6 +59,16 @@ def test_numbers_of_before_a_restart_are_forgotten(cache):
     cache.put(FrameKey(0, 950, 0), features(0))
     assert cache.get(9) is None
     assert cache.get(0) is not None
+
+
+def test_a_camera_that_restarted_with_its_clock_set_back_is_believed_after_some_frames(cache):
+    verdicts = [cache.judge(FrameKey(seq, seq, 0), lockstep=False) for seq in range(RESTARTED_FRAMES + 1)]
+    assert verdicts == ["stale"] * RESTARTED_FRAMES + ["new"]
+
+
+def test_late_frames_in_no_order_stay_late_however_many(cache):
+    for number in range(5 * RESTARTED_FRAMES):
+        assert cache.judge(FrameKey((8, 7, 6)[number % 3], 1, 1), lockstep=False) == "stale"
 
 
 def test_an_empty_cache_takes_anything():

@@ -57,3 +57,12 @@ def test_what_does_not_fit_is_told_by_name(write, content, words):
 def test_a_file_that_is_not_there_is_named(tmp_path):
     with pytest.raises(ValidationError, match=r"nowhere\.json"):
         PlannerSettings(profile_file=tmp_path / "nowhere.json")
+
+
+@pytest.mark.parametrize("opening", ["[", '{"base":'])
+def test_a_file_nested_without_end_is_refused(write, opening):
+    path = write(opening * 100_000)
+    with pytest.raises(ValueError, match="topnav calibrate --write"):
+        PlannerSettings(profile_file=path).rules()
+    with pytest.raises(ValueError, match="topnav calibrate --write"):
+        profile_variables(str(path))

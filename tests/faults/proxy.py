@@ -1,0 +1,80 @@
+"""A TCP proxy that can be cut: bytes stay where they are and arrive in one burst when it is healed."""
+
+import select
+import socket
+import threading
+from types import TracebackType
+from typing import Self
+
+CHUNK = 65_536
+PERIOD_S = 0.02
+
+
+class Proxy:
+    """Forwards connections from a free port on loopback to `port`, until it is cut."""
+
+    def __init__(self, port: int) -> None:
+        self._target = ("127.0.0.1", port)
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self._pairs: dict[socket.socket, socket.socket] = {}
+        self._whole, self._stop = threading.Event(), threading.Event()
+        self._whole.set()
+        self._thread = threading.Thread(target=self._run, name="proxy")
+
+    @property
+    def endpoint(self) -> str:
+        """Zenoh endpoint of the near end."""
+        return f"tcp/127.0.0.1:{self._listener.getsockname()[1]}"
+
+    def cut(self) -> None:
+        """Let nothing through, in either direction, nor any new connection."""
+        self._whole.clear()
+
+    def heal(self) -> None:
+        """Let everything through again, first what waited."""
+        self._whole.set()
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._stop.set()
+        self._whole.set()
+        self._thread.join()
+        for end in (self._listener, *self._pairs):
+            end.close()
+
+    def _run(self) -> None:
+        while not self._stop.is_set():
+            self._whole.wait()
+            ready, _, _ = select.select([self._listener, *self._pairs], [], [], PERIOD_S)
+            for end in ready if self._whole.is_set() else ():
+                if end is self._listener:
+                    self._accept()
+                elif end in self._pairs:
+                    self._forward(end)
+
+    def _accept(self) -> None:
+        near, _ = self._listener.accept()
+        try:
+            far = socket.create_connection(self._target, timeout=1.0)
+        except OSError:
+            near.close()
+            return
+        self._pairs |= {near: far, far: near}
+
+    def _forward(self, end: socket.socket) -> None:
+        try:
+            chunk = end.recv(CHUNK)
+            if chunk:
+                self._pairs[end].sendall(chunk)
+                return
+        except OSError:
+            pass
+        far = self._pairs.pop(end)
+        del self._pairs[far]
+        end.close()
+        far.close()

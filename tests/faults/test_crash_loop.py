@@ -1,0 +1,39 @@
+"""A service that ends again and again: ever longer pauses, and everybody who asks is told that it is down."""
+
+import json
+import subprocess
+import sys
+
+import httpx
+import pytest
+
+from services.launcher.runner import State
+from services.launcher.supervisor import Launcher
+from shared.bus import wait_until
+
+STORM_S = 60.0
+
+
+@pytest.mark.slow
+def test_a_crash_loop_backs_off_and_shows_as_degraded_in_the_shell_and_as_missing_over_http(
+    tmp_path, repository
+):
+    broken = {"PLANNER_NO_SUCH_SETTING": "1"}  # it ends as soon as it reads its settings
+    stack = Launcher(tmp_path, only=["planner", "gateway", "map-store"], environment=broken)
+    stack.start(wait=False)
+    try:
+        assert wait_until(lambda: stack.status()["planner"].state is State.DEGRADED, STORM_S)
+        stack.wait_healthy("gateway", STORM_S)
+        command = [sys.executable, "-m", "services.launcher", "status", "--json", "--data-dir", str(tmp_path)]
+        shown = subprocess.run(command, cwd=repository, capture_output=True, text=True, check=False)
+        assert shown.returncode == 1
+        told = json.loads(shown.stdout)["services"]
+        assert told["planner"]["state"] == "degraded"
+        assert told["gateway"]["state"] == "healthy"
+        ready = httpx.get(f"{stack.gateway_url}/readyz", timeout=10.0, trust_env=False)
+        assert ready.status_code == 503
+        assert "planner" in ready.json()["missing"]
+        restarts = stack.status()["planner"].restarts
+        assert restarts <= 8, "it must pause longer each time"
+    finally:
+        stack.stop()

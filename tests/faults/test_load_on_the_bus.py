@@ -1,0 +1,52 @@
+"""Somebody floods the bus, or sleeps on it: headings become commands as before, and memory stays bounded."""
+
+import pytest
+
+from tests.faults.latency import Stopwatch, memory_mb, told
+
+PHASE_S = 4.0
+FLOOD_MB_S = 100.0
+FLOODED_S = 0.25
+"""A guarantee for a busy machine of two cores; what was measured is in deploy/FAULTS.md."""
+SLOW_CONSUMER_S = 0.05
+MORE_MB = 60.0
+TOLERANCE_S = 0.005
+"""The ten per cent below are of a millisecond or two: less than one turn of the scheduler."""
+
+
+@pytest.fixture
+def drive(start_drive):
+    return start_drive()
+
+
+@pytest.fixture
+def stopwatch(drive, router_endpoint):  # noqa: ARG001 - drive must run
+    with Stopwatch(router_endpoint) as watch:
+        assert watch.warm_up()
+        yield watch
+
+
+def test_junk_at_100_mb_a_second_is_thrown_away_unread_and_commands_go_on(
+    drive, stopwatch, rogue, record_property
+):
+    quiet_s, before_mb = stopwatch.latencies_s(PHASE_S), memory_mb(drive.pid)
+    flood = rogue("flood", str(FLOOD_MB_S))
+    flooded_s = stopwatch.latencies_s(PHASE_S)
+    more_mb, rate = memory_mb(drive.pid) - before_mb, flood.stdout.readline()
+    for name, value in {**told(quiet_s, "quiet"), **told(flooded_s, "flooded")}.items():
+        record_property(name, value)
+    record_property("more_mb", round(more_mb, 1))
+    record_property("junk_mb_s", float(rate))
+    assert told(flooded_s, "flooded")["flooded_p99_ms"] < FLOODED_S * 1e3
+    assert more_mb < MORE_MB
+
+
+def test_a_subscriber_that_sleeps_does_not_slow_the_others(stopwatch, rogue, record_property):
+    quiet_s = stopwatch.latencies_s(PHASE_S)
+    rogue("sleep")
+    beside_s = stopwatch.latencies_s(PHASE_S)
+    for name, value in {**told(quiet_s, "quiet"), **told(beside_s, "beside")}.items():
+        record_property(name, value)
+    quiet_ms, beside_ms = told(quiet_s, "x")["x_p50_ms"], told(beside_s, "x")["x_p50_ms"]
+    assert beside_ms <= 1.1 * quiet_ms + TOLERANCE_S * 1e3
+    assert told(beside_s, "x")["x_p99_ms"] < max(SLOW_CONSUMER_S * 1e3, 1.5 * told(quiet_s, "x")["x_p99_ms"])

@@ -1,0 +1,94 @@
+"""Somebody edits the map under a running mission: it plans anew or ends by name, and nothing dangles."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from experiments.hand import Hand
+from experiments.map_client import delete_map, read_map
+from experiments.mission import MissionClient
+from experiments.stack import Stack, StackChoice, open_stack
+from shared.messages import MapRequest, MissionRequest
+from shared.messages.maps import DeleteNode
+from shared.topics import MAP
+
+pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(300)]
+
+STEPS = 60
+LONGEST = 300
+
+
+@pytest.fixture(scope="module")
+def stack(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stack]:
+    """The apartment in lockstep."""
+    choice = StackChoice(tmp_path_factory.mktemp("stack"), "apartment", seed=1, lockstep=True)
+    with open_stack(choice) as opened:
+        yield opened
+
+
+@pytest.fixture
+def client(stack: Stack) -> MissionClient:
+    """Follows missions of a robot that has just explored map `small` and is back at its start."""
+    client = MissionClient(stack.bus, stack.robot)
+    hand = Hand(stack.bus, stack.robot)
+    if read_map(stack, "small") is None:
+        client.wait_for_frame(hand.reset(1).stamp_ns)
+        client.run(MissionRequest(action="explore", map="small", seed=1, max_steps=STEPS))
+    client.wait_for_frame(hand.reset(1).stamp_ns)
+    return client
+
+
+def goto(client, node, edit):
+    """Drive to a node; `edit` is called once with the status when a path with via points stands."""
+    seen = []
+
+    def watch(status):
+        if not seen and status.state == "running" and len(status.via_points) > 2:
+            seen.append(status)
+            edit(status)
+
+    run = client.run(MissionRequest(action="goto", map="small", goal_node=node, max_steps=LONGEST), watch)
+    assert seen, f"the mission ended before there was a path: {run.status.reason}"
+    return run.status
+
+
+def farthest(stack):
+    """The place that was found last: the robot started at the first one."""
+    return max(node.node_id for node in read_map(stack, "small").nodes)
+
+
+def delete(stack, node):
+    operation = DeleteNode(node_id=node)
+    stack.bus.ask(
+        MAP, MapRequest(action="transact", author="rest", operations=(operation,)), 10.0, map="small"
+    )
+
+
+def test_a_via_point_that_is_deleted_is_not_driven_to(stack, client):
+    gone = []
+
+    def edit(status):
+        gone.append(status.via_points[1])
+        delete(stack, gone[0])
+
+    ended = goto(client, farthest(stack), edit)
+    assert ended.state == "succeeded" or ended.failure, ended.reason
+    assert gone[0] not in ended.via_points
+    found = read_map(stack, "small")
+    places = {node.node_id for node in found.nodes}
+    assert gone[0] not in places
+    assert all(edge.a in places and edge.b in places for edge in found.edges)
+
+
+def test_a_mission_to_a_place_that_is_deleted_ends_and_says_so(stack, client):
+    goal = farthest(stack)
+    ended = goto(client, goal, lambda _: delete(stack, goal))
+    assert (ended.state, ended.failure) == ("failed", "goal_not_in_map")
+    assert str(goal) in ended.reason
+
+
+def test_a_mission_in_a_map_that_is_deleted_ends_and_says_so(stack, client):
+    ended = goto(client, farthest(stack), lambda _: delete_map(stack, "small"))
+    assert ended.state == "failed"
+    assert ended.failure == "goal_not_in_map"
+    assert "the map is gone" in ended.reason
