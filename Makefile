@@ -46,9 +46,10 @@ types: setup
 	$(BIN)/mypy
 
 bench: setup
-	$(BIN)/topnav bench loop
+	$(BIN)/topnav bench loop --json runs/bench/loop.json
+	$(BIN)/topnav study scale --json runs/bench/scale.json --plot runs/bench/scale.png
 	$(BIN)/python -m pytest -q -s tests/benchmarks/test_console_graph.py
-	$(BIN)/python -m pytest -q -s tests/benchmarks/test_gateway_load.py
+	$(BIN)/python -m pytest -q -s tests/benchmarks/test_gateway_load.py tests/benchmarks/test_secured_bus.py
 
 fuzz: setup
 	$(BIN)/python -m tests.fuzz $(FUZZ_ARGS)

@@ -14,6 +14,10 @@ from shared.bus_security import Credentials, CredentialsError, secured_endpoint
 
 LEASE_MS = 2000
 """A hung process is declared gone after this; a killed one at once."""
+ONE_DIALS = {"peer": {"to_router": "always", "to_peer": "greater-zid"}}
+"""Of two peers only one opens the connection. When both do, they share a session of two links; after a freeze
+or a cut these expire one by one, and what is opened anew joins a session that one side has closed: they never
+hear each other again (zenoh issue 2806)."""
 JOIN_MS = 10_000
 """A client opens only with its router: this long it tries before it says that there is none for it."""
 
@@ -28,7 +32,7 @@ def peer_config(endpoint: str, listen: str = "tcp/127.0.0.1:0") -> zenoh.Config:
         raise CredentialsError(
             f"{endpoint} is a secured bus: set TOPNAV_CERTS to a folder of 'topnav certs', got none"
         )
-    return _config("peer", [listen], [endpoint])
+    return _config("peer", [listen], [endpoint], {"scouting/gossip/autoconnect_strategy": ONE_DIALS})
 
 
 def router_config(listen: str) -> zenoh.Config:
