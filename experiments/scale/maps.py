@@ -23,12 +23,15 @@ def places_of(real: Sequence[FeatureSet], count: int, rng: np.random.Generator) 
 
 
 def put_together(sources: Sequence[FeatureSet], rng: np.random.Generator) -> FeatureSet:
-    """A place that shows in each of its sectors what another of `sources` shows in that sector."""
+    """A place that shows in each of its sectors what another of `sources` shows in that sector.
+
+    It has the strongest words only, as many as the sources at most.
+    """
     start = float(rng.uniform(-np.pi, np.pi))
     masks = [_sector(source.lonlat_rad, start, k, len(sources)) for k, source in enumerate(sources)]
     kept = list(zip(sources, masks, strict=True))
     scores = np.concatenate([source.scores[mask] for source, mask in kept])
-    order = np.argsort(-scores, kind="stable")
+    order = np.argsort(-scores, kind="stable")[: max(len(source) for source in sources)]
     return FeatureSet(
         np.concatenate([source.lonlat_rad[mask] for source, mask in kept])[order],
         scores[order],

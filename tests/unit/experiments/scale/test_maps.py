@@ -32,6 +32,7 @@ def test_each_direction_shows_one_of_the_sources_and_the_strongest_words_come_fi
     sources = [seen(n) for n in range(4)]
     made = put_together(sources, np.random.default_rng(3))
     assert (np.diff(made.scores) <= 0).all()
+    assert len(made) <= WORDS
     around = np.argsort(made.lonlat_rad[:, 0])
     changes = np.count_nonzero(np.diff(made.descriptors[around, 0]))
     assert changes <= 4
