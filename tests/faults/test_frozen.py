@@ -79,5 +79,4 @@ def test_the_wheels_stand_soon_after_the_last_heading_and_nothing_old_is_obeyed(
     assert watch.ran_on_s() <= STOP_S + SEEN_S
     assert watch.oldest_answer_s() <= OLDEST_FRAME_S
     stack.launcher.wait_healthy(service, BACK_S)
-    if not again:  # the wheels stood, which is what this is about
-        pytest.xfail(f"two peers have not met again, see deploy/FAULTS.md: {watch.silent_s()}")
+    assert again, f"the robot does not drive again: {watch.silent_s()}"
