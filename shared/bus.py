@@ -125,10 +125,14 @@ class Bus:
     def requests(
         self, query: Query[Q, R], wake: threading.Event | None = None, **names: str
     ) -> Requests[Q, R]:
-        """Declare that this service answers `query`; take the questions in the loop."""
+        """Declare that this service answers `query`; take the questions in the loop.
+
+        Zenoh asks only the nearest of those that declare their answers complete, and all of the others.
+        """
         waiting = Requests(query, wake or self.wake, self.counters)
         store = zenoh.handlers.Callback(waiting.push, indirect=False)
-        self._declared.append(self._session.declare_queryable(query.key(**names), store))
+        key = query.key(**names)
+        self._declared.append(self._session.declare_queryable(key, store, complete=query.anyone))
         return waiting
 
     def ask(self, query: Query[Q, R], request: Q, timeout_s: float, **names: str) -> R:

@@ -63,12 +63,18 @@ class Topic(Generic[M]):
 
 @dataclass(frozen=True)
 class Query(Generic[Q, R]):
-    """One question and its answer."""
+    """One question and its answer.
+
+    Attributes:
+        anyone: of several processes that answer this, any one will do, and only one is asked; otherwise all
+            are, and the first answer counts.
+    """
 
     template: str
     request: type[Q]
     reply: type[R]
     max_bytes: int
+    anyone: bool = False
 
     def key(self, **names: str) -> str:
         """Fill the template; a name that breaks the rule raises ValueError."""
@@ -95,13 +101,13 @@ EVENT = Topic("topnav/{robot}/event", Event, Delivery.LOG, 100_000)
 TRUTH = Topic("topnav/{robot}/truth", Truth, Delivery.LOG, 10_000)
 MAP_DELTA = Topic("topnav/maps/{map}/delta", MapDelta, Delivery.RECOVERED, 64 * MB)
 
-MATCH = Query("topnav/{robot}/match", MatchRequest, MatchReply, 32 * MB)
-EXTRACT = Query("topnav/features/extract", ExtractRequest, Features, 64 * MB)
+MATCH = Query("topnav/{robot}/match", MatchRequest, MatchReply, 32 * MB, anyone=True)
+EXTRACT = Query("topnav/features/extract", ExtractRequest, Features, 64 * MB, anyone=True)
 MISSION = Query("topnav/{robot}/mission", MissionRequest, MissionStatus, 8 * MB)
 ESTOP = Query("topnav/{robot}/estop", EStopRequest, EStopState, 10_000)
-MAP = Query("topnav/maps/{map}/graph", MapRequest, MapReply, 512 * MB)
-MAP_READ = Query("topnav/maps/{map}/read", MapRequest, MapReply, 512 * MB)
-MISSION_RECORD = Query("topnav/missions/{robot}", MissionRecordRequest, MissionRecord, 8 * MB)
+MAP = Query("topnav/maps/{map}/graph", MapRequest, MapReply, 512 * MB, anyone=True)
+MAP_READ = Query("topnav/maps/{map}/read", MapRequest, MapReply, 512 * MB, anyone=True)
+MISSION_RECORD = Query("topnav/missions/{robot}", MissionRecordRequest, MissionRecord, 8 * MB, anyone=True)
 SIMULATION = Query("topnav/{robot}/simulation", SimulationRequest, SimulationReply, 64 * MB)
 
 TOPICS: tuple[Topic[Message], ...] = (

@@ -9,6 +9,7 @@ import pytest
 import zenoh
 
 from shared.bus_config import router_config
+from tests.postgres import PostgresServer, missing
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
@@ -35,6 +36,19 @@ def free_port() -> Callable[[], int]:
             return int(one.getsockname()[1])
 
     return pick
+
+
+@pytest.fixture(scope="session")
+def postgres() -> Iterator[PostgresServer]:
+    """A PostgreSQL server for all tests that ask for one; they are skipped where none is installed."""
+    if why := missing():
+        pytest.skip(why)
+    server = PostgresServer()
+    try:
+        server.start()
+        yield server
+    finally:
+        server.close()
 
 
 @pytest.fixture

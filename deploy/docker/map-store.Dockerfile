@@ -1,9 +1,9 @@
-# topnav: the map-store process, with the core and its own extra and nothing else.
+# topnav: the map-store process, with the core, its own extra and the driver of PostgreSQL, and nothing else.
 FROM python:3.11-slim-trixie
 
 WORKDIR /app
 COPY pyproject.toml constraints.txt README.md LICENSE ./
-RUN pip install --no-cache-dir --constraint constraints.txt '.[map-store]'
+RUN pip install --no-cache-dir --constraint constraints.txt '.[map-store,postgres]'
 
 COPY shared shared
 COPY services/__init__.py services/__init__.py

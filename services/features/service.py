@@ -7,18 +7,19 @@ from threading import Event
 import cv2
 
 from services.features.decoding import BadPictureError
-from services.features.frame_cache import FrameCache, FrameKey
+from services.features.frame_cache import FrameKey
 from services.features.map_cache import MapCache, MapWords
 from services.features.map_reader import MapReader
 from services.features.matching_requests import RequestError, pair, verify_paired
 from services.features.pipeline import Pipeline
 from services.features.places import Places
+from services.features.robot_streams import RobotStreams
 from services.features.settings import FeaturesSettings
 from shared.bus import Bus, Request
 from shared.messages.features import ExtractRequest, Features
 from shared.messages.matching import MatchReply, MatchRequest
 from shared.messages.sensors import Frame
-from shared.topics import EXTRACT, FEATURES, FRAME, MATCH
+from shared.topics import EXTRACT
 
 log = logging.getLogger(__name__)
 
@@ -26,67 +27,64 @@ IDLE_S = 0.5
 
 
 class FeatureService:
-    """Extracts the newest frame and answers questions, in turn."""
+    """Extracts the newest frame of each robot and answers questions, in turn."""
 
     def __init__(self, settings: FeaturesSettings, bus: Bus) -> None:
         cv2.setNumThreads(settings.threads)
         self._bus = bus
         thumbnail = settings.thumbnail_width_px, settings.thumbnail_quality
         self._pipeline = Pipeline(settings.profile(), *thumbnail, settings.runtime())
-        self._frames = FrameCache(settings.frames_kept)
         self._maps = MapReader(bus, MapCache(self._no_places), settings.map_timeout_s)
-        self._incoming = bus.subscribe(FRAME, robot=settings.robot)
-        self._outgoing = bus.publisher(FEATURES, robot=settings.robot)
-        self._matches = bus.requests(MATCH, robot=settings.robot)
+        self._robots = tuple(RobotStreams.open(bus, name, settings.frames_kept) for name in settings.served)
         self._extracts = bus.requests(EXTRACT)
 
     def work(self) -> None:
         """Handle everything that has arrived."""
-        while self._round():
+        while any([self._turn(robot) for robot in self._robots]):  # a list: every robot has its turn
             pass
 
-    def _round(self) -> bool:
+    def _turn(self, robot: RobotStreams) -> bool:
         """One of each kind: on a machine too slow for all frames, questions must have their turn too."""
         self._maps.follow()
-        if (frame := self._incoming.take()) is not None:
-            self._on_frame(frame)
-        if (match := self._matches.take()) is not None:
-            self._on_match(match)
+        if (frame := robot.frames.take()) is not None:
+            self._on_frame(robot, frame)
+        if (match := robot.matches.take()) is not None:
+            self._on_match(robot, match)
         if (picture := self._extracts.take()) is not None:
             self._on_extract(picture)
         return any(each is not None for each in (frame, match, picture))
 
-    def _on_frame(self, frame: Frame) -> None:
+    def _on_frame(self, robot: RobotStreams, frame: Frame) -> None:
         key = FrameKey.of(frame)
-        verdict = self._frames.judge(key, frame.lockstep)
+        verdict = robot.kept.judge(key, frame.lockstep)
         if verdict == "stale":
             self._bus.counters.count("stale", f"frame {frame.seq} came after a newer one")
             return
-        features = self._frames.same(key)
+        features = robot.kept.same(key)
         if features is None:
             try:
                 features = self._extract(frame)
             except BadPictureError as error:
                 self._bus.counters.count("malformed", f"frame {frame.seq}: {error}")
                 return
-            self._frames.put(key, features)
-        self._outgoing.put(features)
+            robot.kept.put(key, features)
+        robot.features.put(features)
 
     def _extract(self, frame: Frame) -> Features:
         start_s = time.perf_counter()
         features = self._pipeline.features_of(frame)
         return features.model_copy(update={"extract_ms": (time.perf_counter() - start_s) * 1e3})
 
-    def _on_match(self, request: Request[MatchRequest, MatchReply]) -> None:
+    def _on_match(self, robot: RobotStreams, request: Request[MatchRequest, MatchReply]) -> None:
         try:
-            reply = self._match(request.message)
+            reply = self._match(robot, request.message)
         except RequestError as error:
             request.refuse(str(error))
             return
         request.reply(reply)
 
-    def _match(self, request: MatchRequest) -> MatchReply:
-        current = self._current(request)
+    def _match(self, robot: RobotStreams, request: MatchRequest) -> MatchReply:
+        current = _current(robot, request)
         needs_map = bool(request.node_ids or request.best_k)
         words = (
             self._maps.words(request.map, request.node_ids, request.map_revision)
@@ -113,16 +111,6 @@ class FeatureService:
         pipeline = self._pipeline
         return Places(pipeline.identity, pipeline.profile.keypoints, pipeline.extractor.distance)
 
-    def _current(self, request: MatchRequest) -> Features:
-        if request.features is not None:
-            return request.features
-        features = self._frames.get(request.seq)
-        if features is None:
-            raise RequestError(
-                f"frame {request.seq} is not kept (kept: {self._frames.span()}): ask about a newer one"
-            )
-        return features
-
     def _on_extract(self, request: Request[ExtractRequest, Features]) -> None:
         try:
             features = self._extract(request.message.frame)
@@ -133,11 +121,22 @@ class FeatureService:
         request.reply(features)
 
 
+def _current(robot: RobotStreams, request: MatchRequest) -> Features:
+    if request.features is not None:
+        return request.features
+    features = robot.kept.get(request.seq)
+    if features is None:
+        raise RequestError(
+            f"frame {request.seq} is not kept (kept: {robot.kept.span()}): ask about a newer one"
+        )
+    return features
+
+
 def run(settings: FeaturesSettings, bus: Bus, stop: Event) -> None:
     """Serve until `stop` is set."""
     service = FeatureService(settings, bus)
     bus.announce("features")
-    log.info("ready, pipeline %s", settings.profile().identity)
+    log.info("ready, pipeline %s, robots %s", settings.profile().identity, ", ".join(settings.served))
     while not stop.is_set():
         service.work()
         bus.wait(IDLE_S)

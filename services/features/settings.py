@@ -1,20 +1,23 @@
 """Settings of the feature service; importing them loads no image library."""
 
 from dataclasses import replace
-from typing import Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field, PositiveFloat, field_validator
-from pydantic_settings import SettingsConfigDict
+from pydantic import Field, PositiveFloat, field_validator, model_validator
+from pydantic_settings import NoDecode, SettingsConfigDict
 
 from services.features.pipelines import Profile, find_profile
 from services.features.registry import Runtime
+from shared.bus_security import credentials_in
 from shared.settings import ServiceSettings
+from shared.topics import NAME
 
 
 class FeaturesSettings(ServiceSettings):
     """Read from the environment, e.g. FEATURES_PIPELINE=thesis.
 
     Attributes:
+        robots: whose frames and questions this process takes, as r1,r2; empty: those of `robot` alone.
         pipeline: a named profile or extractor/representation/matcher, see `pipelines`.
         uneven_ground: verify by any motion of the camera where the plane explains too little.
         extractor: in place of `pipeline` where not empty.
@@ -28,6 +31,7 @@ class FeaturesSettings(ServiceSettings):
 
     model_config = SettingsConfigDict(env_prefix="FEATURES_")
 
+    robots: Annotated[tuple[str, ...], NoDecode] = ()
     pipeline: str = "sift"
     extractor: str = ""
     uneven_ground: bool = False
@@ -45,6 +49,32 @@ class FeaturesSettings(ServiceSettings):
     def runtime(self) -> Runtime:
         """Where networks run."""
         return Runtime(self.device)
+
+    @property
+    def served(self) -> tuple[str, ...]:
+        """Names of the robots this process works for."""
+        return self.robots or (self.robot,)
+
+    @field_validator("robots", mode="before")
+    @classmethod
+    def _listed(cls, names: object) -> object:
+        if not isinstance(names, str):
+            return names
+        return tuple(name.strip() for name in names.split(",")) if names.strip() else ()
+
+    @model_validator(mode="after")
+    def _may_serve(self) -> Self:
+        for name in self.robots:
+            if not NAME.match(name) or self.robots.count(name) > 1:
+                raise ValueError(
+                    f"FEATURES_ROBOTS must name every robot once, by [a-z0-9_-]{{1,64}}, got {name!r}"
+                )
+        if len(self.robots) > 1 and credentials_in(self.certs) is not None:
+            raise ValueError(
+                f"FEATURES_ROBOTS names {len(self.robots)} robots and a certificate is for one: on the "
+                "secured bus run a feature service for each robot"
+            )
+        return self
 
     @field_validator("pipeline", "extractor")
     @classmethod

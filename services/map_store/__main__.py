@@ -7,6 +7,7 @@ from threading import Event
 
 from services.map_store.api import create_app
 from services.map_store.database import Database
+from services.map_store.errors import MapError
 from services.map_store.guard import LOOPBACK_NAMES
 from services.map_store.missions import MissionStore
 from services.map_store.server import serve
@@ -31,7 +32,11 @@ def main() -> None:
         sys.exit(2)
 
     def loop(bus: Bus, stop: Event) -> None:
-        database = Database(settings.database_url)
+        try:
+            database = Database(settings.database_url)
+        except MapError as error:
+            log.error("%s", error)
+            sys.exit(1)
         deltas, ready = Deltas(bus), Event()
         store = MapStore(database, time.time_ns, deltas.push)
 

@@ -9,10 +9,9 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from urllib.parse import quote
 
-from sqlalchemy.engine import make_url
-
 from services.map_store.check import check
-from services.map_store.database import Database, text_of
+from services.map_store.database import Database
+from services.map_store.engines import is_sqlite, parse, text_of
 from services.map_store.errors import (
     ConflictError,
     CorruptError,
@@ -27,9 +26,12 @@ SHOWN = 3
 
 def file_of(url: str) -> Path:
     """The file of a SQLite database; InvalidError for another one, which has tools of its own."""
-    parsed = make_url(url)
-    if parsed.get_backend_name() != "sqlite" or not parsed.database:
-        raise InvalidError(f"only a SQLite file can be copied, got {parsed.render_as_string()}")
+    parsed = parse(url)
+    if not is_sqlite(parsed) or not parsed.database:
+        raise InvalidError(
+            f"only a SQLite file can be copied, got {parsed.render_as_string()}; "
+            "of PostgreSQL use pg_dump and pg_restore, or your provider's backups"
+        )
     return Path(parsed.database)
 
 

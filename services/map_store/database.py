@@ -1,24 +1,22 @@
-"""Connections: one writer at a time, any number of readers. Everything that only SQLite needs is here."""
+"""Transactions: one writer at a time, any number of readers, on a SQLite file or a PostgreSQL server."""
 
 import logging
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
-from typing import Any
 
-from sqlalchemy import Connection, Engine, create_engine, event
-from sqlalchemy.engine import URL, make_url
+from sqlalchemy import Connection
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
 from services.map_store import integrity, migration
+from services.map_store.engines import BUSY_TIMEOUT_S, is_sqlite, open_engines, parse
 from services.map_store.errors import CorruptError, MapError, StorageFullError, UnavailableError
 
 log = logging.getLogger(__name__)
 
-BUSY_TIMEOUT_S = 5.0
 SHOWN = 5
 FULL = ("database or disk is full", "no space left", "disk full", "could not extend file")
+BUSY = "lock timeout"
 MALFORMED = ("malformed", "not a database", "too big")
 ADVICE = "'topnav map check' lists the damage; 'topnav map repair' or 'topnav map restore' ends it"
 
@@ -27,22 +25,23 @@ class Database:
     """Transactions on the database at `url`; it is created when it is not there.
 
     A SQLite file is read as a whole first. A damaged one is served as far as it can be read and never
-    written to, because SQLite may overwrite good pages through a bad one.
+    written to, because SQLite may overwrite good pages through a bad one. A server looks after its own files;
+    several map stores may write to its database, in turns.
 
     Attributes:
         damage: what is wrong with the file.
 
     Raises:
-        UnavailableError: no connection, or tables of a later version.
+        UnavailableError: no such URL, no driver for it, no connection, or tables of a later version.
         CorruptError: so much is damaged that nothing can be read.
     """
 
     def __init__(self, url: str) -> None:
         self._lock = threading.Lock()
-        parsed = make_url(url)
-        self._where = parsed.render_as_string()
-        self._sqlite = _is_sqlite(parsed)
-        self._writer, self._reader = _sqlite_engines(parsed) if self._sqlite else _engines(parsed)
+        parsed = parse(url)
+        self._where = parsed.render_as_string()  # without the password
+        self._sqlite = is_sqlite(parsed)
+        self._writer, self._reader = open_engines(parsed)
         self.damage: tuple[str, ...] = ()
         try:
             self.inspect()
@@ -121,45 +120,9 @@ class Database:
             if any(sign in cause.lower() for sign in FULL):
                 told = f"nothing was written: {cause}: {self._where}; free some space, reads go on"
                 raise StorageFullError(told) from error
+            if BUSY in cause.lower():
+                told = f"database: another map store writes since {BUSY_TIMEOUT_S:g} s; try again"
+                raise UnavailableError(told) from error
             if any(sign in cause.lower() for sign in MALFORMED):
                 raise CorruptError(f"database: {cause[:200]}; {ADVICE}") from error
             raise UnavailableError(f"database: {type(error).__name__}: {cause[:200]}") from error
-
-
-def _is_sqlite(url: URL) -> bool:
-    return url.get_backend_name() == "sqlite"
-
-
-def _engines(url: URL) -> tuple[Engine, Engine]:
-    engine = create_engine(url, isolation_level="REPEATABLE READ", pool_pre_ping=True)
-    return engine, engine
-
-
-def _sqlite_engines(url: URL) -> tuple[Engine, Engine]:
-    if not url.database or url.database == ":memory:":
-        raise UnavailableError("database_url must name a file, for example sqlite:///data/maps.sqlite3")
-    Path(url.database).parent.mkdir(parents=True, exist_ok=True)
-    return _sqlite_engine(url, "BEGIN IMMEDIATE"), _sqlite_engine(url, "BEGIN")
-
-
-def _sqlite_engine(url: URL, begin: str) -> Engine:
-    """An engine whose transactions start with `begin`: a plain BEGIN that writes later fails as "locked"."""
-    engine = create_engine(url, connect_args={"timeout": BUSY_TIMEOUT_S})
-
-    @event.listens_for(engine, "connect")
-    def _prepare(connection: Any, _record: object) -> None:
-        connection.isolation_level = None  # the driver shall not begin transactions by itself
-        connection.text_factory = text_of
-        for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
-            connection.execute(f"PRAGMA {pragma}").close()
-
-    @event.listens_for(engine, "begin")
-    def _begin(connection: Connection) -> None:
-        connection.exec_driver_sql(begin)
-
-    return engine
-
-
-def text_of(data: bytes) -> str:
-    """Damaged text need not be UTF-8; it must reach the checks as text that differs, not as an exception."""
-    return data.decode("utf-8", "backslashreplace")

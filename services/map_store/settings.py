@@ -15,7 +15,7 @@ class MapStoreSettings(ServiceSettings):
     """Read from the environment, for example MAP_STORE_PORT=8001.
 
     Attributes:
-        database_url: SQLAlchemy URL; sqlite:///relative/file, sqlite:////absolute/file or postgresql+psycopg://...
+        database_url: sqlite:///relative/file, sqlite:////absolute/file or postgresql://user:password@host/database.
         host, port: where REST listens; port 0 takes any free one.
         token: bearer token that writes over REST need, off loopback reading as well; empty = none.
         allow_open: listen on a reachable address without a token all the same, as in a network of

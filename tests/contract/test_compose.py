@@ -206,7 +206,8 @@ def test_each_image_installs_one_extra_and_carries_one_services_code(name, repos
     build = SERVICES[name]["build"]
     text = (repository / build["dockerfile"]).read_text(encoding="utf-8")
     assert "FROM python:3.11-slim-trixie" in text
-    assert re.findall(r"\.\[([\w,-]+)\]", text) == ([] if name == "router" else [name])
+    extras = {"router": [], "map-store": ["map-store,postgres"]}.get(name, [name])
+    assert re.findall(r"\.\[([\w,-]+)\]", text) == extras
     assert "ENTRYPOINT" not in text
     assert "CMD" not in text
     package = SERVICES[name]["command"][2].replace(".", "/").removesuffix("/router")

@@ -14,7 +14,7 @@ START_S = 30.0
 
 
 class Process:
-    """A map store on a database of its own; `start` it as often as it was killed.
+    """A map store on a database of its own, or that of `database_url`; `start` it as often as it was killed.
 
     `inside` is a command that runs another one, for example in a namespace with a disk of its own.
     """
@@ -27,13 +27,14 @@ class Process:
         port: int,
         inside: Sequence[str] = (),
         listen: str = "tcp/127.0.0.1:0",
+        database_url: str = "",
     ) -> None:
         self._repository, self._inside = repository, inside
         self._environment = os.environ | {
             "TOPNAV_ENDPOINT": endpoint,
             "TOPNAV_LISTEN": listen,
             "MAP_STORE_PORT": str(port),
-            "MAP_STORE_DATABASE_URL": f"sqlite:///{folder}/maps.sqlite3",
+            "MAP_STORE_DATABASE_URL": database_url or f"sqlite:///{folder}/maps.sqlite3",
         }
         self.url = f"http://127.0.0.1:{port}"
         self.child: subprocess.Popen[bytes] | None = None

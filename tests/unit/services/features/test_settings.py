@@ -1,5 +1,6 @@
 """Names are checked at start, choices are listed, and settings load no image library."""
 
+import datetime as dt
 import subprocess
 import sys
 
@@ -10,6 +11,8 @@ from services.features.pipelines import PROFILES, find_profile
 from services.features.plugins import PLUGINS
 from services.features.registry import create
 from services.features.settings import FeaturesSettings
+from shared.certificates.issuing import make
+from shared.certificates.layout import everyone
 
 
 def test_the_default_pipeline_exists():
@@ -74,3 +77,25 @@ def test_what_an_import_does_not_load(module, absent):
 def test_uneven_ground_asks_for_any_motion_of_the_camera():
     assert not Pipeline(FeaturesSettings().profile()).verification.fallback
     assert Pipeline(FeaturesSettings(uneven_ground=True).profile()).verification.fallback
+
+
+def test_one_service_may_serve_several_robots_by_default_its_own(monkeypatch):
+    monkeypatch.setenv("TOPNAV_ROBOT", "r7")
+    assert FeaturesSettings.from_environment().served == ("r7",)
+    monkeypatch.setenv("FEATURES_ROBOTS", "")
+    assert FeaturesSettings.from_environment().served == ("r7",)
+    monkeypatch.setenv("FEATURES_ROBOTS", "r1, r2")
+    assert FeaturesSettings.from_environment().served == ("r1", "r2")
+
+
+@pytest.mark.parametrize("names", ["r1,r1", "r1,", "R1", "r1;r2", "*"])
+def test_robots_are_named_once_and_well(names):
+    with pytest.raises(ValueError, match="FEATURES_ROBOTS must name every robot once"):
+        FeaturesSettings(robots=names)
+
+
+def test_a_certificate_is_for_one_robot(tmp_path):
+    make(tmp_path, everyone("r1"), dt.datetime.now(dt.UTC))
+    assert FeaturesSettings(robots="r1", certs=tmp_path / "features").served == ("r1",)
+    with pytest.raises(ValueError, match="names 2 robots and a certificate is for one"):
+        FeaturesSettings(robots="r1,r2", certs=tmp_path / "features")

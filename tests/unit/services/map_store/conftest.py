@@ -42,9 +42,15 @@ def told() -> Told:
 
 
 @pytest.fixture
-def database(tmp_path: Path) -> Iterator[Database]:
-    """An empty database in a file."""
-    opened = Database(f"sqlite:///{tmp_path}/maps.sqlite3")
+def database_url(tmp_path: Path) -> str:
+    """Where the tests keep their maps; the integration tests put a server in its place."""
+    return f"sqlite:///{tmp_path}/maps.sqlite3"
+
+
+@pytest.fixture
+def database(database_url: str) -> Iterator[Database]:
+    """An empty database."""
+    opened = Database(database_url)
     yield opened
     opened.close()
 

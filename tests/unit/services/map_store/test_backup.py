@@ -131,7 +131,7 @@ def test_what_is_no_sound_backup_changes_nothing(store: MapStore, live: Path, tm
         with pytest.raises(kind, match=told):
             put_back(file, live)
     assert live.read_bytes() == before
-    assert graph_of(reopened(tmp_path))[0].keys() == {0, 1}
+    assert graph_of(reopened(f"sqlite:///{tmp_path}/maps.sqlite3"))[0].keys() == {0, 1}
     assert not list(tmp_path.glob("*before*"))
 
 

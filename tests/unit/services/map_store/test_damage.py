@@ -29,17 +29,17 @@ def two(store: MapStore) -> MapStore:
     return store
 
 
-def tamper(store: MapStore, statement: str) -> None:
+def tamper(store: MapStore, statement: str, **values: bytes) -> None:
     """Change rows behind the store's back."""
     with store.database.write() as connection:
-        connection.execute(text(statement))
+        connection.execute(text(statement), values)
 
 
 FLAT = "map_id = (SELECT map_id FROM maps WHERE name = 'flat')"
 REFUSED = (
     (f"UPDATE nodes SET record = replace(record, 'sift', 'soft') WHERE {FLAT} AND node_id = 1", "node 1"),
     (f"UPDATE nodes SET features = (SELECT max(sha256) FROM blobs) WHERE {FLAT} AND node_id = 0", "node 0"),
-    (f"UPDATE nodes SET quarantined = 1 WHERE {FLAT} AND node_id = 1", "node 1"),
+    (f"UPDATE nodes SET quarantined = true WHERE {FLAT} AND node_id = 1", "node 1"),
     (f"UPDATE edges SET record = replace(record, '0.5', '0.7') WHERE {FLAT}", "edge 0-1"),
     (f"UPDATE edges SET revision = 1 WHERE {FLAT}", "edge 0-1"),
     (f"DELETE FROM edges WHERE {FLAT}", "1 edges"),
@@ -50,10 +50,10 @@ REFUSED = (
 
 @pytest.mark.parametrize(("statement", "named"), REFUSED)
 def test_a_map_with_a_damaged_row_is_refused_by_name_and_the_others_are_served(
-    two: MapStore, tmp_path: Path, statement: str, named: str
+    two: MapStore, database_url: str, statement: str, named: str
 ):
     tamper(two, statement)
-    store = reopened(tmp_path)
+    store = reopened(database_url)
     with pytest.raises(CorruptError, match=f"map 'flat': .*{named}.* 'topnav map repair flat'"):
         store.graph("flat")
     with pytest.raises(CorruptError, match="map 'flat'"):
@@ -106,7 +106,7 @@ def test_a_check_names_every_damaged_thing(two: MapStore):
     damage(two.database, flat.places[0].features)
     damage(two.database, flat.places[1].thumbnail)
     tamper(two, f"UPDATE edges SET revision = 1 WHERE {FLAT}")
-    tamper(two, f"UPDATE revisions SET content = x'80' WHERE {FLAT} AND revision = 2")
+    tamper(two, f"UPDATE revisions SET content = :new WHERE {FLAT} AND revision = 2", new=b"\x80")
     found = [(each.map, each.thing) for each in check(two.database)]
     assert sorted(found) == [
         ("flat", "edge 0-1"),
@@ -128,11 +128,11 @@ def test_a_reference_that_is_no_text_any_more_does_not_end_a_check(database: Dat
 
 @pytest.mark.usefixtures("two")
 def test_nothing_is_written_to_a_file_that_is_damaged_but_what_is_whole_is_read(
-    database: Database, tmp_path: Path
+    database: Database, tmp_path: Path, database_url: str
 ):
     database.close()
     flip_first(tmp_path / "maps.sqlite3", b"flat", after=b"flat")
-    store = reopened(tmp_path)
+    store = reopened(database_url)
     assert store.database.damage
     assert store.graph("house")[0] == 1
     with pytest.raises(CorruptError, match="nothing was written, the file is damaged"):
@@ -140,19 +140,23 @@ def test_nothing_is_written_to_a_file_that_is_damaged_but_what_is_whole_is_read(
 
 
 @pytest.mark.usefixtures("two")
-def test_tables_that_are_described_otherwise_are_refused(database: Database, tmp_path: Path):
+def test_tables_that_are_described_otherwise_are_refused(
+    database: Database, tmp_path: Path, database_url: str
+):
     database.close()
     flip_first(tmp_path / "maps.sqlite3", b"REFERENCES maps")
     with pytest.raises(CorruptError, match="description of the tables is damaged"):
-        reopened(tmp_path)
+        reopened(database_url)
 
 
 @pytest.mark.usefixtures("two")
-def test_a_description_that_is_no_text_any_more_is_refused(database: Database, tmp_path: Path):
+def test_a_description_that_is_no_text_any_more_is_refused(
+    database: Database, tmp_path: Path, database_url: str
+):
     database.close()
     flip_first(tmp_path / "maps.sqlite3", b"FOREIGN KEY(map_id) REFERENCES", mask=0x80)
     with pytest.raises(CorruptError, match="its description is damaged"):
-        reopened(tmp_path)
+        reopened(database_url)
 
 
 def flip_first(file: Path, words: bytes, after: bytes = b"", mask: int = 1) -> None:

@@ -27,17 +27,17 @@ def chain(store: MapStore) -> MapStore:
 
 
 @pytest.mark.parametrize("statement", [statement for statement, _ in REFUSED])
-def test_a_damaged_row_is_written_anew_from_the_history(chain: MapStore, tmp_path: Path, statement: str):
+def test_a_damaged_row_is_written_anew_from_the_history(chain: MapStore, database_url: str, statement: str):
     before = graph_of(chain)
     tamper(chain, statement)
-    store = reopened(tmp_path)
+    store = reopened(database_url)
     assert check(store.database)
     repaired = store.repair("flat")
     assert repaired.revision == 3
     assert "written anew" in repaired.done[0]
     assert check(store.database) == []
     assert graph_of(store) == before
-    assert graph_of(reopened(tmp_path)) == before
+    assert graph_of(reopened(database_url)) == before
     assert store.undo("flat")[1] == 3
 
 
@@ -72,10 +72,10 @@ def test_a_lost_thumbnail_costs_neither_the_node_nor_its_edges(chain: MapStore):
     assert check(chain.database) == []
 
 
-def test_a_row_that_the_history_lacks_too_is_removed(chain: MapStore, tmp_path: Path):
-    tamper(chain, f"UPDATE revisions SET content = x'80' WHERE {FLAT} AND revision = 2")
+def test_a_row_that_the_history_lacks_too_is_removed(chain: MapStore, database_url: str):
+    tamper(chain, f"UPDATE revisions SET content = :new WHERE {FLAT} AND revision = 2", new=b"\x80")
     tamper(chain, f"UPDATE nodes SET record = '{{}}' WHERE {FLAT} AND node_id = 2")
-    store = reopened(tmp_path)
+    store = reopened(database_url)
     repaired = store.repair("flat")
     assert repaired.revision == 4
     assert any(line.startswith("node 2: removed") for line in repaired.done)
@@ -85,7 +85,7 @@ def test_a_row_that_the_history_lacks_too_is_removed(chain: MapStore, tmp_path: 
 
 
 def test_a_revision_that_was_given_up_says_so_and_undo_stops_there(chain: MapStore):
-    tamper(chain, f"UPDATE revisions SET content = x'80' WHERE {FLAT} AND revision = 2")
+    tamper(chain, f"UPDATE revisions SET content = :new WHERE {FLAT} AND revision = 2", new=b"\x80")
     assert chain.repair("flat").done[0].startswith("revision 2: given up")
     assert check(chain.database) == []
     assert "a repair gave them up" in chain.revisions("flat", 3, 1)[0].summary
@@ -94,12 +94,14 @@ def test_a_revision_that_was_given_up_says_so_and_undo_stops_there(chain: MapSto
         chain.undo("flat")
 
 
-def test_damaged_indexes_are_built_anew(chain: MapStore, database: Database, tmp_path: Path):
+def test_damaged_indexes_are_built_anew(
+    chain: MapStore, database: Database, tmp_path: Path, database_url: str
+):
     before = graph_of(chain)
     database.close()
     # In the index the checksum follows no bytes of its blob: its first copy after the tables' text is there.
     flip_first(tmp_path / "maps.sqlite3", before[0][1].features.encode())
-    store = reopened(tmp_path)
+    store = reopened(database_url)
     assert store.database.damage
     assert store.repair("flat").done[0].startswith("indexes of the file")
     assert check(store.database) == []
@@ -108,14 +110,16 @@ def test_damaged_indexes_are_built_anew(chain: MapStore, database: Database, tmp
 
 
 @pytest.mark.usefixtures("chain")
-def test_a_file_with_more_than_damaged_indexes_is_left_alone(database: Database, tmp_path: Path):
+def test_a_file_with_more_than_damaged_indexes_is_left_alone(
+    database: Database, tmp_path: Path, database_url: str
+):
     database.close()
     file = tmp_path / "maps.sqlite3"
     data = bytearray(file.read_bytes())
     page = data.index(add(1).node.model_dump_json().encode()[:20]) // 4096 * 4096
     data[page + 7] ^= 9  # so many bytes are said to lie idle on this page
     file.write_bytes(data)
-    store = reopened(tmp_path)
+    store = reopened(database_url)
     with pytest.raises(CorruptError, match=r"more than indexes is damaged: .*restore a backup"):
         store.repair("flat")
     assert bytes(data) == file.read_bytes()

@@ -1,6 +1,5 @@
 """Transactions: all or nothing, one revision and one delta each, kept over a restart, taken back by undo."""
 
-from pathlib import Path
 from threading import Thread
 
 import pytest
@@ -31,8 +30,8 @@ def graph_of(store: MapStore) -> tuple[dict, dict]:
     return dict(graph.places), dict(graph.edges)
 
 
-def reopened(tmp_path: Path) -> MapStore:
-    return MapStore(Database(f"sqlite:///{tmp_path}/maps.sqlite3"), lambda: 0, lambda _: None)
+def reopened(url: str) -> MapStore:
+    return MapStore(Database(url), lambda: 0, lambda _: None)
 
 
 def test_a_transaction_counts_one_revision_and_tells_one_delta(store: MapStore, told: Told):
@@ -70,29 +69,29 @@ def test_an_empty_transaction_is_refused(store: MapStore):
         store.transact("flat", [])
 
 
-def test_what_was_written_is_there_after_a_restart(store: MapStore, tmp_path: Path):
+def test_what_was_written_is_there_after_a_restart(store: MapStore, database_url: str):
     store.transact("flat", [add(0), add(1), add(2), link(0, 1), link(1, 2)])
     store.transact(
         "flat", [DeleteNode(node_id=0), UpdateNode(node=Node(node_id=1, keypoints=5)), link(1, 2, 7)]
     )
     store.transact("flat", [DeleteEdge(a=1, b=2), add(3), link(2, 3)])
-    assert graph_of(reopened(tmp_path)) == graph_of(store)
+    assert graph_of(reopened(database_url)) == graph_of(store)
 
 
 def test_a_node_deleted_and_added_again_in_one_transaction_gets_its_new_content(
-    store: MapStore, tmp_path: Path
+    store: MapStore, database_url: str
 ):
     store.transact("flat", [add(0), add(1), link(0, 1)])
     again = add(1).model_copy(update={"features": features(99)})
     store.transact("flat", [DeleteNode(node_id=1), again, link(0, 1, 5)])
-    for opened in (store, reopened(tmp_path)):
+    for opened in (store, reopened(database_url)):
         _, found = opened.contents.features("flat", [1])
         assert encode(found[0].features) == encode(features(99, thumbnail=False))
         assert opened.graph("flat")[1].edges[0, 1].inliers == 5
 
 
 def test_undo_goes_back_one_revision_each_time_and_is_a_revision_itself(
-    store: MapStore, told: Told, tmp_path: Path
+    store: MapStore, told: Told, database_url: str
 ):
     states = [graph_of(store)]
     for operations in ([add(0), add(1), link(0, 1)], [link(0, 1, 9)], [DeleteNode(node_id=0)]):
@@ -103,7 +102,7 @@ def test_undo_goes_back_one_revision_each_time_and_is_a_revision_itself(
     assert graph_of(store) == states[2]
     assert store.undo("flat") == (5, 2)
     assert graph_of(store) == states[1]
-    assert graph_of(reopened(tmp_path)) == states[1]
+    assert graph_of(reopened(database_url)) == states[1]
     assert [(delta.revision, delta.reset) for delta in told] == [(4, True), (5, True)]
 
 
@@ -219,16 +218,16 @@ def test_two_threads_never_lose_a_write_and_deltas_stay_in_order(store: MapStore
     assert [delta.revision for delta in told] == list(range(1, 41))
 
 
-def test_a_second_process_on_the_same_database_is_seen(store: MapStore, tmp_path: Path):
+def test_a_second_process_on_the_same_database_is_seen(store: MapStore, database_url: str):
     store.transact("flat", [add(0)])
-    other = reopened(tmp_path)
+    other = reopened(database_url)
     other.transact("flat", [add(1)])
     assert store.transact("flat", [link(0, 1)]) == 3
     assert set(other.graph("flat")[1].edges) == {(0, 1)}
 
 
-def test_a_database_of_another_version_is_refused(database: Database, tmp_path: Path):
+def test_a_database_of_another_version_is_refused(database: Database, database_url: str):
     with database.write() as connection:
         connection.execute(update(tables.about).values(version=tables.VERSION + 1))
     with pytest.raises(UnavailableError, match="tables of version"):
-        Database(f"sqlite:///{tmp_path}/maps.sqlite3")
+        Database(database_url)
