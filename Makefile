@@ -47,8 +47,9 @@ types: setup
 
 bench: setup
 	$(BIN)/topnav bench loop --json runs/bench/loop.json
+	$(BIN)/topnav bench loop --real-time --json runs/bench/loop-real-time.json
 	$(BIN)/topnav study scale --json runs/bench/scale.json --plot runs/bench/scale.png
-	$(BIN)/python -m pytest -q -s tests/benchmarks/test_console_graph.py
+	$(BIN)/python -m pytest -q -s tests/benchmarks/test_console_graph.py tests/benchmarks/test_rendering.py
 	$(BIN)/python -m pytest -q -s tests/benchmarks/test_gateway_load.py tests/benchmarks/test_secured_bus.py
 
 fuzz: setup

@@ -1,4 +1,4 @@
-"""`topnav bench loop`: how long each stage of the loop takes over a real mission, in lockstep."""
+"""`topnav bench loop`: how long each stage of the loop takes over a real mission."""
 
 import os
 import platform
@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from experiments import options
+from experiments.bench_latency import FrameTimes, latency
 from experiments.bench_listener import Listener
 from experiments.bench_stages import stage_durations_ms, table
 from experiments.exploration import explore
@@ -19,6 +20,9 @@ from experiments.stack import StackChoice, open_stack
 from experiments.tables import print_rows, wide_console
 
 MAP = "bench"
+RealTime = Annotated[
+    bool, typer.Option("--real-time", help="Without lockstep: frames come at their own rate, as on a robot.")
+]
 
 
 def main(
@@ -27,28 +31,33 @@ def main(
     seed: options.Seed = 1,
     json_file: options.JsonFile = None,
     pipeline: options.PipelineName = None,
+    real_time: RealTime = False,
 ) -> None:
     """Time the stages of the control loop while a robot explores; uses a stack and a map of its own."""
     with tempfile.TemporaryDirectory(prefix="topnav-bench-") as folder, one_line_errors():
-        choice = StackChoice(Path(folder), world, seed, lockstep=True, pipeline=pipeline)
+        choice = StackChoice(Path(folder), world, seed, lockstep=not real_time, pipeline=pipeline)
         with (
             open_stack(choice) as stack,
             Listener(stack.address, stack.robot) as listener,
             mission_progress(wide_console(stderr=True), "timing") as watch,
+            FrameTimes(stack) as times,
         ):
             result = explore(stack, world, MAP, seed, steps, watch=watch)
     if result.run.status.step < min(20, steps):
         raise ExperimentError(
             f"the mission ended after {result.run.status.step} steps: {result.run.status.reason}"
         )
+    waits = latency(times.frames, times.commands)
     durations = stage_durations_ms(listener.arrivals)
     stages = table(durations)
     rate = rounded(result.run.steps_per_s, 2)
     if json_file is not None:
         counts = {stage: len(d) for stage, d in durations.items()}
         figures = {"steps_per_s": rate, "stages": stages, "machine": machine(), "samples": counts}
+        figures |= {"frame_to_command": waits, "lockstep": not real_time}
         write_json(json_file, {**figures, "steps": result.run.status.step, "nodes": result.run.status.nodes})
     print_rows(f"{rate} steps/s", [{"stage": name, **row} for name, row in stages.items()])
+    print_rows("frame to command", [waits])
 
 
 def machine() -> dict[str, object]:

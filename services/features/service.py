@@ -16,6 +16,7 @@ from services.features.places import Places
 from services.features.robot_streams import RobotStreams
 from services.features.settings import FeaturesSettings
 from shared.bus import Bus, Request
+from shared.freed_memory import keep_freed_memory
 from shared.messages.features import ExtractRequest, Features
 from shared.messages.matching import MatchReply, MatchRequest
 from shared.messages.sensors import Frame
@@ -134,6 +135,7 @@ def _current(robot: RobotStreams, request: MatchRequest) -> Features:
 
 def run(settings: FeaturesSettings, bus: Bus, stop: Event) -> None:
     """Serve until `stop` is set."""
+    keep_freed_memory()
     service = FeatureService(settings, bus)
     bus.announce("features")
     log.info("ready, pipeline %s, robots %s", settings.profile().identity, ", ".join(settings.served))

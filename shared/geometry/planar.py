@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from shared.geometry.angles import FloatArray
-from shared.geometry.planar_fit import PlanarFit, fit_planar, leverage_weights
+from shared.geometry.planar_fit import NoFit, PlanarFit, fit_planar, leverage_weights
 from shared.geometry.planar_model import PlanarMatches, evaluate
 from shared.geometry.rotation_only import RotationFit, fit_yaw
 from shared.geometry.two_view_judge import confidence, log_nfa, parallax_share
@@ -37,10 +36,10 @@ def estimate_planar(
     matches = PlanarMatches.from_lonlat(c, t)
     rotation = fit_yaw(matches, settings.threshold_rad)
     fit = fit_planar(replace(matches, weight=leverage_weights(rotation.residual_rad)), rng, settings)
-    if fit is None:
-        return refused("inconsistent", none)
+    if isinstance(fit, NoFit):
+        return refused("inconsistent", fit.mask)
     threshold = settings.threshold_rad
-    chance, wide_chance = _chance_rates(fit, c, t, [threshold, WIDE * threshold])
+    chance, wide_chance = _chance_rates(fit, matches, [threshold, WIDE * threshold])
     evidence = log_nfa(int(fit.mask.sum()), len(c), chance, 2, 2 * settings.pairs)
     near = _near_misses(fit, matches, chance, wide_chance, threshold)
     if int(fit.mask.sum()) < settings.min_inliers or evidence > settings.max_log_nfa:
@@ -112,21 +111,18 @@ def _accept(
 
 def _disparity_rad(yaw_rad: float, matches: PlanarMatches, mask: BoolArray) -> float:
     """Median angle between the current and the yaw-compensated target bearing over the inliers, radians."""
-    dot = matches.dot[mask] @ np.array([np.cos(yaw_rad), np.sin(yaw_rad), 1.0])
+    level = matches.h_current[mask] * (matches.h_target[mask] * np.exp(1j * yaw_rad)).conj()
+    dot = level.real + matches.z_current[mask] * matches.z_target[mask]
     return float(np.median(np.arccos(np.clip(dot, -1.0, 1.0))))
 
 
-def _chance_rates(
-    fit: PlanarFit, current: FloatArray, target: FloatArray, thresholds: list[float]
-) -> list[float]:
+def _chance_rates(fit: PlanarFit, matches: PlanarMatches, thresholds: list[float]) -> list[float]:
     """Share of wrong pairings that fit the model as well: near the horizon almost anything does.
 
     Wrong pairings are made by shifting the target list against the current one.
     """
-    count = len(current)
-    shifts = np.unique(np.linspace(1, count - 1, CHANCE_SHIFTS).astype(np.intp))
-    order = (np.arange(count)[None, :] + shifts[:, None]) % count
-    wrong = PlanarMatches.from_lonlat(np.tile(current, (len(shifts), 1)), target[order.ravel()])
+    shifts = np.unique(np.linspace(1, len(matches) - 1, CHANCE_SHIFTS).astype(np.intp))
+    wrong = matches.wrongly_paired(shifts)
     result = evaluate(wrong, np.array([fit.phi]), np.array([fit.phi_target]))
     return [float(np.clip(np.mean(result.consistent(x)[0]), 1e-3, 0.999)) for x in thresholds]
 

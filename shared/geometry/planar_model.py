@@ -6,7 +6,9 @@ t = (cos phi, sin phi, 0), b the current bearing and w = Rz(psi) b_target, copla
     (1)  s = z_t rho_c sin(mu_c - phi) - z_c rho_t sin(mu_t - phi') = 0
 
 where (mu, rho, z) are longitude, cosine and sine of latitude. It is linear in
-x = (cos phi, sin phi, cos phi', sin phi'), so all hypotheses meet all matches in one matrix product.
+x = (cos phi, sin phi, cos phi', sin phi'), so all hypotheses meet all matches in one matrix product. With the
+horizontal part of a bearing as the complex number h = rho e^(i mu), all that is needed of a hypothesis is
+h e^(-i phi): its real part is t . b, its imaginary part rho sin(mu - phi).
 
     (2)  Sampson distance   e = s / n,   n^2 = |t x b|^2 + |t x w|^2
 
@@ -22,39 +24,62 @@ import numpy.typing as npt
 from shared.geometry.angles import FloatArray
 from shared.geometry.two_view_types import BoolArray
 
+ComplexArray = npt.NDArray[np.complex128]
+
 
 @dataclass(frozen=True, eq=False)
 class PlanarMatches:
     """Matches prepared for equation (1).
 
     Attributes:
-        rows: (N, 4) coefficients of s over x.
-        h_current: (N, 2) horizontal part of the current bearings.
-        h_target: (N, 2) horizontal part of the target bearings.
-        dot: (N, 3) coefficients of b . w over (cos psi, sin psi, 1).
+        h_current: (N,) horizontal part of the current bearings, complex: x + i y.
+        h_target: (N,) horizontal part of the target bearings.
+        z_current: (N,) vertical part of the current bearings.
+        z_target: (N,) vertical part of the target bearings.
         lon_difference: (N,) mu_c - mu_t, radians.
         weight: (N,) influence of each match on the fit, (0, 1].
     """
 
-    rows: FloatArray
-    h_current: FloatArray
-    h_target: FloatArray
-    dot: FloatArray
+    h_current: ComplexArray
+    h_target: ComplexArray
+    z_current: FloatArray
+    z_target: FloatArray
     lon_difference: FloatArray
     weight: FloatArray
 
     @classmethod
     def from_lonlat(cls, current: FloatArray, target: FloatArray) -> "PlanarMatches":
         """Prepare (N, 2) longitudes and latitudes (rad) of both frames; all weights one."""
-        mu_c, mu_t = current[:, 0], target[:, 0]
-        rho_c, rho_t = np.cos(current[:, 1]), np.cos(target[:, 1])
-        z_c, z_t = np.sin(current[:, 1]), np.sin(target[:, 1])
-        h_c = np.stack([rho_c * np.cos(mu_c), rho_c * np.sin(mu_c)], axis=1)
-        h_t = np.stack([rho_t * np.cos(mu_t), rho_t * np.sin(mu_t)], axis=1)
-        rows = np.stack([z_t * h_c[:, 1], -z_t * h_c[:, 0], -z_c * h_t[:, 1], z_c * h_t[:, 0]], axis=1)
-        delta = mu_c - mu_t
-        dot = np.stack([rho_c * rho_t * np.cos(delta), rho_c * rho_t * np.sin(delta), z_c * z_t], axis=1)
-        return cls(rows, h_c, h_t, dot, delta, np.ones(len(rows)))
+        both = np.stack([current, target])  # (2, N, 2)
+        cos, sin = np.cos(both), np.sin(both)
+        horizontal = (cos[..., 0] + 1j * sin[..., 0]) * cos[..., 1]
+        (h_current, h_target), (z_current, z_target) = horizontal, sin[..., 1]
+        difference = current[:, 0] - target[:, 0]
+        return cls(h_current, h_target, z_current, z_target, difference, np.ones(len(current)))
+
+    def __len__(self) -> int:
+        return len(self.weight)
+
+    @property
+    def rows(self) -> FloatArray:
+        """(N, 4) coefficients of s over x."""
+        c, t = self.h_current * self.z_target, self.h_target * self.z_current
+        return np.stack([c.imag, -c.real, -t.imag, t.real], axis=1)
+
+    def wrongly_paired(self, shifts: npt.NDArray[np.intp]) -> "PlanarMatches":
+        """Every current bearing with the target bearing so many places on, for each of (S,) shifts."""
+        count = len(self)
+        first = np.tile(np.arange(count), len(shifts))
+        second = ((np.arange(count) + shifts[:, None]) % count).ravel()
+        difference = self.lon_difference[first]  # of no use among wrong pairs
+        return PlanarMatches(
+            self.h_current[first],
+            self.h_target[second],
+            self.z_current[first],
+            self.z_target[second],
+            difference,
+            np.ones(len(first)),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,19 +107,37 @@ class Evaluation:
 
 def evaluate(matches: PlanarMatches, phi: FloatArray, phi_target: FloatArray) -> Evaluation:
     """Evaluate hypotheses (H,) phi and (H,) phi' (rad) on every match."""
-    c, s = np.cos(phi), np.sin(phi)
-    ct, st = np.cos(phi_target), np.sin(phi_target)
-    x = np.stack([c, s, ct, st], axis=1)
-    tb = x[:, :2] @ matches.h_current.T
-    tw = x[:, 2:] @ matches.h_target.T
-    norm = np.sqrt(np.maximum(2.0 - tb * tb - tw * tw, 1e-12))
-    # cos and sin of psi = phi - phi' by the addition theorems
-    psi = np.stack([c * ct + s * st, s * ct - c * st, np.ones_like(c)], axis=1)
-    inverse = 1.0 / norm
-    residual = (x @ matches.rows.T) * inverse
-    forward = (tb - tw) * inverse
-    same_side = (psi @ matches.dot.T - tb * tw) * inverse
-    return Evaluation(residual, norm, forward, same_side)
+    return seen_along(matches, phi, phi_target).evaluation(matches)
+
+
+@dataclass(frozen=True, eq=False)
+class Turned:
+    """Horizontal parts turned so that each hypothesis travels along x, (H, N) complex.
+
+    The real part is t . b, the imaginary part rho sin(mu - phi): everything in equations (1) and (2), and the
+    derivatives by phi, are products of these.
+    """
+
+    current: ComplexArray
+    target: ComplexArray
+
+    def evaluation(self, matches: PlanarMatches) -> Evaluation:
+        """Residuals and sides of (H,) hypotheses."""
+        tb, sb, tw, sw = self.current.real, self.current.imag, self.target.real, self.target.imag
+        norm = np.sqrt(np.maximum(2.0 - tb * tb - tw * tw, 1e-12))
+        inverse = 1.0 / norm
+        residual = (matches.z_target * sb - matches.z_current * sw) * inverse
+        forward = (tb - tw) * inverse
+        same_side = (sb * sw + matches.z_current * matches.z_target) * inverse
+        return Evaluation(residual, norm, forward, same_side)
+
+
+def seen_along(matches: PlanarMatches, phi: FloatArray, phi_target: FloatArray) -> Turned:
+    """Both bearings of every match as seen along (H,) phi and (H,) phi', radians."""
+    return Turned(
+        np.multiply.outer(np.exp(-1j * phi), matches.h_current),
+        np.multiply.outer(np.exp(-1j * phi_target), matches.h_target),
+    )
 
 
 def line_scores(
@@ -110,9 +153,9 @@ def line_scores(
     )
     gain = x @ matches.rows.T.astype(np.float32)
     gain *= gain
-    tb = x[:, :2] @ matches.h_current.T.astype(np.float32)
+    tb = x[:, :2] @ _columns(matches.h_current)
     tb *= tb
-    tw = x[:, 2:] @ matches.h_target.T.astype(np.float32)
+    tw = x[:, 2:] @ _columns(matches.h_target)
     tw *= tw
     tb += tw
     np.subtract(2.0, tb, out=tb)
@@ -122,6 +165,11 @@ def line_scores(
     gain += np.float32(1.0)
     np.maximum(gain, np.float32(0.0), out=gain)
     return np.asarray(gain @ matches.weight.astype(np.float32), dtype=np.float64)
+
+
+def _columns(horizontal: ComplexArray) -> npt.NDArray[np.float32]:
+    """(2, N) real and imaginary parts in single precision."""
+    return np.stack([horizontal.real, horizontal.imag]).astype(np.float32)
 
 
 def solve_pairs(rows: FloatArray, pairs: npt.NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:
@@ -138,19 +186,20 @@ def solve_pairs(rows: FloatArray, pairs: npt.NDArray[np.intp]) -> tuple[FloatArr
     Returns:
         phi and phi', (2P,) or fewer, radians; each stands for itself and for the opposite direction.
     """
-    a, b = rows[pairs][:, :, :2], rows[pairs][:, :, 2:]
-    det = b[:, 0, 0] * b[:, 1, 1] - b[:, 0, 1] * b[:, 1, 0]
+    x0, x1, y0, y1 = rows.T
+    i, j = pairs.T
+    det = y0[i] * y1[j] - y1[i] * y0[j]
     keep = np.abs(det) > 1e-9  # matches on the horizon, or on one meridian, say nothing
-    a, b, det = a[keep], b[keep], det[keep]
-    adjugate = np.empty_like(b)
-    adjugate[:, 0, 0], adjugate[:, 1, 1] = b[:, 1, 1], b[:, 0, 0]
-    adjugate[:, 0, 1], adjugate[:, 1, 0] = -b[:, 0, 1], -b[:, 1, 0]
-    m = -(adjugate @ a) / det[:, None, None]
-    g = np.swapaxes(m, 1, 2) @ m
-    trace, half, cross = (g[:, 0, 0] + g[:, 1, 1]) / 2.0 - 1.0, (g[:, 0, 0] - g[:, 1, 1]) / 2.0, g[:, 0, 1]
+    i, j, inverse = i[keep], j[keep], -1.0 / det[keep]
+    m00 = (y1[j] * x0[i] - y1[i] * x0[j]) * inverse
+    m01 = (y1[j] * x1[i] - y1[i] * x1[j]) * inverse
+    m10 = (y0[i] * x0[j] - y0[j] * x0[i]) * inverse
+    m11 = (y0[i] * x1[j] - y0[j] * x1[i]) * inverse
+    g00, g11, cross = m00 * m00 + m10 * m10, m01 * m01 + m11 * m11, m00 * m01 + m10 * m11
+    trace, half = (g00 + g11) / 2.0 - 1.0, (g00 - g11) / 2.0
     radius = np.maximum(np.hypot(half, cross), 1e-12)
     spread = np.arccos(np.clip(-trace / radius, -1.0, 1.0))
     beta = np.arctan2(cross, half)
-    phi = np.concatenate([beta + spread, beta - spread]) / 2.0
-    q = np.concatenate([m, m]) @ np.stack([np.cos(phi), np.sin(phi)], axis=1)[:, :, None]
-    return phi, np.arctan2(q[:, 1, 0], q[:, 0, 0])
+    phi = np.stack([beta + spread, beta - spread]) / 2.0
+    p0, p1 = np.cos(phi), np.sin(phi)
+    return phi.ravel(), np.arctan2(m10 * p0 + m11 * p1, m00 * p0 + m01 * p1).ravel()

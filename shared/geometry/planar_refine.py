@@ -3,9 +3,12 @@
 import numpy as np
 
 from shared.geometry.angles import FloatArray
-from shared.geometry.planar_model import Evaluation, PlanarMatches, evaluate
+from shared.geometry.planar_model import PlanarMatches, seen_along
 
 NOISE_FLOOR_RAD = 5e-4  # a twentieth of a pixel at 800 columns: quantisation, not a model of it
+RIDGE = 1e-9
+Symmetric = tuple[FloatArray, FloatArray, FloatArray]
+"""(K,) matrices of 2 x 2: both diagonal entries outside, the other one between."""
 
 
 def noise_rad(residual: FloatArray, fitted: int = 2) -> float:
@@ -38,14 +41,15 @@ def refine(
     scale = np.full(len(phi), 2.0 * threshold)
     for i in range(iterations):
         residual, jacobian, weight = _linearise(matches, phi, phi_target, threshold, scale)
-        normal = _normal(jacobian, weight)
-        gradient = np.einsum("kn,kni,kn->ki", weight, jacobian, residual)
-        step = np.clip(-(_inverse(normal) @ gradient[:, :, None])[:, :, 0], -0.3, 0.3)
-        phi, phi_target = phi + step[:, 0], phi_target + step[:, 1]
+        weighted = weight * jacobian
+        gradient = _sums(weighted, residual)
+        step = np.clip(-_times(_inverse(_normal(jacobian, weighted)), gradient), -0.3, 0.3)
+        phi, phi_target = phi + step[0], phi_target + step[1]
         if i >= 2:
             scale = _scales(residual, weight, threshold)
     _, jacobian, weight = _linearise(matches, phi, phi_target, threshold, scale)
-    return phi, phi_target, _inverse(_normal(jacobian, weight))
+    a, b, d = _inverse(_normal(jacobian, weight * jacobian))
+    return phi, phi_target, np.stack([a, b, b, d], axis=1).reshape(-1, 2, 2)
 
 
 def _scales(residual: FloatArray, weight: FloatArray, threshold: float) -> FloatArray:
@@ -59,33 +63,50 @@ def _scales(residual: FloatArray, weight: FloatArray, threshold: float) -> Float
 def _linearise(
     matches: PlanarMatches, phi: FloatArray, phi_target: FloatArray, threshold: float, scale: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Residual e (K, N), its derivative (K, N, 2) and weights (K, N).
+    """Residual e (K, N), its derivatives (2, K, N) by phi and phi', and weights (K, N).
 
     The derivative of the denominator matters, de = ds / n + e t.b d(t.b) / n^2: without it noise in b,
     which enters both s and ds, pulls the direction towards the crowd of features when the baseline is short.
     """
-    result = evaluate(matches, phi, phi_target)
-    by_phi = _derivative(phi, matches.rows[:, :2], matches.h_current, result)
-    by_target = _derivative(phi_target, matches.rows[:, 2:], matches.h_target, result)
-    possible = (result.forward >= -threshold) & (result.same_side >= -threshold)
-    weight = np.maximum(1.0 - (result.residual / scale[:, None]) ** 2, 0.0) ** 2 * possible * matches.weight
-    return result.residual, np.stack([by_phi, by_target], axis=2), weight
+    turned = seen_along(matches, phi, phi_target)
+    result = turned.evaluation(matches)
+    inverse = 1.0 / result.norm
+    drag = result.residual * inverse
+    jacobian = np.empty((2, *result.residual.shape))
+    for out, horizontal, height in (
+        (jacobian[0], turned.current, -matches.z_target),
+        (jacobian[1], turned.target, matches.z_current),
+    ):
+        np.multiply(drag, horizontal.imag, out=out)
+        out += height
+        out *= horizontal.real
+    jacobian *= inverse
+    possible = np.minimum(result.forward, result.same_side) >= -threshold
+    ratio = result.residual / scale[:, None]
+    weight = np.maximum(1.0 - ratio * ratio, 0.0)
+    weight *= weight
+    weight *= possible
+    weight *= matches.weight
+    return result.residual, jacobian, weight
 
 
-def _derivative(
-    angle: FloatArray, rows: FloatArray, horizontal: FloatArray, result: Evaluation
-) -> FloatArray:
-    """Derivative (K, N) of e by one of the two angles (K,)."""
-    along = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    across = np.stack([-along[:, 1], along[:, 0]], axis=1)
-    denominator = (along @ horizontal.T) * (across @ horizontal.T) / result.norm
-    return (across @ rows.T + result.residual * denominator) / result.norm
+def _sums(weighted: FloatArray, values: FloatArray) -> FloatArray:
+    """Sums (2, K) over the matches of weighted derivatives times (K, N) values."""
+    return np.asarray(np.einsum("ikn,kn->ik", weighted, values), dtype=np.float64)
 
 
-def _normal(jacobian: FloatArray, weight: FloatArray) -> FloatArray:
-    normal: FloatArray = np.einsum("kn,kni,knj->kij", weight, jacobian, jacobian)
-    return normal + 1e-9 * np.eye(2)  # a degenerate model gets a huge covariance, not an exception
+def _normal(jacobian: FloatArray, weighted: FloatArray) -> Symmetric:
+    """Normal matrices; a degenerate model gets a huge covariance, not an exception."""
+    by_phi, by_target = _sums(weighted, jacobian[0]), _sums(weighted[1:], jacobian[1])
+    return by_phi[0] + RIDGE, by_phi[1], by_target[0] + RIDGE
 
 
-def _inverse(normal: FloatArray) -> FloatArray:
-    return np.asarray(np.linalg.inv(normal), dtype=np.float64)
+def _inverse(matrix: Symmetric) -> Symmetric:
+    a, b, d = matrix
+    inverse = 1.0 / (a * d - b * b)
+    return d * inverse, -b * inverse, a * inverse
+
+
+def _times(matrix: Symmetric, vector: FloatArray) -> FloatArray:
+    a, b, d = matrix
+    return np.stack([a * vector[0] + b * vector[1], b * vector[0] + d * vector[1]])

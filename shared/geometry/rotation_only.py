@@ -31,24 +31,22 @@ def fit_yaw(matches: PlanarMatches, threshold_rad: float) -> RotationFit:
     """
     reach = np.cos(3.0 * threshold_rad)
     proposals = matches.lon_difference
-    unit = np.stack([np.cos(proposals), np.sin(proposals), np.ones_like(proposals)], axis=1)
-    close = unit @ matches.dot.T >= reach
-    yaw = float(proposals[int(np.argmax(close.sum(axis=1)))])
-    weight = np.hypot(matches.dot[:, 0], matches.dot[:, 1])  # near the poles a longitude says little
-    mask = close[int(np.argmax(close.sum(axis=1)))]
+    level = matches.h_current * matches.h_target.conj()
+    upright = matches.z_current * matches.z_target
+    close = np.multiply.outer(np.exp(-1j * proposals), level).real >= reach - upright
+    best = int(np.argmax(close.sum(axis=1)))
+    yaw, mask = float(proposals[best]), close[best]
+    weight = np.abs(level)  # near the poles a longitude says little
+    turned = level * np.exp(-1j * yaw)
     for _ in range(3):
-        offset = wrap_rad(proposals - yaw)[mask]
-        yaw += float(np.sum(weight[mask] * offset) / max(float(np.sum(weight[mask])), 1e-12))
-        residual = _residual(matches, yaw)
+        share = weight[mask]
+        yaw += float(np.sum(share * np.angle(turned[mask])) / max(float(np.sum(share)), 1e-12))
+        turned = level * np.exp(-1j * yaw)
+        residual = np.arccos(np.clip(turned.real + upright, -1.0, 1.0))
         mask = residual <= 3.0 * threshold_rad
         if not mask.any():
             break
-    spread = wrap_rad(proposals - yaw)[mask] * weight[mask]
-    total = max(float(np.sum(weight[mask])), 1e-12)
-    std = float(np.sqrt(np.sum(spread**2)) / total)
+    share = weight[mask]
+    spread = np.angle(turned[mask]) * share
+    std = float(np.sqrt(np.sum(spread**2)) / max(float(np.sum(share)), 1e-12))
     return RotationFit(float(wrap_rad(yaw)), residual, mask, std)
-
-
-def _residual(matches: PlanarMatches, yaw: float) -> FloatArray:
-    dot = matches.dot @ np.array([np.cos(yaw), np.sin(yaw), 1.0])
-    return np.asarray(np.arccos(np.clip(dot, -1.0, 1.0)), dtype=np.float64)

@@ -9,7 +9,8 @@ import pytest
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(600)]
 
 
-def test_bench_loop_reports_rate_stages_and_machine(repository, tmp_path):
+@pytest.mark.parametrize("real_time", [False, True], ids=["lockstep", "real time"])
+def test_bench_loop_reports_rate_stages_and_machine(repository, tmp_path, real_time):
     figures = tmp_path / "bench.json"
     command = [
         sys.executable,
@@ -21,12 +22,17 @@ def test_bench_loop_reports_rate_stages_and_machine(repository, tmp_path):
         "30",
         "--json",
         str(figures),
+        *(["--real-time"] if real_time else []),
     ]
     answer = subprocess.run(command, cwd=repository, capture_output=True, text=True, timeout=500)
     assert answer.returncode == 0, answer.stderr
     report = json.loads(figures.read_text())
     assert report["steps_per_s"] > 0.0
     promised = {"render", "transport", "extract", "match", "verify", "plan", "drive"}
-    assert promised <= report["stages"].keys()
+    assert real_time or promised <= report["stages"].keys()
+    waits = report["frame_to_command"]
+    assert report["lockstep"] is not real_time
+    assert 0.0 < waits["p50_ms"] <= waits["p99_ms"]
+    assert 0.0 < waits["answered"] <= 1.0
     assert all(row["p99_ms"] >= row["p50_ms"] >= 0.0 for row in report["stages"].values())
     assert {"processor", "cpus", "memory_gb"} <= report["machine"].keys()

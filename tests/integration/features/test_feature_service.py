@@ -1,5 +1,7 @@
 """The feature service on a real bus: frames in, features out, questions answered or refused."""
 
+import threading
+
 import cv2
 import numpy as np
 import pytest
@@ -168,3 +170,31 @@ def test_junk_is_refused_and_the_service_goes_on(bus: Bus) -> None:
 
 def render_jpeg(width: int) -> bytes:
     return cv2.imencode(".jpg", np.zeros((width // 2, width, 3), np.uint8))[1].tobytes()
+
+
+@pytest.mark.usefixtures("service")
+def test_questions_are_answered_while_frames_come_faster_than_they_are_extracted(bus: Bus) -> None:
+    current = extract(bus, frame_at(0.0, 0.0))
+    data, stop = bytes(frame_at(0.0, 0.0).data), threading.Event()
+    publisher, features = bus.publisher(FRAME, robot="r1"), bus.subscribe(FEATURES, robot="r1")
+
+    def send() -> None:
+        seq = 0
+        while not stop.wait(0.005):
+            seq += 1
+            publisher.put(
+                Frame(
+                    robot="r1", seq=seq, stamp_ns=seq, encoding="jpeg", width_px=512, height_px=256, data=data
+                )
+            )
+
+    sender = threading.Thread(target=send)
+    sender.start()
+    try:
+        assert features.wait(10.0) is not None
+        for _ in range(5):
+            assert match(bus, features=current, targets=(current,)).results[0].status == "no_baseline"
+        assert features.take() is not None  # and frames went on being extracted
+    finally:
+        stop.set()
+        sender.join()

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from shared.geometry import planar_fit
 from shared.geometry.planar import estimate_planar
 from shared.geometry.planar_fit import leverage_weights
 from shared.geometry.planar_model import PlanarMatches, evaluate, solve_pairs
@@ -101,7 +102,7 @@ def test_derivative_agrees_with_finite_differences():
     h = 1e-6
     by_phi = (residual(0.3 + h, 1.1) - residual(0.3 - h, 1.1)) / (2 * h)
     by_target = (residual(0.3, 1.1 + h) - residual(0.3, 1.1 - h)) / (2 * h)
-    np.testing.assert_allclose(jacobian[0], np.stack([by_phi, by_target], axis=1), atol=1e-8)
+    np.testing.assert_allclose(jacobian[:, 0], [by_phi, by_target], atol=1e-8)
 
 
 @pytest.mark.parametrize(
@@ -251,3 +252,47 @@ def test_time_of_one_estimation_is_reported(record_property):
         run(scene, seed)
         times.append(time.perf_counter() - begin)
     record_property("planar_ms_median", 1e3 * float(np.median(times)))
+
+
+FLAT = TwoViewSettings(fallback=False)
+"""Without a fallback that wants to know how near the best model came, hopeless ones are not refined."""
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        pytest.param({"count": 60, "outliers": 36}, id="60 with 36 wrong"),
+        pytest.param({"count": 20, "outliers": 8, "noise_deg": 0.3}, id="20 with 8 wrong"),
+        pytest.param({"count": 12, "outliers": 3}, id="12 with 3 wrong"),
+        pytest.param({"count": 20, "outliers": 20}, id="all wrong"),
+    ],
+)
+def test_giving_hopeless_matches_up_early_changes_no_answer(scene):
+    rng = np.random.default_rng(5)
+    for made in [make_scene(rng, **scene) for _ in range(40)]:
+        early, late = run(made, 0, FLAT), run(made, 0, LIMITS)
+        assert early.status == late.status
+        if early.usable:
+            assert (early.heading_rad, early.inliers) == (late.heading_rad, late.inliers)
+
+
+def test_hopeless_matches_are_not_refined(monkeypatch):
+    refined = []
+    refine = planar_fit.refine
+    monkeypatch.setattr(planar_fit, "refine", lambda *given: refined.append(1) or refine(*given))
+    rng = np.random.default_rng(3)
+    wrong = [make_scene(rng, count=17, outliers=17) for _ in range(50)]
+    right = [make_scene(rng, count=30, outliers=10) for _ in range(50)]
+    for scene in wrong:
+        run(scene, 0, FLAT)
+    after_wrong = len(refined)
+    assert after_wrong <= 10
+    for scene in right:
+        assert run(scene, 0, FLAT).usable
+    assert len(refined) - after_wrong == 50
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 6, 17, 100])
+def test_lower_quartile_is_that_of_numpy(count):
+    values = np.random.default_rng(count).normal(size=count)
+    assert planar_fit._lower_quartile(values) == pytest.approx(np.quantile(values, 0.25), rel=1e-12)
