@@ -30,7 +30,7 @@ demo: setup
 	KEEP=$(KEEP) $(BIN)/topnav demo
 
 test: setup
-	$(BIN)/python -m pytest --ignore=tests/faults $(PYTEST_ARGS)
+	$(BIN)/python -m pytest --ignore=tests/faults --ignore=tests/benchmarks $(PYTEST_ARGS)
 
 faults: setup
 	$(BIN)/python -m pytest tests/faults $(PYTEST_ARGS)
@@ -50,7 +50,8 @@ bench: setup
 	$(BIN)/topnav bench loop --real-time --json runs/bench/loop-real-time.json
 	$(BIN)/topnav study scale --json runs/bench/scale.json --plot runs/bench/scale.png
 	$(BIN)/python -m pytest -q -s tests/benchmarks/test_console_graph.py tests/benchmarks/test_rendering.py
-	$(BIN)/python -m pytest -q -s tests/benchmarks/test_gateway_load.py tests/benchmarks/test_secured_bus.py
+	$(BIN)/python -m pytest -q -s tests/benchmarks/test_gateway_load.py tests/benchmarks/test_secured_bus.py \
+		tests/benchmarks/test_map_store_databases.py
 
 fuzz: setup
 	$(BIN)/python -m tests.fuzz $(FUZZ_ARGS)

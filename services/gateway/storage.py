@@ -20,6 +20,7 @@ from shared.bus_security import MAP_STORE_HOST, credentials_in, secured_url
 from shared.openapi import MEDIA_TYPE
 
 AUTHOR = "x-topnav-author"
+AUTHOR_CHARACTERS = 64
 SENT_ON = ("accept", "content-type", "if-match", "if-none-match", AUTHOR)
 SENT_BACK = ("content-type", "content-length", "content-disposition", "etag", "cache-control", "location")
 MAX_PROBLEM_BYTES = 64_000
@@ -185,8 +186,12 @@ async def _limited(request: Request, settings: GatewaySettings) -> AsyncIterator
         yield chunk
 
 
+def author_of(request: Request) -> str:
+    """Who stands in a map's history: the token's name where there is one, else who the request says it is."""
+    return person_of(request).name or request.headers.get(AUTHOR, "")[:AUTHOR_CHARACTERS]
+
+
 def _headers(request: Request) -> dict[str, str]:
-    """What is passed on; the author in a map's history is the token's name where there is one."""
     headers = {name: request.headers[name] for name in SENT_ON if name in request.headers}
     if name := person_of(request).name:
         headers[AUTHOR] = name

@@ -22,8 +22,8 @@ class MergeDesk:
         self._merges: dict[str, Merge] = {}
         self._running: tuple[Merge, asyncio.Task[None]] | None = None
 
-    def start(self, base: ReadMap, other: ReadMap) -> MergeAnswer:
-        """Begin to add `other` to `base`.
+    def start(self, base: ReadMap, other: ReadMap, author: str) -> MergeAnswer:
+        """Begin to add `other` to `base`; `author` stands in the history.
 
         Raises:
             ProblemError: 409, one is running.
@@ -37,7 +37,7 @@ class MergeDesk:
                 got=f"{merge.answer.other} is being merged into {merge.answer.map}",
                 next_step="wait for it or cancel it",
             )
-        merge = Merge(self._gateway, base, other)
+        merge = Merge(self._gateway, base, other, author)
         task = asyncio.create_task(merge.run())
         self._running = merge, task
         task.add_done_callback(self._ended)

@@ -17,7 +17,6 @@ from shared.messages.maps import MapRequest
 from shared.messages.matching import MatchRequest, NodeMatch
 from shared.topics import MAP, MATCH
 
-AUTHOR = "gateway"
 BEST_K = 5
 CHUNK = 32
 """Places whose features are read at once."""
@@ -51,10 +50,10 @@ class MergeAnswer(BaseModel):
 
 
 class Merge:
-    """Adds one map to another; `answer` says where that stands."""
+    """Adds one map to another in the name of `author`; `answer` says where that stands."""
 
-    def __init__(self, gateway: Gateway, base: ReadMap, other: ReadMap) -> None:
-        self._gateway, self._base, self._other = gateway, base, other
+    def __init__(self, gateway: Gateway, base: ReadMap, other: ReadMap, author: str) -> None:
+        self._gateway, self._base, self._other, self._author = gateway, base, other, author
         self.answer = MergeAnswer(
             map=base.name,
             other=other.name,
@@ -96,7 +95,7 @@ class Merge:
         self.answer = self.answer.model_copy(update={"state": "writing", "cross_edges": len(chosen)})
         wish = MapRequest(
             action="transact",
-            author=AUTHOR,
+            author=self._author,
             base_revision=self._base.revision,
             operations=tuple(operations),
         )

@@ -12,6 +12,7 @@ from services.gateway.merging.job import MergeAnswer
 from services.gateway.merging.reading import ReadMap, read_map
 from services.gateway.problems import ProblemError
 from services.gateway.state import GatewayDep, MapPath
+from services.gateway.storage import author_of
 
 router = APIRouter(tags=["maps"])
 
@@ -24,6 +25,7 @@ class StartMerge(BaseModel):
     other: str = Field(pattern=r"^[a-z0-9_-]{1,64}$")
 
 
+UNSIGNED = "gateway"
 _CONTENT = {"application/json": {"schema": StartMerge.model_json_schema()}}
 BODY: dict[str, Any] = {"requestBody": {"required": True, "content": _CONTENT}}
 
@@ -51,7 +53,7 @@ async def start_merge(
     base, other = await read_map(gateway, map_name), await read_map(gateway, wish.other)
     _check_pipelines(base, other)
     response.headers["Location"] = f"/api/maps/{map_name}/merge"
-    return merges.start(base, other)
+    return merges.start(base, other, author_of(request) or UNSIGNED)
 
 
 @router.get("/api/maps/{map_name}/merge")

@@ -196,6 +196,15 @@ def test_places_keep_what_they_look_like_and_what_is_known_of_them(
     assert {edge.traversals for edge in whole.edges if edge.why == "seen"} == {3}
 
 
+@pytest.mark.parametrize(("headers", "author"), [({"X-Topnav-Author": "anna"}, "anna"), ({}, "gateway")])
+def test_a_merge_is_made_in_the_name_of_who_asked(
+    http: httpx.Client, headers: dict[str, str], author: str
+) -> None:
+    assert http.post("/api/maps/hall/merge", json={"other": "wing"}, headers=headers).status_code == 202
+    assert ended(http, "hall")["state"] == "done"
+    assert http.get("/api/maps/hall/revisions").json()[0]["author"] == author
+
+
 def test_an_undo_takes_the_whole_merge_back(http: httpx.Client, robot_bus: Bus) -> None:
     before = ask(robot_bus, "hall", action="read")
     merge(http, "hall", "wing")
