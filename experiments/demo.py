@@ -1,9 +1,7 @@
 """`topnav demo`: explore an apartment nobody has seen, then find a hidden robot from one uploaded picture."""
 
 import os
-import signal
 import socket
-import threading
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -28,6 +26,7 @@ from experiments.stack import Stack, StackChoice, open_stack
 from experiments.tables import print_rows, wide_console
 from experiments.truth_file import save_truth, truth_path
 from services.launcher.stack_settings import HOST, Ports
+from shared.lifecycle import stop_on_signals
 from shared.messages import MissionStatus
 from simulator.freespace import FreeSpace, free_space
 from simulator.world_file import WorldFile, load_world
@@ -145,7 +144,4 @@ def _usual_ports() -> Ports:
 
 def _wait(console: Console, text: str) -> None:
     console.print(text, highlight=False)
-    stop = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
-    stop.wait()
+    stop_on_signals().wait()

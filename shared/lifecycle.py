@@ -2,8 +2,8 @@
 
 import json
 import logging
-import queue
 import signal
+import socket
 import sys
 import threading
 import time
@@ -14,6 +14,8 @@ from shared.bus_security import CredentialsError
 from shared.settings import ServiceSettings
 
 log = logging.getLogger(__name__)
+
+STOPPING = (signal.SIGINT, signal.SIGTERM)
 
 
 class JsonFormatter(logging.Formatter):
@@ -46,23 +48,28 @@ def configure_logging(service: str, level: str) -> None:
 
 
 def stop_on_signals() -> threading.Event:
-    """An event that SIGINT and SIGTERM set.
+    """An event that SIGINT and SIGTERM set, whatever the main thread does. To be called in the main thread.
 
-    A handler runs in the middle of whatever the main thread does, and that may be `stop.wait`, which holds
-    the event's lock for a moment: setting the event right there would wait for that lock for ever. So the
-    handler only puts into a SimpleQueue, which may be interrupted anywhere, and a thread sets the event.
+    A handler written in Python runs in the main thread, between two of its steps. It cannot set the event:
+    that thread may be inside `stop.wait`, holding the event's lock. And it may never run: a signal that comes
+    just before the thread blocks does not wake it. So the interpreter is asked to write each signal's number
+    into a socket at the moment it comes, and a thread of its own reads it there.
     """
     stop = threading.Event()
-    asked: queue.SimpleQueue[int] = queue.SimpleQueue()
-
-    def forward() -> None:
-        asked.get()
-        stop.set()
-
-    threading.Thread(target=forward, name="signals", daemon=True).start()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda received, _frame: asked.put(received))
+    reader, writer = socket.socketpair()
+    writer.setblocking(False)
+    threading.Thread(target=_forward, args=(reader, writer, stop), name="signals", daemon=True).start()
+    signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
+    for number in STOPPING:
+        signal.signal(number, lambda *_: None)
     return stop
+
+
+def _forward(reader: socket.socket, _writer: socket.socket, stop: threading.Event) -> None:
+    """Set `stop` when a stopping signal arrives. Both ends stay open for as long as signals may come."""
+    while received := reader.recv(64):
+        if any(number in STOPPING for number in received):
+            stop.set()
 
 
 def run_service(

@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -20,7 +19,7 @@ from services.launcher.stack_settings import Ports, StackSettings, located
 from services.launcher.state import AlreadyRunningError, ServiceStatus, StackState, StateFolder
 from services.launcher.supervisor import Launcher
 from services.launcher.wait import LaunchError
-from shared.lifecycle import JsonFormatter
+from shared.lifecycle import JsonFormatter, stop_on_signals
 
 POLL_S = 0.1
 
@@ -32,9 +31,7 @@ def variables_with_dotenv(folder: Path) -> dict[str, str]:
 
 def run_foreground(settings: StackSettings, compose_file: Path, timeout_s: float) -> None:
     """Run until SIGINT or SIGTERM. Raises LaunchError when the stack does not come up."""
-    stop = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
+    stop = stop_on_signals()
     console, changes = Console(), Changes()
     variables = variables_with_dotenv(compose_file.parent)
 

@@ -6,11 +6,13 @@ import os
 import signal
 import subprocess
 import sys
+import threading
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from shared.lifecycle import JsonFormatter, stop_on_signals
+from shared.lifecycle import STOPPING, JsonFormatter, stop_on_signals
 
 SERVICE = """
 import sys
@@ -59,19 +61,42 @@ def test_errors_are_logged_with_their_traceback():
     assert "ValueError: broken" in json.loads(JsonFormatter("drive").format(record))["error"]
 
 
-def test_a_signal_sets_the_event_even_in_the_middle_of_waiting_for_it():
-    before = signal.getsignal(signal.SIGTERM), signal.getsignal(signal.SIGINT)
+@pytest.fixture
+def stop() -> Iterator[threading.Event]:
+    before = {number: signal.getsignal(number) for number in STOPPING}
+    yield stop_on_signals()
+    signal.set_wakeup_fd(-1)
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+def test_a_signal_sets_the_event_even_in_the_middle_of_waiting_for_it(stop: threading.Event):
+    with stop._cond:  # as it is for a moment inside stop.wait
+        os.kill(os.getpid(), signal.SIGTERM)
+    assert stop.wait(5.0)
+
+
+@pytest.mark.parametrize("number", STOPPING)
+def test_a_signal_that_does_not_interrupt_the_wait_ends_it(stop: threading.Event, number: signal.Signals):
+    """As one that comes just before the main thread blocks: blocked there, another thread receives it."""
+    threading.Timer(0.2, os.kill, (os.getpid(), number)).start()
+    signal.pthread_sigmask(signal.SIG_BLOCK, [number])
     try:
-        stop = stop_on_signals()
-        with stop._cond:  # as it is for a moment inside stop.wait
-            os.kill(os.getpid(), signal.SIGTERM)
         assert stop.wait(5.0)
     finally:
-        signal.signal(signal.SIGTERM, before[0])
-        signal.signal(signal.SIGINT, before[1])
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, [number])
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_other_signals_stop_nothing(stop: threading.Event):
+    before = signal.signal(signal.SIGUSR1, lambda *_: None)
+    try:
+        os.kill(os.getpid(), signal.SIGUSR1)
+        assert not stop.wait(0.3)
+    finally:
+        signal.signal(signal.SIGUSR1, before)
+
+
+@pytest.mark.parametrize("number", STOPPING)
 def test_a_service_with_callbacks_stops_cleanly_on_a_signal(
     repository: Path, router_endpoint: str, number: signal.Signals
 ):
