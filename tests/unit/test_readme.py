@@ -1,4 +1,4 @@
-"""What the README shows is what the repository holds and what the code accepts."""
+"""What the README and the pages in deploy show is what the repository holds and what the code accepts."""
 
 import re
 
@@ -8,15 +8,18 @@ import pytest
 from services.features.extraction import extract
 from services.features.pipelines import Profile
 from services.features.registry import create_representation
-from simulator.world_file import load_world
-from tests.readme import README, examples
+from tests.readme import PAGES, README, REPOSITORY, examples
 
+FEATURES_PAGE = REPOSITORY / "deploy" / "FEATURES.md"
+SETTINGS_PAGE = REPOSITORY / "deploy" / "SETTINGS.md"
+VARIABLE = re.compile(r"`(TOPNAV_[A-Z_]+)`")
 LINK = re.compile(r"\]\((?!https?:)([^)#]+)\)")
 
 
-def test_links_and_pictures_lead_to_files():
-    targets = LINK.findall(README.read_text(encoding="utf-8"))
-    assert [target for target in targets if not (README.parent / target).exists()] == []
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(REPOSITORY)))
+def test_links_and_pictures_lead_to_files(page):
+    targets = LINK.findall(page.read_text(encoding="utf-8"))
+    assert [target for target in targets if not (page.parent / target).exists()] == []
 
 
 def test_the_errand_is_the_script_that_the_end_to_end_tests_run(repository):
@@ -24,24 +27,22 @@ def test_the_errand_is_the_script_that_the_end_to_end_tests_run(repository):
     assert examples("bash")[1] == script[script.index("map=$1") :]
 
 
-def test_the_world_loads(tmp_path):
-    (text,) = examples("yaml")
-    (tmp_path / "studio.yaml").write_text(text, encoding="utf-8")
-    world = load_world(str(tmp_path / "studio.yaml"))
-    assert [item.kind for item in world.furniture] == ["bookshelf", "picture", "ceiling_light"]
-
-
 def test_the_extractor_works_as_a_plugin():
-    (source,) = examples("python")
+    (source,) = examples("python", FEATURES_PAGE)
     names: dict[str, type] = {}
-    exec(compile(source, "README.md", "exec"), names)
+    exec(compile(source, FEATURES_PAGE, "exec"), names)
     profile = Profile("brisk", keypoints=50)
     picture = np.random.default_rng(1).integers(0, 255, (128, 256, 3), dtype=np.uint8)
     words = extract(picture, names["Brisk"](profile), create_representation(profile), profile)
     assert words.descriptors.shape == (50, 64)
 
 
-@pytest.mark.parametrize("variable", re.findall(r"`(TOPNAV_[A-Z_]+)`", README.read_text(encoding="utf-8")))
+NAMED = {
+    name for page in (README, SETTINGS_PAGE) for name in VARIABLE.findall(page.read_text(encoding="utf-8"))
+}
+
+
+@pytest.mark.parametrize("variable", sorted(NAMED))
 def test_the_settings_named_exist(repository, variable):
     places = [repository / "docker-compose.yml", *(repository / "services/launcher").glob("*.py")]
     assert any(variable in place.read_text(encoding="utf-8") for place in places)

@@ -25,8 +25,3 @@ def test_example_of_the_page_has_no_faults(tmp_path):
 def test_tables_are_those_of_the_code():
     page = PAGE.read_text(encoding="utf-8")
     assert renewed(page) == page, "run: topnav world kinds --into deploy/WORLDS.md"
-
-
-def test_links_lead_somewhere():
-    for link in re.findall(r"\]\(([^)#]+)\)", PAGE.read_text(encoding="utf-8")):
-        assert (PAGE.parent / link).exists(), link
