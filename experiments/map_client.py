@@ -14,10 +14,12 @@ TIMEOUT_S = 30.0
 
 
 def read_map(stack: Stack, name: str) -> MapReply | None:
-    """Nodes and edges of a map; None when there is no such map."""
+    """Nodes and edges of a map; None when there is no such map, ExperimentError when it cannot be read."""
     try:
         return stack.bus.ask(MAP, MapRequest(action="read"), TIMEOUT_S, map=name)
-    except RefusedError:
+    except RefusedError as error:
+        if not error.may_be_missing:
+            raise ExperimentError(str(error)) from error
         return None
 
 

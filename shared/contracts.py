@@ -11,6 +11,7 @@ from typing import Any
 
 from shared.messages import ALL, Message
 from shared.messages.base import SECTORS
+from shared.queries import CODED, REASONS
 from shared.topics import NAME, QUERIES, TOPICS, Query, Topic
 
 FOLDER = Path("deploy/contracts")
@@ -33,6 +34,10 @@ def index() -> dict[str, Any]:
         "sectors": SECTORS,
         "topics": [_topic(topic) for topic in TOPICS],
         "queries": [_query(query) for query in QUERIES],
+        "refusals": {
+            "means": f"an error reply: UTF-8 text for people, with the Zenoh encoding {CODED}CODE",
+            "codes": REASONS,
+        },
         "liveliness": "topnav/alive/{service}/{instance}",
     }
 

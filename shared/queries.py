@@ -20,6 +20,8 @@ log = logging.getLogger(__name__)
 MAX_WAITING = 256
 MEETING_S = 1.5
 MEETING_PERIOD_S = 0.1
+CODED = "text/plain;"
+"""Zenoh encoding of a refusal: after it stands its code, "" in older services."""
 
 
 class QueryError(RuntimeError):
@@ -35,7 +37,33 @@ class TimedOutError(QueryError):
 
 
 class RefusedError(QueryError):
-    """The service answered with an error; the text is its own."""
+    """The service answered with an error; the text is its own.
+
+    Attributes:
+        code: what kind of reason it is, for programs: one of `REASONS`, or "" where the service gave none.
+    """
+
+    def __init__(self, text: str, code: str = "") -> None:
+        super().__init__(text)
+        self.code = code
+
+    @property
+    def may_be_missing(self) -> bool:
+        """Whether what was asked about may not be there; services from before codes give none."""
+        return self.code in ("missing", "")
+
+
+REASONS = {
+    "missing": "what the question is about is not there",
+    "conflict": "it is there already, or has changed since it was read",
+    "invalid": "the question can never be answered as it stands",
+    "corrupt": "what is stored is damaged",
+    "storage-full": "nothing can be written, reads go on",
+    "passing": "it is about a moment that is gone or not there yet; ask about the newest",
+    "unavailable": "what the service depends on does not answer; the same question may succeed later",
+    "busy": "too many questions wait; the same question may succeed later",
+}
+"""Codes of refusals; services may add some, so an asker must bear with ones it does not know."""
 
 
 class Request(Generic[Q, R]):
@@ -49,10 +77,9 @@ class Request(Generic[Q, R]):
         with self._query as query:
             query.reply(query.key_expr, encode(answer))
 
-    def refuse(self, reason: str) -> None:
-        """Send an error the asker raises as RefusedError."""
-        with self._query as query:
-            query.reply_err(reason.encode())
+    def refuse(self, reason: str, code: str = "") -> None:
+        """Send an error the asker raises as RefusedError, with one of `REASONS` as its code."""
+        _reply_error(self._query, reason, code)
 
     def leave(self) -> None:
         """Say nothing: the asker gets the answer of whoever else is asked."""
@@ -83,8 +110,7 @@ class Requests(Generic[Q, R]):
                 self._waiting_bytes += length
         if full:
             self._counters.count("overflow", f"{self._query.template}: {len(self._waiting)} questions wait")
-            with query:
-                query.reply_err(b"busy: too many questions wait, ask again later")
+            _reply_error(query, "busy: too many questions wait, ask again later", "busy")
             return
         self._wake.set()
 
@@ -115,8 +141,7 @@ class Requests(Generic[Q, R]):
 
     def _refuse(self, query: zenoh.Query, reason: str) -> None:
         self._counters.count("malformed", reason)
-        with query:
-            query.reply_err(f"malformed request: {reason}".encode())
+        _reply_error(query, f"malformed request: {reason}", "invalid")
 
 
 def ask(session: zenoh.Session, query: Query[Q, R], key: str, request: Q, timeout_s: float) -> R:
@@ -141,10 +166,16 @@ def ask(session: zenoh.Session, query: Query[Q, R], key: str, request: Q, timeou
 def _read(query: Query[Q, R], key: str, answer: zenoh.Reply, timeout_s: float) -> R:
     if answer.ok is not None:
         return decode(query.reply, answer.ok.payload.to_bytes(), query.max_bytes)
-    text = answer.err.payload.to_bytes().decode(errors="replace") if answer.err is not None else ""
+    assert answer.err is not None
+    text, encoding = answer.err.payload.to_bytes().decode(errors="replace"), str(answer.err.encoding)
     if text == "Timeout":
         raise TimedOutError(f"{key}: no answer within {timeout_s} s")
-    raise RefusedError(text)
+    raise RefusedError(text, encoding.removeprefix(CODED) if encoding.startswith(CODED) else "")
+
+
+def _reply_error(query: zenoh.Query, reason: str, code: str) -> None:
+    with query:
+        query.reply_err(reason.encode(), encoding=zenoh.Encoding(CODED + code) if code else None)
 
 
 def _length(query: zenoh.Query) -> int:

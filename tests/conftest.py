@@ -3,6 +3,7 @@
 import socket
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -49,6 +50,15 @@ def postgres() -> Iterator[PostgresServer]:
         yield server
     finally:
         server.close()
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """A headless Chromium; tests of the console are skipped as a whole where there is none."""
+    from tests.browser import chromium  # skips whoever imports it where playwright is not installed
+
+    with chromium() as opened:
+        yield opened
 
 
 @pytest.fixture

@@ -16,3 +16,5 @@ RUN useradd --system --uid 10001 topnav \
 USER topnav
 # The root file system is read-only: caches go to the tmpfs.
 ENV HOME=/tmp PYTHONDONTWRITEBYTECODE=1 PYTHONUNBUFFERED=1
+# The tmpfs is memory: places of large maps wait on the volume, 22 kB each, in files that go with the process.
+ENV TMPDIR=/var/lib/topnav/models

@@ -13,7 +13,15 @@ from shared.messages.matching import MatchRequest, NodeMatch
 
 
 class RequestError(ValueError):
-    """A question that cannot be answered as asked; the text says why."""
+    """A question that cannot be answered as asked; the text says why, `code` for programs."""
+
+    code = ""
+
+
+class FrameNotKeptError(RequestError):
+    """It is about a frame that was dropped, is too old, or has not arrived yet."""
+
+    code = "passing"
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,5 @@
 """Packed places in a file that is mapped into memory: the operating system keeps in RAM what is used."""
 
-from pathlib import Path
 from tempfile import TemporaryFile
 
 import numpy as np
@@ -14,8 +13,8 @@ FIRST_CAPACITY = 256
 class PlaceRecords:
     """A growing row of records. The file has no name, so it is gone when nobody uses it."""
 
-    def __init__(self, packing: Packing, folder: Path | None = None) -> None:
-        self._packing, self._folder = packing, folder
+    def __init__(self, packing: Packing) -> None:
+        self._packing = packing
         self._records = self._mapped(FIRST_CAPACITY)
         self._written = 0
 
@@ -43,6 +42,6 @@ class PlaceRecords:
         return self._packing.unpack(self._records[slot])
 
     def _mapped(self, capacity: int) -> np.memmap[tuple[int], np.dtype[np.void]]:
-        with TemporaryFile(dir=self._folder) as file:
+        with TemporaryFile() as file:
             file.truncate(capacity * self._packing.record.itemsize)
             return np.memmap(file, dtype=self._packing.record, mode="r+", shape=(capacity,))

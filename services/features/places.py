@@ -1,10 +1,11 @@
 """The places of one map as the feature service keeps them: packed words, and an index to find them by."""
 
-from pathlib import Path
+from typing import Self
 
 from services.features.interfaces import Distance, FeatureSet, Float32Array
 from services.features.matching import as_vectors
 from services.features.packing import Packing
+from services.features.pipeline import Pipeline
 from services.features.place_records import PlaceRecords
 from services.features.retrieval.index import PlaceIndex
 from services.features.verification import feature_set
@@ -18,17 +19,21 @@ class Places:
         pipeline: identity of the pipeline in use.
         keypoints: most words of a place.
         distance: of its descriptors.
-        folder: where the words may be kept; None = where temporary files are.
     """
 
-    def __init__(self, pipeline: str, keypoints: int, distance: Distance, folder: Path | None = None) -> None:
-        self._pipeline, self._keypoints, self._distance, self._folder = pipeline, keypoints, distance, folder
+    def __init__(self, pipeline: str, keypoints: int, distance: Distance) -> None:
+        self._pipeline, self._keypoints, self._distance = pipeline, keypoints, distance
         self._records: PlaceRecords | None = None
         self._slots: dict[int, int] = {}
         self._nodes: dict[int, int] = {}
         self._free: list[int] = []
         self._others: dict[int, str] = {}
         self._index = PlaceIndex(self._vectors_of)
+
+    @classmethod
+    def of(cls, pipeline: Pipeline) -> Self:
+        """No places yet, for those that a pipeline makes."""
+        return cls(pipeline.identity, pipeline.profile.keypoints, pipeline.extractor.distance)
 
     def __len__(self) -> int:
         return len(self._slots) + len(self._others)
@@ -63,9 +68,7 @@ class Places:
             return
         words = feature_set(features)
         if self._records is None:
-            kind = words.descriptors.dtype.name
-            packing = Packing(self._keypoints, words.descriptors.shape[1], kind, self._distance)
-            self._records = PlaceRecords(packing, self._folder)
+            self._records = PlaceRecords(Packing.of(words, self._keypoints, self._distance))
         slot = self._free[-1] if self._free else len(self._slots)
         self._records.put(slot, words)
         if self._free:

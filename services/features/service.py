@@ -10,7 +10,7 @@ from services.features.decoding import BadPictureError
 from services.features.frame_cache import FrameKey
 from services.features.map_cache import MapCache, MapWords
 from services.features.map_reader import MapReader
-from services.features.matching_requests import RequestError, pair, verify_paired
+from services.features.matching_requests import FrameNotKeptError, RequestError, pair, verify_paired
 from services.features.pipeline import Pipeline
 from services.features.places import Places
 from services.features.robot_streams import RobotStreams
@@ -80,7 +80,7 @@ class FeatureService:
         try:
             reply = self._match(robot, request.message)
         except RequestError as error:
-            request.refuse(str(error))
+            request.refuse(str(error), error.code)
             return
         request.reply(reply)
 
@@ -109,8 +109,7 @@ class FeatureService:
         )
 
     def _no_places(self) -> Places:
-        pipeline = self._pipeline
-        return Places(pipeline.identity, pipeline.profile.keypoints, pipeline.extractor.distance)
+        return Places.of(self._pipeline)
 
     def _on_extract(self, request: Request[ExtractRequest, Features]) -> None:
         try:
@@ -127,7 +126,7 @@ def _current(robot: RobotStreams, request: MatchRequest) -> Features:
         return request.features
     features = robot.kept.get(request.seq)
     if features is None:
-        raise RequestError(
+        raise FrameNotKeptError(
             f"frame {request.seq} is not kept (kept: {robot.kept.span()}): ask about a newer one"
         )
     return features

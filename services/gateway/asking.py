@@ -101,6 +101,7 @@ def _problem(service: str, error: Exception, timeout_s: float) -> ProblemError:
             got=got,
             next_step="change what the service objects to",
             service=service,
+            reason=error.code,
         )
     return ProblemError(
         502,

@@ -1,6 +1,5 @@
 """Settings of the gateway, read from GATEWAY_*."""
 
-import ipaddress
 from pathlib import Path
 from typing import Self
 
@@ -9,6 +8,7 @@ from pydantic_settings import SettingsConfigDict
 
 from shared.settings import ServiceSettings
 from shared.tokens.token import check_chosen
+from shared.web.loopback import is_loopback
 
 MB = 1_000_000
 
@@ -47,7 +47,7 @@ class GatewaySettings(ServiceSettings):
         ask_timeout_s: how long planner and map store may take.
         compute_timeout_s: how long extraction and matching may take.
         runs_dir: where ended missions are written down and commands leave their figures.
-        required_services: readiness needs one living process of each.
+        required_services: readiness needs one living process of each; all that a robot needs to go.
     """
 
     model_config = SettingsConfigDict(env_prefix="GATEWAY_", frozen=True, extra="forbid")
@@ -86,7 +86,7 @@ class GatewaySettings(ServiceSettings):
     ask_timeout_s: float = Field(default=5.0, gt=0.0)
     compute_timeout_s: float = Field(default=20.0, gt=0.0)
     runs_dir: Path = Path("data/runs")
-    required_services: tuple[str, ...] = ("features", "map_store", "planner")
+    required_services: tuple[str, ...] = ("features", "map_store", "planner", "drive")
 
     @field_validator("tokens_file", mode="before")
     @classmethod
@@ -111,12 +111,7 @@ class GatewaySettings(ServiceSettings):
     @property
     def loopback(self) -> bool:
         """Whether only this machine can connect."""
-        if self.host == "localhost":
-            return True
-        try:
-            return ipaddress.ip_address(self.host).is_loopback
-        except ValueError:
-            return False
+        return is_loopback(self.host)
 
     @property
     def reading_guarded(self) -> bool:

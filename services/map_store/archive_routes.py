@@ -1,7 +1,9 @@
 """REST: a map to and from one file."""
 
+import errno
 import tempfile
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from typing import IO, Annotated, Any
 
@@ -11,7 +13,7 @@ from fastapi.params import Depends
 from fastapi.responses import StreamingResponse
 
 from services.map_store.archive import Archive, write_archive
-from services.map_store.errors import CorruptError
+from services.map_store.errors import CorruptError, StorageFullError
 from services.map_store.names import AUTHOR, Author, MapName
 from services.map_store.schemas import MapView, map_view
 from services.map_store.store import MapStore
@@ -19,6 +21,8 @@ from services.map_store.store import MapStore
 ZIP: dict[int | str, dict[str, Any]] = {200: {"content": {"application/zip": {}}}}
 IN_MEMORY_BYTES = 8_000_000
 CHUNK_BYTES = 1_000_000
+FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.ENOENT})
+"""What a full disk says; ENOENT because then `tempfile` finds no folder that it can write to."""
 NewName = Annotated[str | None, Query(alias="name", pattern=r"^[a-z0-9_-]{1,64}$")]
 
 
@@ -30,12 +34,14 @@ def build(store: MapStore, write: Sequence[Depends], max_bytes: int) -> APIRoute
     def export_map(name: MapName) -> StreamingResponse:
         """The newest revision as a zip; the same map always gives the same bytes."""
         revision, graph = store.graph(name)
-        file = tempfile.SpooledTemporaryFile(IN_MEMORY_BYTES)  # noqa: SIM115  closed by _chunks
-        try:
-            write_archive(file, name, revision, graph, partial(store.contents.read, name))
-        except CorruptError as error:
-            file.close()
-            raise CorruptError(f"{error}, then export again") from None
+        with _room(), ExitStack() as opened:
+            file = opened.enter_context(tempfile.SpooledTemporaryFile(IN_MEMORY_BYTES))
+            try:
+                write_archive(file, name, revision, graph, partial(store.contents.read, name))
+            except CorruptError as error:
+                raise CorruptError(f"{error}, then export again") from None
+            file.flush()
+            opened.pop_all()  # _chunks closes it
         headers = {"Content-Disposition": f'attachment; filename="{name}.zip"'}
         return StreamingResponse(_chunks(file), media_type="application/zip", headers=headers)
 
@@ -47,7 +53,7 @@ def build(store: MapStore, write: Sequence[Depends], max_bytes: int) -> APIRoute
     )
     async def import_map(request: Request, name: NewName = None, author: Author = AUTHOR) -> MapView:
         """Make a map from an exported file, under its own name or `name`. It must not exist."""
-        with tempfile.SpooledTemporaryFile(IN_MEMORY_BYTES) as file:
+        with _room(), tempfile.SpooledTemporaryFile(IN_MEMORY_BYTES) as file:
             async for chunk in request.stream():
                 await run_in_threadpool(file.write, chunk)
             return await run_in_threadpool(_import, store, file, max_bytes, name, author)
@@ -61,6 +67,18 @@ def _import(store: MapStore, file: IO[bytes], max_bytes: int, name: str | None, 
     name = name or archive.index.name
     store.restore(name, archive.steps, archive.blob, author)
     return map_view(store.summary(name))
+
+
+@contextmanager
+def _room() -> Iterator[None]:
+    """Archives wait in temporary files; a disk without room for them is the client's to know about."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno not in FULL:
+            raise
+        told = f"no room for an archive in the folder for temporary files: {error.strerror}"
+        raise StorageFullError(f"{told}; free some space (TMPDIR names the folder)") from error
 
 
 def _chunks(file: IO[bytes]) -> Iterator[bytes]:

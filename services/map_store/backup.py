@@ -9,7 +9,7 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from urllib.parse import quote
 
-from services.map_store.check import check
+from services.map_store.check import check_contents
 from services.map_store.database import Database
 from services.map_store.engines import is_sqlite, parse, text_of
 from services.map_store.errors import (
@@ -118,10 +118,11 @@ def _require_sound(file: Path) -> int:
     """Check everything in a copy, bringing it up to this version; returns how many maps it holds."""
     database = Database(f"sqlite:///{file.resolve()}")
     try:
-        found = check(database)
+        found = check_contents(database)
         if found:
             first = "; ".join(f"{d.map} {d.thing}: {d.reason}".strip() for d in found[:SHOWN])
             raise CorruptError(f"{len(found)} things are damaged: {first}; nothing was changed")
+        database.settle()  # of a copy, every byte that counts was read
         with database.read() as connection:
             return int(connection.exec_driver_sql("SELECT count(*) FROM maps").scalar_one())
     finally:

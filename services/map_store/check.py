@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from sqlalchemy import Connection, select
 
-from services.map_store import blobs, catalogue, losses
+from services.map_store import answers, blobs, catalogue, file_seal, losses
 from services.map_store.catalogue import MapRecord
 from services.map_store.database import Database
 from services.map_store.errors import CorruptError
@@ -30,6 +30,12 @@ class Damage:
 
 def check(database: Database, name: str | None = None) -> list[Damage]:
     """Everything that is damaged, or all of it in one map; MissingError when there is no such map."""
+    found = check_contents(database, name)
+    return [*found, Damage("", "file", file_seal.TOLD)] if database.changed else found
+
+
+def check_contents(database: Database, name: str | None = None) -> list[Damage]:
+    """As `check`, without changed bytes in parts of the file where nothing is kept."""
     found = [Damage("", "file", line) for line in database.inspect()]
     try:
         found += [Damage("", "file", line) for line in database.dangling()]
@@ -37,6 +43,7 @@ def check(database: Database, name: str | None = None) -> list[Damage]:
             names = [catalogue.label(row) for row in catalogue.rows(connection)]
             if name is None:
                 found += [Damage("", *finding) for finding in _missions(connection)]
+                found += [Damage("", *finding) for finding in _answers(connection)]
     except CorruptError as error:
         return [*found, Damage("", "file", str(error))]
     for each in names if name is None else [name]:
@@ -102,3 +109,8 @@ def _missions(connection: Connection) -> Iterator[Finding]:
     for row in connection.execute(select(missions)).all():
         if not sound(row):
             yield f"mission of {row.robot!r}", "its record does not match its checksum"
+
+
+def _answers(connection: Connection) -> Iterator[Finding]:
+    for number in answers.damaged(connection):
+        yield f"answer {number}", "its record does not match its checksum"

@@ -4,11 +4,12 @@ import logging
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 from sqlalchemy import Connection
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
-from services.map_store import integrity, migration
+from services.map_store import file_seal, integrity, migration
 from services.map_store.engines import BUSY_TIMEOUT_S, is_sqlite, open_engines, parse
 from services.map_store.errors import CorruptError, MapError, StorageFullError, UnavailableError
 
@@ -25,11 +26,12 @@ class Database:
     """Transactions on the database at `url`; it is created when it is not there.
 
     A SQLite file is read as a whole first. A damaged one is served as far as it can be read and never
-    written to, because SQLite may overwrite good pages through a bad one. A server looks after its own files;
-    several map stores may write to its database, in turns.
+    written to, because SQLite may overwrite good pages through a bad one. A sound one is sealed when it is
+    closed. A server looks after its own files; several map stores may write to its database, in turns.
 
     Attributes:
         damage: what is wrong with the file.
+        changed: whether bytes of the file changed while it was closed, be it where nothing is kept.
 
     Raises:
         UnavailableError: no such URL, no driver for it, no connection, or tables of a later version.
@@ -41,6 +43,9 @@ class Database:
         parsed = parse(url)
         self._where = parsed.render_as_string()  # without the password
         self._sqlite = is_sqlite(parsed)
+        self._file = Path(parsed.database or "") if self._sqlite else None
+        self.changed = self._file is not None and file_seal.changed(self._file)
+        self._opened = False
         self._writer, self._reader = open_engines(parsed)
         self.damage: tuple[str, ...] = ()
         try:
@@ -50,6 +55,8 @@ class Database:
                     migration.prepare(connection)
             with self.read() as connection:
                 migration.require(connection)
+            self._note_change()
+            self._opened = True
         except MapError as error:
             self.close()
             raise type(error)(f"{self._where}: {error}") from error
@@ -72,13 +79,19 @@ class Database:
         Raises:
             CorruptError: that does not make it sound; nothing was changed.
         """
-        with self._lock, self._translated(), self._writer.begin() as connection:
+        with self._lock, self._translated(), self._reader.begin() as connection:  # no log for a file unmended
             integrity.rebuild_indexes(connection)
             damage = integrity.damage(connection)
             if damage:
                 raise CorruptError(f"more than indexes is damaged: {damage[0]}; restore a backup")
             then(connection)
         self.inspect()
+
+    def settle(self) -> None:
+        """Take the bytes of the file as they are, once all that is kept in it was found to be whole."""
+        with self.write() as connection:
+            file_seal.note(connection, found=False)
+        self.changed = False
 
     def dangling(self) -> tuple[str, ...]:
         """Rows that refer to a row that is not there; a server checks that by itself."""
@@ -102,9 +115,24 @@ class Database:
             yield connection
 
     def close(self) -> None:
-        """Close every connection."""
+        """Close every connection and seal the file, unless somebody else works with it."""
         self._writer.dispose()
         self._reader.dispose()
+        if self._file is not None and self._opened and not self.damage and not self.changed:
+            file_seal.seal(self._file)
+
+    def _note_change(self) -> None:
+        """Have it known after the next start as well; what is damaged will be found then in any case."""
+        if self._file is None or self.damage:
+            return
+        with self.read() as connection:
+            noted = file_seal.noted(connection)
+        if self.changed and not noted:
+            with self.write() as connection:
+                file_seal.note(connection, found=True)
+        self.changed = self.changed or noted
+        if self.changed:
+            log.error("%s: %s", self._where, file_seal.TOLD)
 
     @contextmanager
     def _translated(self) -> Iterator[None]:

@@ -16,6 +16,8 @@ HUNG_AFTER_S = 20
 """A server ends the transaction of a map store that says nothing for this long: the others go on."""
 WRITER_LOCK = 0x746F706E
 """Name of the writers' lock on a server ("topn"): nobody else who uses the database shall take it."""
+PRAGMAS = ("synchronous=FULL", "foreign_keys=ON", "secure_delete=ON")
+"""For a file: what is acknowledged is on the disk, and what is deleted becomes zeros there."""
 DRIVERS = {"postgresql": "postgresql+psycopg", "postgres": "postgresql+psycopg"}
 """URLs as operators and providers hand them out."""
 
@@ -89,13 +91,15 @@ def _server_engines(url: URL) -> tuple[Engine, Engine]:
 
 
 def _sqlite_engines(url: URL) -> tuple[Engine, Engine]:
+    """Only the writer begins a log beside the file: nobody who reads a damaged one changes it."""
     if not url.database or url.database == ":memory:":
         raise UnavailableError("database_url must name a file, for example sqlite:///data/maps.sqlite3")
     Path(url.database).parent.mkdir(parents=True, exist_ok=True)
-    return _sqlite_engine(url, "BEGIN IMMEDIATE"), _sqlite_engine(url, "BEGIN")
+    writer = _sqlite_engine(url, "BEGIN IMMEDIATE", ("journal_mode=WAL", *PRAGMAS))
+    return writer, _sqlite_engine(url, "BEGIN", PRAGMAS)
 
 
-def _sqlite_engine(url: URL, begin: str) -> Engine:
+def _sqlite_engine(url: URL, begin: str, pragmas: tuple[str, ...]) -> Engine:
     """An engine whose transactions start with `begin`: a plain BEGIN that writes later fails as "locked"."""
     engine = create_engine(url, connect_args={"timeout": BUSY_TIMEOUT_S})
 
@@ -103,7 +107,7 @@ def _sqlite_engine(url: URL, begin: str) -> Engine:
     def _prepare(connection: Any, _record: object) -> None:
         connection.isolation_level = None  # the driver shall not begin transactions by itself
         connection.text_factory = text_of
-        for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
+        for pragma in pragmas:
             connection.execute(f"PRAGMA {pragma}").close()
 
     @event.listens_for(engine, "begin")

@@ -13,14 +13,13 @@ from shared.openapi import MEDIA_TYPE
 
 log = logging.getLogger(__name__)
 
-KINDS: dict[type[errors.MapError], tuple[str, HTTPStatus]] = {
-    errors.MissingError: ("missing", HTTPStatus.NOT_FOUND),
-    errors.ConflictError: ("conflict", HTTPStatus.CONFLICT),
-    errors.InvalidError: ("invalid", HTTPStatus.UNPROCESSABLE_ENTITY),
-    errors.CorruptError: ("corrupt", HTTPStatus.INTERNAL_SERVER_ERROR),
-    errors.GivenUpError: ("corrupt", HTTPStatus.INTERNAL_SERVER_ERROR),
-    errors.StorageFullError: ("storage-full", HTTPStatus.INSUFFICIENT_STORAGE),
-    errors.UnavailableError: ("unavailable", HTTPStatus.SERVICE_UNAVAILABLE),
+STATUS: dict[str, HTTPStatus] = {
+    errors.MissingError.code: HTTPStatus.NOT_FOUND,
+    errors.ConflictError.code: HTTPStatus.CONFLICT,
+    errors.InvalidError.code: HTTPStatus.UNPROCESSABLE_ENTITY,
+    errors.CorruptError.code: HTTPStatus.INTERNAL_SERVER_ERROR,
+    errors.StorageFullError.code: HTTPStatus.INSUFFICIENT_STORAGE,
+    errors.UnavailableError.code: HTTPStatus.SERVICE_UNAVAILABLE,
 }
 MAX_DETAIL = 1000
 
@@ -41,8 +40,8 @@ def install(app: FastAPI) -> None:
 
     @app.exception_handler(errors.MapError)
     def _map_error(_request: Request, error: errors.MapError) -> JSONResponse:
-        kind, status = KINDS.get(type(error), ("internal", HTTPStatus.INTERNAL_SERVER_ERROR))
-        return problem(kind, status, str(error))
+        status = STATUS.get(error.code, HTTPStatus.INTERNAL_SERVER_ERROR)
+        return problem(error.code or "internal", status, str(error))
 
     @app.exception_handler(HTTPException)
     def _http_error(_request: Request, error: HTTPException) -> JSONResponse:

@@ -6,7 +6,7 @@ from typing import Any
 
 from sqlalchemy import Connection, Row, delete, insert, select
 
-from services.map_store import blobs, catalogue, check, history
+from services.map_store import answers, blobs, catalogue, check, history
 from services.map_store.catalogue import MapRecord
 from services.map_store.graph import Graph, Key, Place, Step
 from services.map_store.missions import mend_missions
@@ -45,7 +45,7 @@ def mend(connection: Connection, name: str, now_ns: int) -> Mended:
     """Make rows, links and history of a map sound; the graph stays what it was as far as it is known."""
     _remove_strays(connection)
     blobs.name_again(connection)
-    missions = mend_missions(connection)
+    missions, forgotten = mend_missions(connection), answers.mend(connection)
     row = _record_of(connection, name)
     whole = intact(maps, row)
     told = replay(connection, row.map_id, row.revision if whole else 0)
@@ -53,6 +53,7 @@ def mend(connection: Connection, name: str, now_ns: int) -> Mended:
     mended = _mend_rows(connection, found, told, damaged=not whole)
     links = blobs.relink(connection, found.map_id, told.blobs | _blobs_of(mended.graph.places.values()))
     done += [f"{missions} records of missions written anew"] if missions else []
+    done += [f"{forgotten} answers to requests removed"] if forgotten else []
     done += [f"{links} links to pictures written anew"] if links else []
     for number, reason in told.damaged.items():
         history.give_up(connection, found.map_id, number, now_ns)

@@ -51,9 +51,11 @@ class Deltas:
 def answer_map(store: MapStore, name: str, request: MapRequest) -> MapReply:
     """Do what `request` asks of map `name`; raises MapError."""
     if request.action == "create":
-        return MapReply(map=name, revision=store.create(name))
+        return MapReply(map=name, revision=store.create(name, request.request_id))
     if request.action == "transact":
-        revision = store.transact(name, request.operations, request.author, request.base_revision)
+        revision = store.transact(
+            name, request.operations, request.author, request.base_revision, request.request_id
+        )
         return MapReply(map=name, revision=revision)
     if request.action == "read_features":
         revision, features = store.contents.features(name, request.node_ids)
@@ -120,6 +122,6 @@ def _answer(question: Request[Q, R], answer: Callable[[str, Q], R]) -> None:
     except MapError as error:
         level = logging.INFO if isinstance(error, InvalidError | ConflictError) else logging.WARNING
         log.log(level, "refused: %s", error)
-        question.refuse(str(error))
+        question.refuse(str(error), error.code)
         return
     question.reply(reply)

@@ -1,6 +1,5 @@
 """Settings of the map store."""
 
-import ipaddress
 from typing import Self
 
 from pydantic import Field, SecretStr, model_validator
@@ -9,6 +8,7 @@ from pydantic_settings import SettingsConfigDict
 from shared.bus_security import credentials_in
 from shared.settings import ServiceSettings
 from shared.tokens.token import check_chosen
+from shared.web.loopback import is_loopback
 
 
 class MapStoreSettings(ServiceSettings):
@@ -49,9 +49,4 @@ class MapStoreSettings(ServiceSettings):
     @property
     def loopback(self) -> bool:
         """Whether only this machine can connect."""
-        if self.host == "localhost":
-            return True
-        try:
-            return ipaddress.ip_address(self.host).is_loopback
-        except ValueError:
-            return False
+        return is_loopback(self.host)

@@ -7,8 +7,9 @@ from dataclasses import replace
 
 from sqlalchemy import Connection
 
-from services.map_store import blobs, catalogue, history, losses
+from services.map_store import answers, blobs, catalogue, history, losses
 from services.map_store.catalogue import MapRecord
+from services.map_store.check import check_contents
 from services.map_store.contents import Contents
 from services.map_store.database import Database
 from services.map_store.errors import ConflictError, InvalidError
@@ -65,10 +66,13 @@ class MapStore:
             found = catalogue.find(connection, name)
             return history.entries(connection, found, before, limit, self._summaries)
 
-    def create(self, name: str) -> int:
-        """Make an empty map; returns its revision, 0. ConflictError when it exists."""
+    def create(self, name: str, request_id: str = "") -> int:
+        """Make an empty map; returns its revision, 0. ConflictError when it exists, not by this request."""
         with self._write() as (connection, deltas):
+            if answers.revision_of(connection, name, request_id) is not None:
+                return 0
             catalogue.create(connection, name, self._now_ns())
+            answers.keep(connection, name, request_id, 0)
             deltas.append(MapDelta(map=name, revision=0, reset=True))
         return 0
 
@@ -90,8 +94,9 @@ class MapStore:
         operations: Sequence[Operation],
         author: str = "",
         base_revision: int | None = None,
+        request_id: str = "",
     ) -> int:
-        """Apply all operations or none; returns the new revision.
+        """Apply all operations or none; returns the new revision, or that of the same request before.
 
         Raises:
             MissingError, ConflictError, InvalidError: nothing was changed; the text says why.
@@ -100,12 +105,15 @@ class MapStore:
             raise InvalidError("a transaction needs at least one operation")
         prepared = prepare(operations)
         with self._write() as (connection, deltas):
+            if (answered := answers.revision_of(connection, name, request_id)) is not None:
+                return answered
             found = catalogue.find(connection, name)
             _check_base(name, found.revision, base_revision)
             change = apply(self._graphs.get(connection, found), prepared.steps)
             blobs.put(connection, found.map_id, prepared.contents)
             entry = Revision(found.revision + 1, author, self._now_ns(), len(prepared.steps), None)
             self._commit(connection, found, entry, prepared.steps, change)
+            answers.keep(connection, name, request_id, entry.revision)
             deltas.append(
                 MapDelta(
                     stamp_ns=entry.stamp_ns,
@@ -166,7 +174,11 @@ class MapStore:
                 found = self._commit(connection, found, entry, steps, lost.change)
             deltas.append(MapDelta(map=found.name, revision=found.revision, author=author, reset=True))
         self._graphs.forget(found.map_id)
-        return Repaired(found.name, found.revision, (*done, *mended.done, *lost.done))
+        done += [*mended.done, *lost.done]
+        if self.database.changed and not check_contents(self.database):
+            self.database.settle()
+            done.append("bytes of the file that hold nothing: taken as they are")
+        return Repaired(found.name, found.revision, tuple(done))
 
     @staticmethod
     def _commit(

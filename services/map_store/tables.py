@@ -14,7 +14,7 @@ from sqlalchemy import (
     Text,
 )
 
-VERSION = 2
+VERSION = 3
 """Raised with every change of these tables; `migration` brings older ones up, newer ones are refused."""
 
 
@@ -94,6 +94,16 @@ edges = Table(
     _seal(),
     ForeignKeyConstraint(["map_id", "a"], ["nodes.map_id", "nodes.node_id"]),
     ForeignKeyConstraint(["map_id", "b"], ["nodes.map_id", "nodes.node_id"]),
+)
+
+answers = Table(
+    "answers",
+    metadata,
+    Column("number", BigInteger().with_variant(Integer, "sqlite"), primary_key=True, autoincrement=False),
+    Column("request_id", String(64), nullable=False, unique=True),
+    Column("map", String(64), nullable=False),
+    Column("revision", BigInteger, nullable=False),
+    _seal(),
 )
 
 missions = Table(

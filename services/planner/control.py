@@ -2,19 +2,21 @@
 
 import logging
 import uuid
+from contextlib import suppress
 
 import numpy as np
 
 from services.planner.explore import FrontierExploration
 from services.planner.frontiers import open_directions
 from services.planner.goto import Goto
+from services.planner.graph import MapGraph
 from services.planner.ports import Decision, Mission, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.remote import RemoteMap, RemoteMatcher
 from services.planner.settings import PlannerSettings
 from services.planner.strategies import ThesisExploration
 from shared.bus import Bus
-from shared.messages import MissionRecord, MissionRecordRequest, MissionRequest, MissionStatus
+from shared.messages import MapDelta, MissionRecord, MissionRecordRequest, MissionRequest, MissionStatus
 from shared.messages.missions import FailureKind, MissionState
 from shared.queries import RefusedError
 from shared.topics import MISSION_RECORD
@@ -38,7 +40,7 @@ class MissionControl:
         self.state: MissionState = "idle"
         self._failure: FailureKind = ""
         self._reason = ""
-        self._places: frozenset[int] = frozenset()
+        self._known = MapGraph()
         self.step_count = 0
 
     @property
@@ -63,6 +65,18 @@ class MissionControl:
             self._begin(create=False)
             self.state = "paused" if self._record.paused else "running"
             self._reason = "taken over after a restart"
+        elif self._record.outcome:
+            self._remember_end()
+
+    def _remember_end(self) -> None:
+        """Say how the last mission ended: the planner before may have died before anybody heard of it."""
+        ended = self._record
+        self._record = ended.model_copy(update={"action": ended.ended_action})
+        self.state, self._failure, self._reason = ended.outcome or "idle", ended.failure, ended.reason
+        self.step_count = ended.step
+        self.map = RemoteMap(self._bus, ended.map, self._settings.map_timeout_s)
+        with suppress(RefusedError):  # deleted since
+            self.map.load(create=False)
 
     def handle(self, request: MissionRequest) -> MissionStatus:
         """Follow a request and return the status after it; MissionError says why not."""
@@ -121,14 +135,16 @@ class MissionControl:
             epoch=self.epoch,
         )
 
-    def follow_store(self, revision: int, author: str, *, reset: bool = False) -> None:
-        """Somebody else changed the map: read it again. One that is gone ends the mission."""
-        if self.map is None or author == "planner" or (revision <= self.map.revision and not reset):
+    def follow_store(self, delta: MapDelta) -> None:
+        """A map changed: follow, if it is this one and somebody else did it. One gone ends the mission."""
+        if self.map is None or delta.map != self.map.name:
+            return
+        if delta.revision <= self.map.revision and not delta.reset:
             return
         try:
-            self.map.load(create=False)
+            self.map.follow(delta)
         except RefusedError as error:
-            if "no map" not in str(error):
+            if error.code != "missing":
                 raise
             if self.state in ("running", "paused"):
                 kind: FailureKind = "goal_not_in_map" if self._record.action == "goto" else "lost"
@@ -141,16 +157,18 @@ class MissionControl:
         """
         assert self.map is not None
         assert self._matcher is not None
-        lost = self._places - self.map.graph.nodes.keys()
+        if self._known is self.map.graph:  # only reading the map again makes another graph
+            return None
+        lost = self._known.nodes.keys() - self.map.graph.nodes.keys()
         if not lost:
-            self._places = frozenset(self.map.graph.nodes)
+            self._known = self.map.graph
             return None
         why = f"places {sorted(lost)[:8]} were taken out of the map"
         if self._record.goal_node in lost:
             return Decision("hold", why=why, outcome="failed", failure="goal_not_in_map")
         log.info("%s: planning anew", why)
         self._mission = self._make(self.map, self._matcher)
-        self._places = frozenset(self.map.graph.nodes)
+        self._known = self.map.graph
         return None
 
     def _start(self, request: MissionRequest) -> None:
@@ -177,7 +195,7 @@ class MissionControl:
         record = self._record
         self.map = RemoteMap(self._bus, record.map, self._settings.map_timeout_s)
         self.map.load(create=create)
-        self._places = frozenset(self.map.graph.nodes)
+        self._known = self.map.graph
         self._matcher = RemoteMatcher(self._bus, record.robot, self.map, self._settings.query_timeout_s)
         self._mission = self._make(self.map, self._matcher)
 
@@ -207,10 +225,9 @@ class MissionControl:
 
     def _finish(self, state: MissionState, failure: FailureKind, reason: str) -> None:
         self.state, self._failure, self._reason = state, failure, reason
-        ended = self._record.model_copy(
-            update={"action": "", "goal": None, "goal_node": None, "paused": False}
-        )
-        self._save(ended)
+        ended = {"action": "", "goal": None, "goal_node": None, "paused": False, "step": self.step_count}
+        how = {"ended_action": self._record.action, "outcome": state, "failure": failure}
+        self._save(self._record.model_copy(update={**ended, **how, "reason": reason[:400]}))
 
     def _save(self, record: MissionRecord | None = None) -> None:
         request = MissionRecordRequest(action="save", record=record or self._record)

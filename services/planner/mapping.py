@@ -113,6 +113,7 @@ def add_place(
     operations += [PutEdge(edge=edge) for edge in edges]
     operations += [UpdateNode(node=other) for other in others]
     maps.commit(operations)
+    node_id = max(maps.graph.nodes)  # another robot may have taken the id meanwhile: the newest one is this
     return node_id, tuple(
         Note("closure_refused", f"node {node_id}: {why}") for why in edges_of.refused.values()
     )

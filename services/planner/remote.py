@@ -4,15 +4,18 @@ from collections.abc import Sequence
 
 from services.planner.graph import MapGraph
 from services.planner.ports import GOAL
+from services.planner.rebasing import rebased
 from shared.bus import Bus
 from shared.messages import MapReply, MapRequest, MatchRequest
 from shared.messages.features import Features
-from shared.messages.maps import Operation
+from shared.messages.maps import AddNode, DeleteNode, MapDelta, Operation
 from shared.messages.matching import NodeMatch
 from shared.queries import RefusedError
 from shared.topics import MAP, MATCH
 
 AUTHOR = "planner"
+WRITE_TRIES = 10
+"""Writes of one change while others write: each other writer may come first a few times in a row."""
 
 
 class RemoteMap:
@@ -27,26 +30,53 @@ class RemoteMap:
         """Read the map, making it first when `create` and it is missing; RefusedError when it is missing."""
         try:
             reply = self._ask(MapRequest(action="read"))
-        except RefusedError:
-            if not create:
+        except RefusedError as error:
+            if not create or not error.may_be_missing:
                 raise
-            self._ask(MapRequest(action="create", author=AUTHOR))
+            self._create()
             reply = self._ask(MapRequest(action="read"))
         self.graph = MapGraph(reply.nodes, reply.edges)
         self.revision = reply.revision
 
-    def commit(self, operations: Sequence[Operation]) -> None:
-        """Write all or none; if somebody else wrote meanwhile, read again and retry once."""
-        try:
-            reply = self._transact(operations)
-        except RefusedError:
-            before = self.revision
+    def follow(self, delta: MapDelta) -> None:
+        """Take over what somebody else wrote; after a gap, and where places went, the map is read again."""
+        gone = any(isinstance(operation, DeleteNode) for operation in delta.operations)
+        if delta.reset or gone or delta.revision != self.revision + 1:
             self.load(create=False)
-            if self.revision == before:
-                raise
-            reply = self._transact(operations)
+            return
+        self.graph.apply(delta.operations)
+        self.revision = delta.revision
+
+    def commit(self, operations: Sequence[Operation]) -> None:
+        """Write all or none; where somebody else wrote meanwhile, read again and add the change to theirs."""
+        for left in reversed(range(WRITE_TRIES)):
+            try:
+                reply = self._transact(operations)
+                break
+            except RefusedError:
+                before, revision = self.graph, self.revision
+                self.load(create=False)
+                if self.revision == revision or not left or self._has(operations):
+                    raise
+                operations = rebased(operations, before, self.graph)
+                if not operations:
+                    return
         self.graph.apply(operations)
         self.revision = reply.revision
+
+    def _create(self) -> None:
+        """Make the map, if no other robot makes it just now."""
+        try:
+            self._ask(MapRequest(action="create", author=AUTHOR))
+        except RefusedError as error:
+            if error.code != "conflict":
+                raise
+
+    def _has(self, operations: Sequence[Operation]) -> bool:
+        """Whether the map has the new places already: they were written, only the answer got lost."""
+        new = [operation.node for operation in operations if isinstance(operation, AddNode)]
+        there = [self.graph.nodes.get(node.node_id) for node in new]
+        return any(a is not None and a.stamp_ns == b.stamp_ns for a, b in zip(there, new, strict=True))
 
     def features_of(self, node_id: int) -> Features:
         """What a node looks like."""
@@ -113,4 +143,5 @@ class RemoteMatcher:
         reply = self._bus.ask(MATCH, request, self._timeout_s, robot=self._robot)
         self.match_ms += reply.match_ms
         self.verify_ms += reply.verify_ms
-        return {match.node_id: match for match in reply.results}
+        known = self._maps.graph.nodes  # the service may know of places of another robot before we do
+        return {m.node_id: m for m in reply.results if m.node_id in known or m.node_id == GOAL}

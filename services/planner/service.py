@@ -11,7 +11,7 @@ from services.planner.settings import PlannerSettings
 from shared.bus import Bus
 from shared.messages import EStopState, Event, Features, Heading, MissionRequest, MissionStatus, Ranges
 from shared.messages.missions import EventValue
-from shared.queries import QueryError, Request
+from shared.queries import QueryError, RefusedError, Request
 from shared.topics import EVENT, FEATURES, HEADING, MAP_DELTA, MISSION, RANGES, STATUS, STOPPED
 from shared.wire import WireError
 
@@ -58,10 +58,7 @@ class Planner:
             self.control.pause(f"emergency stop: {self._stopped.why}".rstrip(": "))
             self._publish_status(now_s)
         for delta in self._deltas.take_all():
-            if self.control.map is not None and delta.map == self.control.map.name:
-                self.control.follow_store(
-                    delta.revision, "" if delta.reset else delta.author, reset=delta.reset
-                )
+            self.control.follow_store(delta)
         self._ranges = self._ranges_in.take() or self._ranges
         self._features = self._features_in.take() or self._features
         if (
@@ -169,7 +166,7 @@ class Planner:
         try:
             status = self.control.handle(request.message)
         except (MissionError, QueryError, WireError) as error:
-            request.refuse(str(error))
+            request.refuse(str(error), error.code if isinstance(error, RefusedError) else "")
             return
         request.reply(status)
         self._statuses.put(status)

@@ -1,14 +1,18 @@
 """A recording: the bus's messages as they came, one channel per key, in an MCAP file."""
 
+import os
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import IO, Self
 
-from mcap.reader import SeekingReader
+from mcap.exceptions import McapError
+from mcap.reader import FOOTER_SIZE
+from mcap.records import Channel, Footer, Statistics
+from mcap.stream_reader import MAGIC_SIZE
 from mcap.writer import CompressionType, Writer
 
 from services.recorder.backlog import Sample
@@ -19,7 +23,8 @@ from services.recorder.channels import (
     json_schema,
     topic_of,
 )
-from services.recorder.whole_part import DAMAGE, MAX_RECORD_BYTES
+from services.recorder.chunks import records
+from services.recorder.whole_part import DAMAGE, samples
 
 CHUNK_BYTES = 1_000_000
 LIBRARY = "topnav recorder"
@@ -97,15 +102,20 @@ def contents(path: Path) -> Contents:
     Raises:
         RecordingError: as for `read`.
     """
-    with _opened(path) as reader:
-        summary = reader.get_summary()
-    statistics = summary.statistics if summary is not None else None
-    if summary is None or statistics is None:
+    with _opened(path) as stream:
+        if not (start := _footer(stream).summary_start):
+            return Contents({}, 0.0)
+        stream.seek(start)
+        channels: dict[int, str] = {}
+        statistics: Statistics | None = None
+        for record in records(stream, skip_magic=True, chunks=False):
+            if isinstance(record, Channel):
+                channels[record.id] = record.topic
+            elif isinstance(record, Statistics):
+                statistics = record
+    if statistics is None:
         return Contents({}, 0.0)
-    counts = {
-        channel.topic: statistics.channel_message_counts.get(number, 0)
-        for number, channel in summary.channels.items()
-    }
+    counts = {topic: statistics.channel_message_counts.get(number, 0) for number, topic in channels.items()}
     return Contents(counts, (statistics.message_end_time - statistics.message_start_time) / 1e9)
 
 
@@ -113,19 +123,29 @@ def read(path: Path) -> Iterator[Sample]:
     """All messages of a finished file, in the order of arrival.
 
     Raises:
-        RecordingError: no recording, or one that was cut off.
+        RecordingError: no recording, one that was cut off, or one that unpacks to more than it may.
     """
-    with _opened(path) as reader:
-        for _, channel, message in reader.iter_messages():
-            yield Sample(channel.topic, message.data, message.log_time)
+    with _opened(path) as stream:
+        _footer(stream)  # before the first message is given away
+        stream.seek(0)
+        yield from samples(stream)
+
+
+def _footer(stream: IO[bytes]) -> Footer:
+    stream.seek(-(FOOTER_SIZE + MAGIC_SIZE), os.SEEK_END)
+    footer = next(records(stream, skip_magic=True, chunks=False), None)
+    if not isinstance(footer, Footer):
+        raise McapError(f"a footer expected at the end, got {type(footer).__name__}")
+    return footer
 
 
 @contextmanager
-def _opened(path: Path) -> Iterator[SeekingReader]:
+def _opened(path: Path) -> Iterator[IO[bytes]]:
     with path.open("rb") as stream:
         try:
-            yield SeekingReader(stream, validate_crcs=True, record_size_limit=MAX_RECORD_BYTES)
-        except (*DAMAGE, OSError) as error:  # OSError: an index that points outside the file
+            yield stream
+        except (*DAMAGE, OSError) as error:  # OSError: shorter than a footer
+            told = f"{type(error).__name__}: {str(error)[:200]}".rstrip(": ")
             raise RecordingError(
-                f"{path} is no whole recording ({type(error).__name__}): 'topnav recover' saves what is in it"
+                f"{path} is no whole recording ({told}): 'topnav recover' saves what is in it"
             ) from error

@@ -6,16 +6,27 @@ from typing import IO
 
 from mcap.exceptions import McapError
 from mcap.records import Channel, Message
-from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
 from services.recorder.backlog import Sample
-
-MAX_RECORD_BYTES = 256_000_000
-"""A longer record is damage: the longest message has 64 MB."""
+from services.recorder.chunks import records
 
 DAMAGE = (McapError, EOFError, struct.error, ZstdError, ValueError, ArithmeticError, LookupError, MemoryError)
 """What the reader of MCAP files raises on damaged ones."""
+
+
+def samples(stream: IO[bytes]) -> Iterator[Sample]:
+    """All messages of a recording, as they were written.
+
+    Raises:
+        Exception: one of DAMAGE, where the whole part ends.
+    """
+    channels: dict[int, str] = {}
+    for record in records(stream):
+        if isinstance(record, Channel):
+            channels[record.id] = record.topic
+        elif isinstance(record, Message) and record.channel_id in channels:
+            yield Sample(channels[record.channel_id], record.data, record.log_time)
 
 
 class WholePart:
@@ -26,13 +37,7 @@ class WholePart:
         self.problem = ""
 
     def __iter__(self) -> Iterator[Sample]:
-        channels: dict[int, str] = {}
-        reader = StreamReader(self._stream, validate_crcs=True, record_size_limit=MAX_RECORD_BYTES)
         try:
-            for record in reader.records:
-                if isinstance(record, Channel):
-                    channels[record.id] = record.topic
-                elif isinstance(record, Message) and record.channel_id in channels:
-                    yield Sample(channels[record.channel_id], record.data, record.log_time)
+            yield from samples(self._stream)
         except DAMAGE as error:
             self.problem = f"{type(error).__name__}: {error}"

@@ -1,11 +1,13 @@
 """The map: a graph of places, written by transactions, followed by deltas. Planner <-> map store."""
 
+import uuid
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
 from shared.messages.base import SECTORS, Bearing, Message, Name, Part
 from shared.messages.features import Features
+from shared.messages.missions import FailureKind
 
 Sectors = Annotated[tuple[bool, ...], Field(min_length=SECTORS, max_length=SECTORS, fail_fast=True)]
 MAP_ITEMS = 2_000_000
@@ -113,6 +115,9 @@ class MapRequest(Message):
 
     Actions: create (fails if it exists), read (graph only), read_features (of node_ids, all if empty),
     transact (all operations or none; refused when base_revision is given and is not the newest).
+
+    Attributes:
+        request_id: of a write; asked again with the same one it is answered again and not done again.
     """
 
     SCHEMA: ClassVar[str] = "map_request.v1"
@@ -121,6 +126,7 @@ class MapRequest(Message):
     action: Literal["create", "read", "read_features", "transact"]
     author: str = Field(default="", max_length=64)
     base_revision: int | None = None
+    request_id: str = Field(default_factory=lambda: uuid.uuid4().hex, pattern=r"^[A-Za-z0-9_-]{0,64}$")
     operations: tuple[Operation, ...] = Field(default=(), max_length=10_000, fail_fast=True)
     node_ids: tuple[int, ...] = Field(default=(), max_length=10_000, fail_fast=True)
 
@@ -163,7 +169,11 @@ class MapDelta(Message):
 
 
 class MissionRecord(Message):
-    """A mission as kept by the map store, so that a planner that restarts goes on with it."""
+    """A mission as kept by the map store, so that a planner that restarts goes on with it.
+
+    Attributes:
+        action: "" once it has ended; then `ended_action` says what it was, `outcome` and what follows how.
+    """
 
     SCHEMA: ClassVar[str] = "mission_record.v1"
 
@@ -178,6 +188,10 @@ class MissionRecord(Message):
     max_steps: int = 20_000
     step: int = 0
     paused: bool = False
+    ended_action: Literal["", "explore", "goto"] = ""
+    outcome: Literal["", "succeeded", "failed", "cancelled"] = ""
+    failure: FailureKind = ""
+    reason: str = Field(default="", max_length=400)
 
 
 class MissionRecordRequest(Message):

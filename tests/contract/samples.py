@@ -136,6 +136,10 @@ def mission() -> MissionRecord:
         max_steps=500,
         step=12,
         paused=True,
+        ended_action="explore",
+        outcome="failed",
+        failure="lost",
+        reason="the map is gone",
     )
 
 
@@ -259,6 +263,7 @@ def samples() -> dict[type[Message], Message]:
             action="transact",
             author="planner",
             base_revision=4,
+            request_id="c0ffee",
             operations=operations(),
             node_ids=(1, 2),
         ),

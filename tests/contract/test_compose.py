@@ -19,6 +19,7 @@ from shared.certificates.layout import AUTHORITY, everyone
 from shared.settings import ServiceSettings
 
 RAW = yaml.safe_load(COMPOSE_FILE.read_text(encoding="utf-8"))
+TOKENS = yaml.safe_load(COMPOSE_FILE.with_name("deploy").joinpath("compose.tokens.yml").read_text("utf-8"))
 EVERYTHING = RAW["services"]
 SERVICES = {name: service for name, service in EVERYTHING.items() if "profiles" not in service}
 SETTINGS = {
@@ -60,6 +61,22 @@ def test_the_file_follows_the_compose_specification(schema):
         f"{error.json_path}: {error.message}" for error in Draft201909Validator(schema).iter_errors(RAW)
     ]
     assert errors == []
+
+
+def test_the_overlay_with_tokens_gives_the_gateway_a_folder_to_read_and_nothing_else(schema):
+    assert list(Draft201909Validator(schema).iter_errors(TOKENS)) == []
+    ((name, gateway),) = TOKENS["services"].items()
+    assert (name, gateway.keys()) == ("gateway", {"environment", "volumes"})
+    (mount,) = gateway["volumes"]
+    source, target, mode = interpolate_tree(mount, {"TOPNAV_TOKENS_DIR": "./tokens"}).split(":")
+    assert (source, mode) == ("./tokens", "ro")
+    ((variable, file),) = gateway["environment"].items()
+    assert file == f"{target}/tokens.json"
+    assert variable in SERVICES["gateway"]["environment"], (
+        "it takes the place of a path that no container has"
+    )
+    with pytest.raises(ValueError, match="TOPNAV_TOKENS_DIR"):
+        interpolate_tree(mount, {})
 
 
 def test_the_schema_would_notice_a_misspelt_key(schema):
@@ -197,7 +214,7 @@ def test_docker_publishes_the_gateway_only_and_only_on_loopback_and_requires_a_s
 def test_the_example_environment_names_what_the_file_reads(repository):
     text = (repository / ".env.example").read_text(encoding="utf-8")
     documented = set(re.findall(r"^#? ?(\w+)=", text, flags=re.MULTILINE))
-    read = set(VARIABLE.findall(json.dumps(RAW))) - {"TOPNAV_BIND", "TOPNAV_DATABASE_URL"}
+    read = set(VARIABLE.findall(json.dumps([RAW, TOKENS]))) - {"TOPNAV_BIND", "TOPNAV_DATABASE_URL"}
     assert documented - {"COMPOSE_PROJECT_NAME"} == read
 
 

@@ -104,12 +104,13 @@ def test_a_container_is_bounded_and_watched(name: str) -> None:
         assert service["healthcheck"]["test"][0] == "CMD"
 
 
-def test_an_import_is_kept_on_the_volume_until_it_is_checked() -> None:
-    """A tmpfs is memory: an archive of 4 GB in /tmp would end the map store."""
-    text = (ROOT / "deploy/docker/map-store.Dockerfile").read_text(encoding="utf-8")
+@pytest.mark.parametrize("name", ["map-store", "features"])
+def test_large_temporary_files_are_kept_on_the_volume(name: str) -> None:
+    """A tmpfs is memory: in /tmp an archive of 4 GB would end the map store, a large map the features."""
+    text = (ROOT / f"deploy/docker/{name}.Dockerfile").read_text(encoding="utf-8")
     folder = re.search(r"TMPDIR=(\S+)", text)
     assert folder is not None
-    assert folder[1] in writable(SERVICES["map-store"])
+    assert folder[1] in writable(SERVICES[name])
 
 
 def test_only_what_images_copy_reaches_the_builder() -> None:

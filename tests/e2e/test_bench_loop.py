@@ -35,4 +35,6 @@ def test_bench_loop_reports_rate_stages_and_machine(repository, tmp_path, real_t
     assert 0.0 < waits["p50_ms"] <= waits["p99_ms"]
     assert 0.0 < waits["answered"] <= 1.0
     assert all(row["p99_ms"] >= row["p50_ms"] >= 0.0 for row in report["stages"].values())
+    assert {"planner", "drive", "features", "map-store", "gateway"} <= report["cpu"].keys()
+    assert all(report["cpu"][name]["ms_per_step"] > 0.0 for name in ("planner", "drive", "features"))
     assert {"processor", "cpus", "memory_gb"} <= report["machine"].keys()

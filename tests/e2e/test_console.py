@@ -16,7 +16,7 @@ from services.recorder.recorder import record
 from services.recorder.recording import RecordingWriter, read
 from shared.bus import open_bus
 from shared.messages.sensors import Frame
-from tests.browser import WAIT_MS, chromium, listen, needs_chromium
+from tests.browser import WAIT_MS, listen, needs_chromium
 from tests.e2e.conftest import MAP, Explored
 from tests.e2e.near_node import hiding_place_near_a_node
 
@@ -49,13 +49,6 @@ class Late:
         self.open = True
         for route in self.held:
             route.continue_()
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    """A headless Chromium."""
-    with chromium() as opened:
-        yield opened
 
 
 @pytest.fixture

@@ -9,8 +9,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from services.map_store.check import check
+from services.map_store.check import Damage, check
 from services.map_store.errors import MapError
+from services.map_store.file_seal import TOLD
 from services.map_store.missions import MissionStore
 from services.map_store.store import MapStore
 from shared.messages.maps import DeleteNode
@@ -28,6 +29,8 @@ class Flip:
         verdict: detected, harmless (all content is the same and writing goes on), or undetected.
         why: who noticed, or what went wrong.
         mended: whether a repair made everything as it was before; None where nothing was to be repaired.
+        idle: the byte holds nothing: all content is the same, stays so while maps are written, and the seal
+            of the file alone noticed.
     """
 
     offset: int
@@ -36,6 +39,7 @@ class Flip:
     verdict: Verdict
     why: str
     mended: bool | None = None
+    idle: bool = False
 
 
 class Flipping:
@@ -71,22 +75,27 @@ class Flipping:
             file.write(bytes([was ^ mask]))
         return Flip(offset, was, was ^ mask, *self._judge(copy))
 
-    def _judge(self, file: Path) -> tuple[Verdict, str, bool | None]:
+    def _judge(self, file: Path) -> tuple[Verdict, str, bool | None, bool]:
         try:
             store = opened(file)
         except MapError as error:
-            return "detected", f"refused at start: {type(error).__name__}: {error}", None
+            return "detected", f"refused at start: {type(error).__name__}: {error}", None, False
         try:
             wrong = self._wrongly_told(store)
             if wrong:
-                return "undetected", wrong, None
+                return "undetected", wrong, None, False
             found = check(store.database)
+            mended = self._mended(store) if found and self._mend else None
+            if _named(found):
+                return "detected", f"{found[0].map} {found[0].thing}: {found[0].reason}", mended, False
+            wrong = self._harm(store, file)
+            if wrong:
+                return "undetected", wrong, mended, False
             if found:
-                mended = self._mended(store) if self._mend else None
-                return "detected", f"{found[0].map} {found[0].thing}: {found[0].reason}", mended
-            return self._harmless(store, file)
+                return "detected", f"{found[0].thing}: {found[0].reason}", mended, True
+            return "harmless", "the same content", None, True
         except MapError as error:
-            return "detected", f"refused: {error}", None
+            return "detected", f"refused: {error}", None, False
         finally:
             store.database.close()
 
@@ -105,12 +114,12 @@ class Flipping:
                 return f"{name}: {lacking[0]} is left out"
         return ""
 
-    def _harmless(self, store: MapStore, file: Path) -> tuple[Verdict, str, bool | None]:
-        """No damage was found: all content must be the same, and stay so while maps are written."""
+    def _harm(self, store: MapStore, file: Path) -> str:
+        """No content was found damaged: all must be the same, and stay so while maps are written."""
         rows, expected = rows_of(store), self._rows
         different = [name for name in expected if rows[name] != expected[name]]
         if different:
-            return "undetected", f"rows of {different} differ", None
+            return f"rows of {different} differ"
         for name in MAPS:
             store.transact(name, [place(5_000 + number) for number in range(3)])
             store.transact(name, [DeleteNode(node_id=5_001)])
@@ -123,13 +132,13 @@ class Flipping:
         store.database.close()
         again = opened(file)
         try:
-            found = check(again.database)
+            found = _named(check(again.database))
             if found:
-                return "undetected", f"written on: {found[0].thing}: {found[0].reason}", None
+                return f"written on: {found[0].thing}: {found[0].reason}"
             kept = all(told_of(again, name).items() >= _lasting(self._told[name]) for name in MAPS)
         finally:
             again.database.close()
-        return ("harmless", "the same content", None) if kept else ("undetected", "written on: lost", None)
+        return "" if kept else "written on: lost"
 
     def _mended(self, store: MapStore) -> bool | None:
         """Repair everything; whether all maps are again what they were."""
@@ -157,12 +166,18 @@ def figures(found: list[Flip]) -> dict[str, Any]:
     return {
         "flips": len(found),
         "detected": verdicts["detected"],
+        "of_these_idle": sum(flip.idle for flip in found if flip.verdict == "detected"),
         "harmless": verdicts["harmless"],
         "undetected": verdicts["undetected"],
         "mended_without_loss": mended[True],
         "mended_with_losses": mended[False],
         "not_mended": mended[None],
     }
+
+
+def _named(found: list[Damage]) -> list[Damage]:
+    """Damage of something that is kept."""
+    return [damage for damage in found if damage.reason != TOLD]
 
 
 def _lasting(told: dict[str, Any]) -> Any:

@@ -14,8 +14,9 @@ from pathlib import Path
 
 import httpx
 
+from experiments.memory import RESIDENT, memory_mb
 from shared.bus import wait_until
-from tests.faults.latency import Stopwatch, memory_mb, told
+from tests.faults.latency import Stopwatch, told
 
 START_S = 60.0
 STALLED, READERS = 200, 500
@@ -101,7 +102,7 @@ def measure(running: Loaded, during_s: float) -> dict[str, float]:
             assert outcome == {"in": READERS}
             figures |= _beside(running, watch, during_s, "readers")
             figures["readers_read_ms"] = _reading_ms(running)
-        figures["gateway_mb"] = round(memory_mb(running.pid), 1)
+        figures["gateway_mb"] = round(memory_mb(running.pid, RESIDENT), 1)
     figures |= told(idle_s, "idle")
     for name in ("stalled", "readers"):
         figures[f"{name}_ratio"] = round(figures[f"{name}_p99_ms"] / figures["idle_p99_ms"], 2)

@@ -11,7 +11,7 @@ import numpy as np
 
 from shared.bus import Bus, open_bus, wait_until
 from shared.messages import MapRequest
-from shared.queries import QueryError
+from shared.queries import QueryError, RefusedError
 from shared.topics import MAP
 from tests.faults.account import judge
 from tests.faults.writers import OWN, SHARED, Link, Load
@@ -133,7 +133,7 @@ def _start(process: Process, bus: Bus) -> float:
         try:
             bus.ask(MAP, MapRequest(action="read"), 5.0, map="nobody")
         except QueryError as error:
-            return "no map" in str(error)
+            return isinstance(error, RefusedError) and error.code == "missing"
         return False
 
     assert wait_until(answers, PATIENCE_S), "the map store did not come back"

@@ -3,7 +3,6 @@
 import threading
 import time
 from itertools import count
-from pathlib import Path
 from types import TracebackType
 from typing import Self
 
@@ -83,9 +82,3 @@ def told(latencies_s: list[float], name: str) -> dict[str, float]:
         f"{name}_{label}_ms": round(float(np.percentile(latencies_s, share)) * 1e3, 2)
         for label, share in (("p50", 50), ("p99", 99), ("max", 100))
     }
-
-
-def memory_mb(pid: int) -> float:
-    """Resident memory of a process."""
-    lines = Path(f"/proc/{pid}/status").read_text(encoding="ascii").splitlines()
-    return next(int(line.split()[1]) for line in lines if line.startswith("VmRSS:")) / 1024.0

@@ -1,5 +1,9 @@
-"""A TCP proxy that can be cut: bytes stay where they are and arrive in one burst when it is healed."""
+"""A TCP proxy that can be cut: bytes stay where they are and arrive in one burst when it is healed.
 
+It can also lose what comes from those that connected to it, and then the connections.
+"""
+
+import contextlib
 import select
 import socket
 import threading
@@ -17,7 +21,9 @@ class Proxy:
         self._target = ("127.0.0.1", port)
         self._listener = socket.create_server(("127.0.0.1", 0))
         self._pairs: dict[socket.socket, socket.socket] = {}
+        self._near: set[socket.socket] = set()
         self._whole, self._stop = threading.Event(), threading.Event()
+        self._losing = False
         self._whole.set()
         self._thread = threading.Thread(target=self._run, name="proxy")
 
@@ -33,6 +39,17 @@ class Proxy:
     def heal(self) -> None:
         """Let everything through again, first what waited."""
         self._whole.set()
+
+    def lose(self) -> None:
+        """Throw away what comes from the near ends from now on; nobody notices yet."""
+        self._losing = True
+
+    def hang_up(self) -> None:
+        """End every connection; new ones lose nothing."""
+        for end in list(self._pairs):
+            with contextlib.suppress(OSError):  # the thread may have closed it just now
+                end.shutdown(socket.SHUT_RDWR)
+        self._losing = False
 
     def __enter__(self) -> Self:
         self._thread.start()
@@ -65,16 +82,19 @@ class Proxy:
             near.close()
             return
         self._pairs |= {near: far, far: near}
+        self._near.add(near)
 
     def _forward(self, end: socket.socket) -> None:
         try:
             chunk = end.recv(CHUNK)
             if chunk:
-                self._pairs[end].sendall(chunk)
+                if not (self._losing and end in self._near):
+                    self._pairs[end].sendall(chunk)
                 return
         except OSError:
             pass
         far = self._pairs.pop(end)
         del self._pairs[far]
+        self._near -= {end, far}
         end.close()
         far.close()

@@ -1,6 +1,5 @@
 """Nothing acknowledged is lost by kill -9 at any moment, and no changed byte of the file goes unnoticed."""
 
-from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
@@ -33,7 +32,6 @@ def test_no_acknowledged_transaction_is_lost_by_kill_9_at_any_moment(
 @pytest.mark.slow
 def test_a_changed_byte_is_noticed_or_changes_nothing(tmp_path: Path):
     found = list(flips(tmp_path, FLIPS, seed=3, mend=False))
-    assert [flip for flip in found if flip.verdict == "undetected"] == []
-    verdicts = Counter(flip.verdict for flip in found)
-    assert verdicts["detected"] >= FLIPS // 4
-    assert verdicts["harmless"] >= 1
+    assert [flip for flip in found if flip.verdict != "detected"] == []
+    idle = sum(flip.idle for flip in found)
+    assert 1 <= idle <= FLIPS * 3 // 4

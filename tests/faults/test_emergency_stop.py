@@ -6,13 +6,12 @@ from collections.abc import Iterator
 
 import pytest
 
-from experiments.hand import Hand
 from experiments.stack import Stack, StackChoice, open_stack
 from shared.bus import wait_until
-from shared.messages import Command, EStopRequest, MissionRequest
-from shared.queries import QueryError, RefusedError
-from shared.topics import COMMAND, ESTOP, FRAME, MISSION
-from tests.faults.watching import STILL_MPS, Watch
+from shared.messages import Command, EStopRequest
+from shared.queries import RefusedError
+from shared.topics import COMMAND, ESTOP, FRAME
+from tests.faults.watching import STILL_MPS, Watch, ask, ended, exploring
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(300)]
 
@@ -43,29 +42,8 @@ def stack(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stack]:
 @pytest.fixture
 def watch(stack: Stack) -> Iterator[Watch]:
     """Follows the true speed while the robot explores; it moves already."""
-    Hand(stack.bus, stack.robot).reset(1)
-    ask(stack, action="explore", map="stop", seed=1)
-    with Watch(stack.endpoint, stack.robot) as watching:
-        assert wait_until(watching.moving, timeout_s=30.0)
+    with exploring(stack, "stop", BACK_S) as watching:
         yield watching
-    cancel(stack)
-
-
-def ask(stack, **request):
-    return stack.bus.ask(MISSION, MissionRequest(**request), 10.0, robot=stack.robot)
-
-
-def cancel(stack):
-    """End the mission, if there is one; a planner that is just back has to be asked again."""
-
-    def ended():
-        try:
-            status = ask(stack, action="status")
-            return status.state not in ("running", "paused") or ask(stack, action="cancel") is None
-        except QueryError:
-            return False
-
-    assert wait_until(ended, BACK_S)
 
 
 def estop(stack, action, **words):
@@ -103,14 +81,14 @@ def test_engaged_the_wheels_stand_through_every_death_until_a_person_clears(stac
         pid = stack.launcher.kill(service)
         stack.launcher.wait_healthy(service, BACK_S, other_than=pid)
     insist(stack)
-    cancel(stack)
+    assert wait_until(lambda: ended(stack), BACK_S)
     ask(stack, action="goto", map="stop", goal_node=0)
     insist(stack)
     with pytest.raises(RefusedError, match="name of the person"):
         estop(stack, "clear")
     assert estop(stack, "status").who == "anna"
     assert watch.fastest_mps(stands_s) < STILL_MPS
-    cancel(stack)
+    assert wait_until(lambda: ended(stack), BACK_S)
     ask(stack, action="explore", map="after", seed=1)
     assert wait_until(lambda: ask(stack, action="status").state == "paused", 5.0)
 
@@ -129,7 +107,7 @@ def test_while_drive_hangs_the_robot_stops_and_nothing_stale_moves_it_after(stac
         assert wait_until(lambda: watch.still_after_s(hung_s) is not None, 5.0)
         record_property("still_s", watch.still_after_s(hung_s))
         time.sleep(SETTLED_S)  # the planner goes on wishing: that piles up before drive's door
-        cancel(stack)
+        assert wait_until(lambda: ended(stack), BACK_S)
     finally:
         stack.launcher.kill("drive", signal.SIGCONT)
     time.sleep(2 * SETTLED_S)

@@ -6,13 +6,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from experiments.hand import Hand
 from experiments.stack import Stack, StackChoice, open_stack
 from shared.bus import wait_until
-from shared.messages import MissionRequest
-from shared.queries import QueryError
-from shared.topics import MISSION
-from tests.faults.watching import Watch
+from tests.faults.watching import Watch, exploring
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(300)]
 
@@ -37,26 +33,8 @@ def stack(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stack]:
 @pytest.fixture
 def watch(stack: Stack) -> Iterator[Watch]:
     """Follows the true speed while the robot explores; it moves already."""
-    Hand(stack.bus, stack.robot).reset(1)
-    ask(stack, action="explore", map=f"m{time.monotonic_ns()}", seed=1)
-    with Watch(stack.endpoint, stack.robot) as watching:
-        assert wait_until(watching.moving, timeout_s=30.0)
+    with exploring(stack, f"m{time.monotonic_ns()}", BACK_S) as watching:
         yield watching
-    assert wait_until(lambda: cancelled(stack), BACK_S, 0.2)
-
-
-def ask(stack, **request):
-    return stack.bus.ask(MISSION, MissionRequest(**request), 10.0, robot=stack.robot)
-
-
-def cancelled(stack):
-    """End the mission; a planner that hung has to be asked again."""
-    try:
-        if ask(stack, action="status").state in ("running", "paused"):
-            ask(stack, action="cancel")
-    except QueryError:
-        return False
-    return True
 
 
 def frozen_for(stack, service, during_s=HUNG_S):

@@ -9,11 +9,12 @@ import httpx
 import pytest
 from websockets.sync.client import connect
 
+from experiments.memory import RESIDENT, memory_mb
 from shared.bus import open_bus, wait_until
 from shared.messages import Event
 from shared.topics import EVENT
 from tests.faults.gateway_load import CLIENTS, PER_CLIENT, READERS, loaded, measure
-from tests.faults.latency import Stopwatch, memory_mb, told
+from tests.faults.latency import Stopwatch, told
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(300)]
 
@@ -39,7 +40,7 @@ def start(repository, tmp_path, router_endpoint, free_port):
 
 def test_stalled_uploads_and_many_readers_leave_commands_in_time(start, record_property):
     running = start(max_sockets=READERS + 50, max_sockets_per_client=PER_CLIENT)
-    before_mb = memory_mb(running.pid)
+    before_mb = memory_mb(running.pid, RESIDENT)
     for _ in range(TRIES):  # what else runs on this machine only makes it worse
         figures = measure(running, PHASE_S)
         if in_time(figures, "stalled") and in_time(figures, "readers"):
@@ -72,7 +73,7 @@ def test_readers_that_never_read_are_dropped_and_slow_nobody(start, record_prope
     live = f"{running.address.replace('http', 'ws', 1)}/api/robots/r1/live"
     with Stopwatch(running.endpoint) as watch, telling(running.endpoint):
         assert watch.warm_up()
-        before_mb, latencies_s = memory_mb(running.pid), []
+        before_mb, latencies_s = memory_mb(running.pid, RESIDENT), []
         with running.crowd("deaf", DEAF) as outcome, connect(live, proxy=None) as reader:
             assert outcome == {"in": DEAF}
             deadline_s, longest_s = time.monotonic() + ENDED_S, 0.0
@@ -80,7 +81,7 @@ def test_readers_that_never_read_are_dropped_and_slow_nobody(start, record_prope
                 latencies_s += watch.latencies_s(1.0)
                 longest_s = max(longest_s, lag_s(reader))
             assert open_sockets(running) == 1, "only the reader that reads is left"
-        more_mb = memory_mb(running.pid) - before_mb
+        more_mb = memory_mb(running.pid, RESIDENT) - before_mb
     for name, value in {**told(latencies_s, "deaf"), "more_mb": more_mb, "lag_s": longest_s}.items():
         record_property(name, value)
     assert told(latencies_s, "deaf")["deaf_p50_ms"] < LOADED_P99_S * 1e3

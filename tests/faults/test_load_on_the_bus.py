@@ -2,7 +2,8 @@
 
 import pytest
 
-from tests.faults.latency import Stopwatch, memory_mb, told
+from experiments.memory import RESIDENT, memory_mb
+from tests.faults.latency import Stopwatch, told
 
 PHASE_S = 4.0
 FLOOD_MB_S = 100.0
@@ -29,10 +30,10 @@ def stopwatch(drive, router_endpoint):  # noqa: ARG001 - drive must run
 def test_junk_at_100_mb_a_second_is_thrown_away_unread_and_commands_go_on(
     drive, stopwatch, rogue, record_property
 ):
-    quiet_s, before_mb = stopwatch.latencies_s(PHASE_S), memory_mb(drive.pid)
+    quiet_s, before_mb = stopwatch.latencies_s(PHASE_S), memory_mb(drive.pid, RESIDENT)
     flood = rogue("flood", str(FLOOD_MB_S))
     flooded_s = stopwatch.latencies_s(PHASE_S)
-    more_mb, rate = memory_mb(drive.pid) - before_mb, flood.stdout.readline()
+    more_mb, rate = memory_mb(drive.pid, RESIDENT) - before_mb, flood.stdout.readline()
     for name, value in {**told(quiet_s, "quiet"), **told(flooded_s, "flooded")}.items():
         record_property(name, value)
     record_property("more_mb", round(more_mb, 1))

@@ -1,42 +1,63 @@
 """Watching the wheels and the messages of a robot while something is killed."""
 
-import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from itertools import pairwise
-from types import TracebackType
-from typing import Self
+from typing import Any
 
-from shared.bus import Bus, open_bus
-from shared.messages import Command, Heading
-from shared.topics import COMMAND, FEATURES, HEADING, TRUTH
+from experiments.background import Background
+from experiments.hand import Hand
+from experiments.stack import Stack
+from shared.bus import Bus, open_bus, wait_until
+from shared.messages import Command, Heading, MissionRequest, MissionStatus
+from shared.queries import QueryError
+from shared.topics import COMMAND, FEATURES, HEADING, MISSION, TRUTH
 
 TOPICS = {"truth": TRUTH, "features": FEATURES, "planner": HEADING, "drive": COMMAND}
 MOVING_MPS = 0.1
 STILL_MPS = 0.03
+ASK_S = 10.0
+MOVES_S = 30.0
 
 
-class Watch:
+def ask(stack: Stack, **request: Any) -> MissionStatus:
+    """Ask the planner of a stack."""
+    return stack.bus.ask(MISSION, MissionRequest(**request), ASK_S, robot=stack.robot)
+
+
+def ended(stack: Stack) -> bool:
+    """End the mission, if there is one; False where the planner is not there to be asked: ask again."""
+    try:
+        if ask(stack, action="status").state in ("running", "paused"):
+            ask(stack, action="cancel")
+    except QueryError:
+        return False
+    return True
+
+
+@contextmanager
+def exploring(stack: Stack, map_name: str, back_s: float) -> Iterator["Watch"]:
+    """Watch a robot that explores and moves already; at the end its mission is ended, within `back_s`."""
+    Hand(stack.bus, stack.robot).reset(1)
+    ask(stack, action="explore", map=map_name, seed=1)
+    with Watch(stack.endpoint, stack.robot) as watching:
+        assert wait_until(watching.moving, timeout_s=MOVES_S)
+        yield watching
+    assert wait_until(lambda: ended(stack), back_s, 0.2)
+
+
+class Watch(Background):
     """Notes when each message arrived, and the true speed; a session and a thread of its own."""
 
     def __init__(self, endpoint: str, robot: str) -> None:
+        super().__init__("watch")
         self._endpoint, self._robot = endpoint, robot
-        self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._listen, name="watch")
         self.speeds: list[tuple[float, float]] = []
         self.frames: list[tuple[float, int]] = []
         self.arrivals: dict[str, list[float]] = {name: [] for name in TOPICS}
         self.commands: list[tuple[float, Command]] = []
         self.headings: list[tuple[float, Heading]] = []
-
-    def __enter__(self) -> Self:
-        self._thread.start()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._stop.set()
-        self._thread.join()
 
     def moving(self) -> bool:
         """Whether the robot is driving now."""
@@ -107,9 +128,10 @@ class Watch:
         moving = [(t, c.seq) for t, c in self.commands if c.wheel_speed_radps != 0.0 and t >= since_s]
         return max((time_s - heard_s[seq] for time_s, seq in moving if seq in heard_s), default=0.0)
 
-    def _listen(self) -> None:
+    def _run(self) -> None:
         with open_bus(self._endpoint) as bus:
             inboxes = {name: self._subscribe(bus, name) for name in TOPICS}
+            self._ready.set()
             while not self._stop.is_set():
                 bus.wait(0.2)
                 now_s = time.monotonic()

@@ -89,7 +89,7 @@ class Writer:
             try:
                 self.link.bus.ask(MAP, MapRequest(action="create"), ANSWER_S, map=self.map)
             except QueryError as error:
-                if "exists already" not in str(error):
+                if not (isinstance(error, RefusedError) and error.code == "conflict"):
                     time.sleep(PAUSE_S)
                     continue
             return

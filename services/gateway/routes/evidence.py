@@ -1,5 +1,7 @@
 """Evidence for people: the matches behind an edge, and those between the live picture and a place."""
 
+import asyncio
+
 from fastapi import APIRouter
 
 from services.gateway.problems import ProblemError
@@ -11,6 +13,9 @@ from shared.messages.matching import MatchRequest, NodeMatch
 from shared.topics import MAP, MATCH
 
 router = APIRouter(tags=["evidence"])
+
+LIVE_TRIES, LIVE_PAUSE_S = 5, 0.1
+"""The feature service may not have the newest frame yet, or have dropped it for a newer one."""
 
 
 class Matches(NodeAnswer):
@@ -50,9 +55,17 @@ async def show_live_matches(
     robot: RobotPath, map_name: MapQuery, node: NodeQuery, gateway: GatewayDep
 ) -> Matches:
     """Compare the newest picture with a place."""
-    frame = newest_frame(gateway, robot)
-    question = MatchRequest(seq=frame.seq, stamp_ns=frame.stamp_ns, map=map_name, node_ids=(node,))
-    return await _matches(gateway, robot, question, f"frame {frame.seq}")
+    left = LIVE_TRIES
+    while True:
+        left -= 1
+        frame = newest_frame(gateway, robot)
+        question = MatchRequest(seq=frame.seq, stamp_ns=frame.stamp_ns, map=map_name, node_ids=(node,))
+        try:
+            return await _matches(gateway, robot, question, f"frame {frame.seq}")
+        except ProblemError as problem:
+            if problem.members.get("reason") != "passing" or not left:
+                raise
+        await asyncio.sleep(LIVE_PAUSE_S)
 
 
 async def _matches(gateway: Gateway, robot: str, question: MatchRequest, picture: str) -> Matches:

@@ -138,8 +138,9 @@ def test_the_same_question_has_the_same_answer(bus: Bus, store) -> None:
 def test_what_cannot_be_answered_is_refused_with_the_reason(bus: Bus) -> None:
     current = extract(bus, frame_at(0.0, 0.0))
     foreign = current.model_copy(update={"pipeline": "orb-equirectangular-150"})
-    with pytest.raises(RefusedError, match="frame 5 is not kept"):
+    with pytest.raises(RefusedError, match="frame 5 is not kept") as gone:
         match(bus, seq=5, best_k=1)
+    assert gone.value.code == "passing"
     with pytest.raises(RefusedError, match="map 'cellar' is not known to the map store"):
         match(bus, map="cellar", features=current, best_k=1)
     with pytest.raises(RefusedError, match=r"map 'flat' has no node \[3\]"):

@@ -1,6 +1,5 @@
 """A router, stand-in neighbours and the gateway itself on free ports."""
 
-import socket
 import tempfile
 import threading
 from collections.abc import Iterator
@@ -9,28 +8,18 @@ from pathlib import Path
 import httpx
 import pytest
 import zenoh
+from PIL import Image
 
 from services.gateway.service import run
 from services.gateway.settings import GatewaySettings
 from shared.bus import Bus, open_bus, wait_until
 from shared.bus_config import router_config
+from tests.integration.gateway.corpus import saved
+from tests.integration.gateway.gateway_process import UNHURRIED, Process, answers, free_port, send, started
 from tests.integration.gateway.standins import FeatureService, Peer, Planner, served, store_app
 
 Stored = tuple[int, list[tuple[str, str]]]
 """The map store's port and what it was asked: method and path."""
-
-
-UNHURRIED = {
-    name: 10_000 for name in ("writes_per_s", "write_burst", "uploads_per_s", "upload_burst", "failure_burst")
-}
-"""No rate limits: tests ask faster than people and programs do."""
-
-
-def free_port() -> int:
-    """A port that was free a moment ago."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 @pytest.fixture(scope="module")
@@ -82,6 +71,19 @@ def gateway(endpoint: str, stored: Stored, features: FeatureService, planner: Pl
     yield from serve_gateway(endpoint, map_store_url=store, max_upload_bytes=2_000_000)
 
 
+@pytest.fixture(scope="module")
+def process(
+    endpoint: str, features: FeatureService, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Process]:
+    """The gateway as a process, beside a feature service; it has decoded a picture before."""
+    assert features
+    running = started(endpoint, tmp_path_factory.mktemp("gateway"))
+    assert send(running, "image/png", saved(Image.new("RGB", (256, 128)), "PNG")).status_code == 200
+    yield running
+    running.process.terminate()
+    assert running.process.wait(10.0) == 0
+
+
 @pytest.fixture
 def http(gateway: str) -> Iterator[httpx.Client]:
     """A client of the gateway."""
@@ -110,11 +112,3 @@ def _serve(endpoint: str, **changes: object) -> Iterator[str]:
     yield address
     stop.set()
     thread.join(10.0)
-
-
-def answers(address: str) -> bool:
-    """Whether somebody serves there."""
-    try:
-        return httpx.get(f"{address}/healthz", trust_env=False).status_code == 200
-    except httpx.HTTPError:
-        return False

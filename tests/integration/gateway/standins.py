@@ -65,6 +65,7 @@ class FeatureService:
     def __init__(self) -> None:
         self.extracted: list[ExtractRequest] = []
         self.matched: list[MatchRequest] = []
+        self.behind = 0  # so many frames it does not have yet
         self.results: tuple[NodeMatch, ...] = (
             NodeMatch(node_id=3, raw_matches=20, inliers=9, status="inconsistent"),
             NodeMatch(
@@ -87,6 +88,10 @@ class FeatureService:
                 asked.reply(features_of())
             while (question := match.take()) is not None:
                 self.matched.append(question.message)
+                if self.behind:
+                    self.behind -= 1
+                    question.refuse(f"frame {question.message.seq} is not kept", "passing")
+                    continue
                 if question.message.map == "nowhere":
                     question.refuse("no map 'nowhere'")
                     continue

@@ -6,7 +6,6 @@ import statistics
 import struct
 import time
 import zlib
-from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
@@ -14,8 +13,7 @@ import pytest
 from PIL import Image
 
 from tests.integration.gateway.corpus import bomb, chunk, saved
-from tests.integration.gateway.standins import FeatureService
-from tests.integration.gateway.test_uploads import Process, send, started
+from tests.integration.gateway.gateway_process import Process, send
 
 TIMES = 10
 REFUSAL_CPU_S = 0.1
@@ -23,19 +21,6 @@ REFUSAL_MB = 50
 LARGEST_MB = 500
 """More memory than before while the largest allowed picture is decoded; the container has 1 GB in all."""
 LARGEST = {"PNG": (8192, 4096), "WEBP": (6324, 3162), "JPEG": (11_312, 5_656)}
-
-
-@pytest.fixture(scope="module")
-def process(
-    endpoint: str, features: FeatureService, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[Process]:
-    """A gateway process that has decoded a picture before."""
-    assert features
-    running = started(endpoint, tmp_path_factory.mktemp("gateway"))
-    assert send(running, "image/png", saved(Image.new("RGB", (256, 128)), "PNG")).status_code == 200
-    yield running
-    running.process.terminate()
-    assert running.process.wait(10.0) == 0
 
 
 def packed_chunk(name: bytes) -> bytes:

@@ -47,6 +47,19 @@ def test_the_newest_picture_is_compared_with_a_place(
     assert (asked.seq, asked.node_ids, asked.with_matches) == (77, (7,), True)
 
 
+def test_a_picture_that_the_feature_service_does_not_have_yet_is_asked_about_again(
+    http: httpx.Client, robot_bus: Bus, features: FeatureService
+) -> None:
+    send_frame(http, robot_bus, 79)
+    features.behind = 2
+    assert http.get("/api/robots/r1/matches?map=flat&node=7").json()["node_id"] == 7
+    features.behind, asked = 100, len(features.matched)
+    answer = http.get("/api/robots/r1/matches?map=flat&node=7")
+    features.behind = 0
+    assert (answer.status_code, answer.json()["reason"]) == (409, "passing")
+    assert len(features.matched) - asked == 5
+
+
 def test_an_answer_about_another_place_is_refused(http: httpx.Client, robot_bus: Bus) -> None:
     send_frame(http, robot_bus, 78)
     answer = http.get("/api/robots/r1/matches?map=flat&node=5")

@@ -12,7 +12,7 @@ from shared.bus import Bus, wait_until
 from shared.messages.missions import Event, MissionStatus
 from shared.messages.sensors import Frame
 from shared.topics import EVENT, FRAME, STATUS
-from tests.browser import WAIT_MS, chromium, listen, needs_chromium
+from tests.browser import WAIT_MS, listen, needs_chromium
 from tests.integration.gateway.conftest import free_port, serve_gateway
 from tests.integration.gateway.standins import Planner
 
@@ -20,13 +20,6 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 pytestmark = needs_chromium
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator["Browser"]:
-    """A headless Chromium."""
-    with chromium() as opened:
-        yield opened
 
 
 @pytest.fixture

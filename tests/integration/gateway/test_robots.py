@@ -107,12 +107,17 @@ def test_malformed_messages_are_counted_and_do_no_harm(http: httpx.Client, robot
 
 
 def test_readiness_names_what_is_missing(http: httpx.Client, robot_bus: Bus) -> None:
-    answer = http.get("/readyz")
-    if answer.status_code == 503:
-        assert answer.json()["missing"] == ["map_store"]
+    def missing() -> list[str]:
+        answer = http.get("/readyz")
+        return answer.json()["missing"] if answer.status_code == 503 else []
+
+    assert wait_until(lambda: missing() == ["map_store", "drive"], 20.0)
     robot_bus.announce("map_store")
+    assert wait_until(lambda: missing() == ["drive"], 20.0)
+    robot_bus.announce("drive")
     assert wait_until(lambda: http.get("/readyz").status_code == 200, 20.0)
-    assert set(http.get("/readyz").json()["services"]) >= {"features", "gateway", "map_store", "planner"}
+    needed = {"features", "gateway", "map_store", "planner", "drive"}
+    assert set(http.get("/readyz").json()["services"]) >= needed
 
 
 def test_errors_outside_the_api_are_problems_too(http: httpx.Client) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from shared.bus import wait_until
-from tests.browser import WAIT_MS, chromium, needs_chromium
+from tests.browser import WAIT_MS, needs_chromium
 from tests.integration.gateway.conftest import Stored, serve_gateway
 from tests.integration.gateway.keys import SECRETS, write_file
 from tests.integration.gateway.standins import Planner
@@ -16,13 +16,6 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 pytestmark = needs_chromium
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator["Browser"]:
-    """A headless Chromium."""
-    with chromium() as opened:
-        yield opened
 
 
 @pytest.fixture(scope="module")

@@ -7,8 +7,6 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 import httpx
@@ -17,66 +15,11 @@ from websockets.sync.client import connect
 
 from shared.bus import Bus, wait_until
 from shared.topics import MISSION
-from tests.integration.gateway.conftest import UNHURRIED, answers, free_port
-from tests.integration.gateway.corpus import LIMIT_BYTES, Upload, bomb, broken, convertible
+from tests.integration.gateway.corpus import Upload, bomb, broken, convertible
+from tests.integration.gateway.gateway_process import ROOT, Process, answers, send, started
 from tests.integration.gateway.standins import FeatureService
 
-ROOT = Path(__file__).resolve().parents[3]
 BROKEN = broken()
-
-
-@dataclass
-class Process:
-    """The gateway as a process."""
-
-    address: str
-    pid: int
-    folder: Path
-    process: "subprocess.Popen[bytes]"
-
-    def rss_bytes(self) -> int:
-        return int(Path(f"/proc/{self.pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-
-    def files(self) -> list[str]:
-        """What lies in its working and temporary folder."""
-        return sorted(str(path) for path in self.folder.rglob("*"))
-
-
-def started(endpoint: str, folder: Path) -> Process:
-    port = free_port()
-    environment = {
-        **{name: value for name, value in os.environ.items() if not name.startswith(("GATEWAY_", "TOPNAV_"))},
-        "TOPNAV_ENDPOINT": endpoint,
-        "GATEWAY_PORT": str(port),
-        "GATEWAY_MAX_UPLOAD_BYTES": str(LIMIT_BYTES),
-        **{f"GATEWAY_{name.upper()}": str(value) for name, value in UNHURRIED.items()},
-        "PYTHONPATH": str(ROOT),
-        "TMPDIR": str(folder),
-    }
-    process = subprocess.Popen([sys.executable, "-m", "services.gateway"], cwd=folder, env=environment)
-    address = f"http://127.0.0.1:{port}"
-    assert wait_until(lambda: answers(address), 20.0)
-    return Process(address, process.pid, folder, process)
-
-
-@pytest.fixture(scope="module")
-def process(
-    endpoint: str, features: FeatureService, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[Process]:
-    """The gateway as a process, beside a feature service."""
-    assert features
-    running = started(endpoint, tmp_path_factory.mktemp("gateway"))
-    yield running
-    running.process.terminate()
-    assert running.process.wait(10.0) == 0
-
-
-def send(
-    process: Process, content_type: str, body: bytes, robot: str = "r1", name: str = "flat"
-) -> httpx.Response:
-    url = f"{process.address}/api/robots/{robot}/goal-check?map={name}"
-    headers = {"content-type": content_type} if content_type else {}
-    return httpx.post(url, content=body, headers=headers, trust_env=False, timeout=30.0)
 
 
 def refused(process: Process) -> dict[str, float]:

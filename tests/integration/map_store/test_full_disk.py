@@ -2,7 +2,7 @@
 
 import subprocess
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 import httpx
@@ -13,11 +13,15 @@ from shared.messages import MapReply, MapRequest
 from shared.queries import RefusedError
 from shared.topics import MAP
 from tests.faults.lived_maps import place
+from tests.integration.gateway.conftest import serve_gateway
 from tests.integration.map_store.conftest import START_S, Process
 
 ANSWER_S = 10.0
-MOUNT = ("unshare", "-rm", "sh", "-c", 'mount -t tmpfs -o size=3m none "$0" && exec "$@"')
-"""Runs a command with a disk of its own that nobody else sees."""
+MOUNT = (
+    *("unshare", "-rm", "sh", "-c"),
+    'mount -t tmpfs -o size=3m none "$0" && export TMPDIR="$0" && exec "$@"',
+)
+"""Runs a command with a disk of its own that nobody else sees; what it keeps for a while is there, too."""
 
 
 class SmallDisk:
@@ -26,7 +30,9 @@ class SmallDisk:
     def __init__(self, process: Process, folder: Path, bus: Bus) -> None:
         assert process.child is not None
         self.rest = httpx.Client(base_url=process.url, trust_env=False, timeout=ANSWER_S)
-        self._ballast = Path(f"/proc/{process.child.pid}/root{folder}/ballast")
+        self.url = process.url
+        self.folder = Path(f"/proc/{process.child.pid}/root{folder}")
+        self._ballast = self.folder / "ballast"
         self._bus = bus
 
     def fill(self) -> None:
@@ -97,3 +103,33 @@ def test_a_full_disk_refuses_writes_reads_go_on_and_with_room_writes_do_too(disk
     assert disk.ask(action="transact", operations=(place(refused),)).revision == refused + 1
     assert disk.rest.post("/maps/flat/undo").json()["undone"] == refused + 1
     assert disk.rest.get("/check").json() == {"damage": []}
+
+
+@pytest.mark.parametrize("way", ["map store", "gateway"])
+def test_an_archive_for_which_there_is_no_room_is_refused_as_such(
+    disk: SmallDisk, router_endpoint: str, way: str
+):
+    disk.ask(action="create")
+    disk.ask(action="transact", operations=(place(0),))
+    files = set(disk.folder.iterdir())
+    for number in range(2):  # the second time the folder for temporary files is known to be full
+        with ExitStack() as opened:
+            url, path = disk.url, "/maps/import"
+            if way == "gateway":
+                url, path = opened.enter_context(gateway(router_endpoint, disk.url)), "/api/maps/import"
+            sent = (bytes(1_000_000) for _ in range(40))
+            answer = httpx.post(f"{url}{path}", content=sent, trust_env=False, timeout=60.0)
+        assert (number, answer.status_code) == (number, 507), answer.text
+        assert answer.json()["type"] == "urn:topnav:problem:storage-full"
+        assert "no room for an archive" in answer.json()["detail"]
+        disk.fill()
+    assert [node.node_id for node in disk.ask(action="read").nodes] == [0]
+    disk.clear()
+    assert set(disk.folder.iterdir()) == files
+    assert [each["name"] for each in disk.rest.get("/maps").json()] == ["flat"]
+
+
+@contextmanager
+def gateway(endpoint: str, store: str) -> Iterator[str]:
+    """A gateway in front of that map store."""
+    yield from serve_gateway(endpoint, map_store_url=store)

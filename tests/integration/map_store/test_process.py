@@ -44,22 +44,25 @@ def test_maps_are_written_read_and_followed_over_the_bus(bus: Bus):
     assert [entry.node_id for entry in ask(bus, "flat", action="read_features").features] == [1]
 
 
-REFUSED: tuple[tuple[str, dict[str, Any], str], ...] = (
-    ("house", {"action": "read"}, r"no map 'house'; maps: \['flat'\]"),
-    ("house", {"action": "transact", "operations": (DeleteNode(node_id=1),)}, "no map 'house'"),
-    ("flat", {"action": "create"}, "map 'flat' exists already"),
-    ("flat", {"action": "transact"}, "at least one operation"),
-    ("flat", {"action": "transact", "operations": (DeleteNode(node_id=1),)}, "node 1 does not exist"),
-    ("flat", {"action": "transact", "operations": (add(1),), "base_revision": 7}, "at revision 0, not 7"),
-    ("flat", {"action": "read_features", "node_ids": (4,)}, "node 4 does not exist"),
+REMOVE = {"action": "transact", "operations": (DeleteNode(node_id=1),)}
+LATE = {"action": "transact", "operations": (add(1),), "base_revision": 7}
+REFUSED: tuple[tuple[str, dict[str, Any], str, str], ...] = (
+    ("house", {"action": "read"}, r"no map 'house'; maps: \['flat'\]", "missing"),
+    ("house", REMOVE, "no map 'house'", "missing"),
+    ("flat", {"action": "create"}, "map 'flat' exists already", "conflict"),
+    ("flat", {"action": "transact"}, "at least one operation", "invalid"),
+    ("flat", REMOVE, "node 1 does not exist", "missing"),
+    ("flat", LATE, "at revision 0, not 7", "conflict"),
+    ("flat", {"action": "read_features", "node_ids": (4,)}, "node 4 does not exist", "missing"),
 )
 
 
 def test_what_cannot_be_done_is_refused_with_the_reason(bus: Bus):
     ask(bus, "flat", action="create")
-    for name, fields, told in REFUSED:
-        with pytest.raises(RefusedError, match=told):
+    for name, fields, told, code in REFUSED:
+        with pytest.raises(RefusedError, match=told) as refused:
             ask(bus, name, **fields)
+        assert refused.value.code == code
 
 
 def test_hostile_questions_are_refused_and_the_service_lives(bus: Bus):

@@ -8,6 +8,7 @@ from services.map_store.database import Database
 from tests.postgres import PostgresServer
 from tests.unit.services.map_store import (
     conftest,
+    test_answers,
     test_damage,
     test_history_api,
     test_missions,
@@ -18,6 +19,7 @@ from tests.unit.services.map_store import (
 
 BORROWED = {
     conftest: ("told", "database", "store", "client"),
+    test_answers: ("pair",),
     test_damage: ("two",),
     test_history_api: (),
     test_missions: (),

@@ -17,6 +17,8 @@ FOLDERS = {
     "services/gateway": Role.GATEWAY,
     "experiments": Role.OPERATOR,
 }
+# Plays simulator and planner of many robots on a bus of its own, which is not secured.
+IMPERSONATORS = {"experiments/scale/asking_robot.py"}
 # The emergency stop is in shared code: drive holds the desk, a body follows.
 SIDES = {"StopDesk": Role.DRIVE, "StopFollower": Role.SIMULATOR}
 CALLS = {
@@ -59,6 +61,8 @@ def test_every_topic_and_question_has_somebody_on_each_side():
 def test_the_code_of_a_service_does_nothing_that_its_role_may_not(folder, role, repository):
     found = set()
     for path in sorted((repository / folder).rglob("*.py")):
+        if path.relative_to(repository).as_posix() in IMPERSONATORS:
+            continue
         found |= uses(ast.parse(path.read_text(encoding="utf-8")))
     assert found, f"no use of the bus found in {folder}"
     assert forbidden(role, found) == []

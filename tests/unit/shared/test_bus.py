@@ -172,10 +172,20 @@ def test_a_question_is_answered_by_the_service_s_own_loop(here: Bus, there: Bus)
 def test_a_refusal_carries_the_service_s_words(here: Bus, there: Bus):
     requests = answering(here, there)
     asking = Asking(there, "flat")
-    taken(requests).refuse("no map 'flat'")
+    taken(requests).refuse("no map 'flat'", "missing")
     error = asking.join().error
     assert isinstance(error, RefusedError)
-    assert str(error) == "no map 'flat'"
+    assert (str(error), error.code) == ("no map 'flat'", "missing")
+
+
+def test_a_refusal_of_an_older_service_has_no_code(here: Bus, there: Bus):
+    requests = answering(here, there)
+    asking = Asking(there, "flat")
+    with taken(requests)._query as query:
+        query.reply_err(b"no map 'flat'")
+    error = asking.join().error
+    assert isinstance(error, RefusedError)
+    assert (str(error), error.code) == ("no map 'flat'", "")
 
 
 def test_nobody_and_nobody_in_time_are_told_apart(here: Bus, there: Bus):

@@ -32,7 +32,7 @@ def features(pipeline: Pipeline, picture: np.ndarray) -> Features:
 
 
 def places(pipeline: Pipeline, **of: Features) -> Places:
-    kept = Places(pipeline.identity, pipeline.profile.keypoints, pipeline.extractor.distance)
+    kept = Places.of(pipeline)
     for name, found in of.items():
         kept.put(int(name.removeprefix("n")), found)
     return kept

@@ -3,6 +3,7 @@
 import pytest
 
 from services.launcher.compose_file import Dependency, load_compose, seconds_from_duration
+from tests.yaml_bomb import BOMB
 
 
 def write(tmp_path, text):
@@ -55,12 +56,6 @@ def test_a_bad_duration_is_refused(text):
 def test_what_the_launcher_cannot_run_is_refused_with_the_field(tmp_path, text, message):
     with pytest.raises(ValueError, match=message):
         load_compose(write(tmp_path, text), {})
-
-
-BOMB = "a: &a [1,1,1,1,1,1,1,1,1]\n" + "".join(
-    f"{b}: &{b} [*{a},*{a},*{a},*{a},*{a},*{a},*{a},*{a},*{a}]\n"
-    for a, b in zip("abcdefgh", "bcdefghi", strict=True)
-)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""A database that version 0.1.0 of the program wrote opens with everything in it."""
+"""A database of every earlier version of the tables opens with everything in it."""
 
 import gzip
 import sqlite3
@@ -18,16 +18,26 @@ from shared.messages.maps import Edge
 from shared.wire import encode
 from tests.unit.services.map_store.conftest import add, features
 
-STORED = Path(__file__).parent / "data" / "version_1.sqlite3.gz"
-"""Maps "flat" (five revisions, one of them an undo) and "loft", and a mission of robot r1."""
+STORED = Path(__file__).parent / "data"
+"""Maps "flat" (five revisions, one of them an undo) and "loft", and a mission of robot r1, by version."""
+
+
+def copy_of(version: int, folder: Path) -> Path:
+    copy = folder / "maps.sqlite3"
+    copy.write_bytes(gzip.decompress((STORED / f"version_{version}.sqlite3.gz").read_bytes()))
+    return copy
+
+
+@pytest.fixture(params=[1, 2])
+def file(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    """A copy of a stored database."""
+    return copy_of(request.param, tmp_path)
 
 
 @pytest.fixture
-def file(tmp_path: Path) -> Path:
-    """A copy of the stored database."""
-    copy = tmp_path / "maps.sqlite3"
-    copy.write_bytes(gzip.decompress(STORED.read_bytes()))
-    return copy
+def first(tmp_path: Path) -> Path:
+    """A copy of what version 0.1.0 of the program wrote, without seals."""
+    return copy_of(1, tmp_path)
 
 
 def opened(file: Path) -> MapStore:
@@ -62,26 +72,31 @@ def test_it_is_written_undone_and_opened_again(file: Path):
     assert check(again.database) == []
 
 
-def test_a_record_that_cannot_be_read_is_not_sealed_as_if_it_were_good(file: Path):
-    with closing(sqlite3.connect(file)) as connection, connection:
+def test_every_earlier_version_is_kept_for_these_tests():
+    kept = {int(path.name.split("_")[1].split(".")[0]) for path in STORED.iterdir()}
+    assert kept == set(range(1, tables.VERSION))
+
+
+def test_a_record_that_cannot_be_read_is_not_sealed_as_if_it_were_good(first: Path):
+    with closing(sqlite3.connect(first)) as connection, connection:
         connection.execute("UPDATE nodes SET record = '{' WHERE node_id = 5")
-    store = opened(file)
+    store = opened(first)
     assert [(each.map, each.thing) for each in check(store.database)] == [("loft", "node 5")]
     assert store.graph("flat")[0] == 5
 
 
-def test_a_migration_that_fails_leaves_the_old_tables(file: Path, monkeypatch: pytest.MonkeyPatch):
+def test_a_migration_that_fails_leaves_the_old_tables(first: Path, monkeypatch: pytest.MonkeyPatch):
     def fail(*_: object) -> None:
         raise CorruptError("broken off")
 
     with monkeypatch.context() as broken:
         broken.setattr(migration, "_write_about", fail)
         with pytest.raises(CorruptError, match="broken off"):
-            opened(file)
-    with closing(sqlite3.connect(file)) as connection:
+            opened(first)
+    with closing(sqlite3.connect(first)) as connection:
         assert connection.execute("SELECT * FROM about").fetchall() == [(1,)]
         assert "seal" not in {row[1] for row in connection.execute("PRAGMA table_info(nodes)")}
-    assert check(opened(file).database) == []
+    assert check(opened(first).database) == []
 
 
 def test_a_later_version_is_refused(file: Path):
@@ -89,5 +104,5 @@ def test_a_later_version_is_refused(file: Path):
     with store.database.write() as connection:
         connection.execute(text(f"UPDATE about SET version = {tables.VERSION + 1}"))
     store.database.close()
-    with pytest.raises(UnavailableError, match=r"tables of version 2 expected, got \[3\]"):
+    with pytest.raises(UnavailableError, match=r"tables of version 3 expected, got \[4\]"):
         opened(file)

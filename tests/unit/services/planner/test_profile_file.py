@@ -43,6 +43,7 @@ def test_the_launcher_gives_the_base_to_everybody_and_the_file_to_the_planner(wr
     ("content", "words"),
     [
         ("{", "not one of"),
+        ("1" * 5_000, "not one of"),
         ({"thresholds": {}}, "base"),
         ({"base": "moon", "thresholds": {}}, "must be one of"),
         ({"base": "outdoor", "thresholds": {"s_edge_mim": 3}}, "s_edge_mim"),

@@ -1,22 +1,29 @@
-"""The planner's view of the feature service counts what the answers for one frame cost."""
+"""The planner's view of the feature service: what answers cost, and only places that it knows itself."""
 
 import pytest
 
+from services.planner.graph import MapGraph
+from services.planner.ports import GOAL
 from services.planner.remote import RemoteMap, RemoteMatcher
 from shared.messages import MatchReply
+from shared.messages.maps import Node
+from shared.messages.matching import NodeMatch
 
 
 class Answers:
-    """A bus on which every question about matches costs the same."""
+    """A bus on which every question about matches has the same answer."""
 
     def ask(self, _query, _request, _timeout_s, **_names):
-        return MatchReply(map="flat", match_ms=2.0, verify_ms=7.5)
+        results = tuple(NodeMatch(node_id=n, raw_matches=9, inliers=9, status="ok") for n in (GOAL, 1, 2))
+        return MatchReply(map="flat", match_ms=2.0, verify_ms=7.5, results=results)
 
 
 @pytest.fixture
 def matcher():
     bus = Answers()
-    return RemoteMatcher(bus, "r1", RemoteMap(bus, "flat", 1.0), 1.0)
+    maps = RemoteMap(bus, "flat", 1.0)
+    maps.graph = MapGraph([Node(node_id=1)])
+    return RemoteMatcher(bus, "r1", maps, 1.0)
 
 
 def test_costs_of_all_questions_about_one_frame_add_up(matcher):
@@ -31,3 +38,7 @@ def test_costs_start_at_zero_with_each_frame(matcher):
     matcher.match((1,))
     matcher.begin(6, 60)
     assert (matcher.match_ms, matcher.verify_ms) == (0.0, 0.0)
+
+
+def test_a_place_of_another_robot_that_the_planner_has_not_heard_of_yet_is_left_out(matcher):
+    assert matcher.match((), best_k=3).keys() == {GOAL, 1}
