@@ -1,13 +1,11 @@
 """From frame to command: how long the robot waits for what follows from a picture, across all processes."""
 
-import threading
 import time
 from collections.abc import Mapping
-from types import TracebackType
-from typing import Self
 
 import numpy as np
 
+from experiments.background import Background
 from experiments.output import rounded
 from experiments.stack import Stack
 from shared.topics import COMMAND, FRAME
@@ -15,7 +13,7 @@ from shared.topics import COMMAND, FRAME
 PERIOD_S = 0.2
 
 
-class FrameTimes:
+class FrameTimes(Background):
     """Notes when each frame and the first command that follows from it arrive, on a session of its own.
 
     Attributes:
@@ -25,26 +23,12 @@ class FrameTimes:
 
     def __init__(self, stack: Stack) -> None:
         """Listen to the stack's robot within the `with` block."""
+        super().__init__("bench-frames")
         self._stack = stack
-        self._stop, self._ready = threading.Event(), threading.Event()
-        self._thread = threading.Thread(target=self._listen, name="bench-frames")
         self.frames: dict[int, float] = {}
         self.commands: dict[int, float] = {}
 
-    def __enter__(self) -> Self:
-        """Start listening."""
-        self._thread.start()
-        self._ready.wait(10.0)
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Stop listening."""
-        self._stop.set()
-        self._thread.join()
-
-    def _listen(self) -> None:
+    def _run(self) -> None:
         with self._stack.session() as own:
             frames = own.bus.subscribe(FRAME, robot=own.robot)
             commands = own.bus.subscribe(COMMAND, robot=own.robot)

@@ -1,7 +1,5 @@
 """`topnav bench loop`: how long each stage of the loop takes over a real mission."""
 
-import os
-import platform
 import tempfile
 from pathlib import Path
 from typing import Annotated
@@ -14,7 +12,9 @@ from experiments.bench_listener import Listener
 from experiments.bench_stages import stage_durations_ms, table
 from experiments.exploration import explore
 from experiments.failure import ExperimentError, one_line_errors
+from experiments.machine import machine
 from experiments.output import rounded, write_json
+from experiments.processor_time import ServiceTimes
 from experiments.progress import mission_progress
 from experiments.stack import StackChoice, open_stack
 from experiments.tables import print_rows, wide_console
@@ -42,7 +42,9 @@ def main(
             mission_progress(wide_console(stderr=True), "timing") as watch,
             FrameTimes(stack) as times,
         ):
+            processors = ServiceTimes(stack.launcher)
             result = explore(stack, world, MAP, seed, steps, watch=watch)
+            cpu = processors.figures(result.run.status.step)
     if result.run.status.step < min(20, steps):
         raise ExperimentError(
             f"the mission ended after {result.run.status.step} steps: {result.run.status.reason}"
@@ -54,27 +56,8 @@ def main(
     if json_file is not None:
         counts = {stage: len(d) for stage, d in durations.items()}
         figures = {"steps_per_s": rate, "stages": stages, "machine": machine(), "samples": counts}
-        figures |= {"frame_to_command": waits, "lockstep": not real_time}
+        figures |= {"frame_to_command": waits, "lockstep": not real_time, "cpu": cpu}
         write_json(json_file, {**figures, "steps": result.run.status.step, "nodes": result.run.status.nodes})
     print_rows(f"{rate} steps/s", [{"stage": name, **row} for name, row in stages.items()])
     print_rows("frame to command", [waits])
-
-
-def machine() -> dict[str, object]:
-    """What the figures were measured on."""
-    pages = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    return {
-        "processor": _processor(),
-        "cpus": os.cpu_count(),
-        "memory_gb": rounded(pages / 1e9, 1),
-        "system": platform.platform(),
-        "python": platform.python_version(),
-        "load_1min": rounded(os.getloadavg()[0], 2),
-    }
-
-
-def _processor() -> str:
-    path = Path("/proc/cpuinfo")
-    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
-    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.machine()
+    print_rows("processor time", [{"service": name, **row} for name, row in cpu.items()])

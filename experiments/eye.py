@@ -29,18 +29,21 @@ def cache_folder(root: Path, kind: str, world: WorldFile, pipeline: Pipeline, *c
     return root / f"{kind}-{world.name}-{pipeline.identity}-{hashlib.sha256(text.encode()).hexdigest()[:12]}"
 
 
-def eye(world: WorldFile, pipeline: Pipeline) -> Callable[[Pose], FeatureSet]:
-    """What the pipeline sees of a world from any pose; loads SAPIEN, where a picture is missing."""
+def camera(world: WorldFile) -> Callable[[Pose], Frame]:
+    """The frame of a world from any pose; loads SAPIEN, so call it where a picture is missing."""
     from simulator.simulation import Simulation
 
     simulation = Simulation(world, camera_settings())
 
-    def look(pose: Pose) -> FeatureSet:
+    def shoot(pose: Pose) -> Frame:
         picture = simulation.panorama_at(pose.x_m, pose.y_m, pose.yaw_rad)
         height, width = picture.shape[:2]
-        frame = Frame(
-            robot="study", encoding="bgr8", width_px=width, height_px=height, data=picture.tobytes()
-        )
-        return feature_set(pipeline.features_of(frame))
+        return Frame(robot="study", encoding="bgr8", width_px=width, height_px=height, data=picture.tobytes())
 
-    return look
+    return shoot
+
+
+def eye(world: WorldFile, pipeline: Pipeline) -> Callable[[Pose], FeatureSet]:
+    """What the pipeline sees of a world from any pose; loads SAPIEN as `camera` does."""
+    shoot = camera(world)
+    return lambda pose: feature_set(pipeline.features_of(shoot(pose)))

@@ -6,6 +6,7 @@ from experiments.output import rounded
 from services.launcher.supervisor import Launcher
 
 KB_PER_MB = 1024.0
+PEAK, RESIDENT = "VmHWM", "VmRSS"
 
 
 def peak_memory_mb(launcher: Launcher | None) -> dict[str, float]:
@@ -13,16 +14,17 @@ def peak_memory_mb(launcher: Launcher | None) -> dict[str, float]:
     if launcher is None:
         return {}
     pids = {name: status.pid for name, status in launcher.status().items()}
-    found = {name: _peak_mb(pid) for name, pid in pids.items() if pid is not None}
+    found = {name: memory_mb(pid, PEAK) for name, pid in pids.items() if pid is not None}
     return {name: value for name, value in found.items() if value is not None}
 
 
-def _peak_mb(pid: int) -> float | None:
+def memory_mb(pid: int, field: str) -> float | None:
+    """PEAK or RESIDENT memory of a process, MB; None where it is gone."""
     try:
         lines = Path(f"/proc/{pid}/status").read_text(encoding="ascii", errors="replace").splitlines()
     except OSError:
         return None
     for line in lines:
-        if line.startswith("VmHWM:"):
+        if line.startswith(f"{field}:"):
             return rounded(float(line.split()[1]) / KB_PER_MB, 1)
     return None

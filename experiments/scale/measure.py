@@ -19,7 +19,6 @@ from shared.messages.matching import MatchRequest, NodeMatch
 
 TRACKED = 4
 """Places compared on a way: those ahead and around (services/planner/following.py)."""
-BYTES_PER_KB = 1000.0
 
 
 @dataclass(frozen=True)
@@ -34,7 +33,7 @@ class Found:
 def load(words: Iterable[FeatureSet], pipeline: Pipeline) -> tuple[Places, float]:
     """Places of a map, numbered from zero, and the seconds it took to take them over."""
     messages = (as_message(each, pipeline.identity) for each in words)
-    places = Places(pipeline.identity, pipeline.profile.keypoints, pipeline.extractor.distance)
+    places = Places.of(pipeline)
     took_s = 0.0
     for node_id, message in enumerate(messages):
         start_s = time.perf_counter()

@@ -2,8 +2,8 @@
 
 import threading
 import time
-from pathlib import Path
 
+from experiments.memory import RESIDENT, memory_mb
 from experiments.soak.growth import Sample
 from experiments.soak.journal import Journal
 from services.launcher.supervisor import Launcher
@@ -13,7 +13,6 @@ from shared.topics import TRUTH
 
 PERIOD_S = 0.5
 MEMORY_PERIOD_S = 30.0
-KB_PER_MB = 1024.0
 
 
 class Monitor:
@@ -47,19 +46,10 @@ class Monitor:
     def _sample(self) -> None:
         at_s, samples = self._journal.elapsed_s, list[Sample]()
         for name, status in self._launcher.status().items():
-            mb = _resident_mb(status.pid) if status.pid is not None else None
+            mb = memory_mb(status.pid, RESIDENT) if status.pid is not None else None
             if mb is not None and status.pid is not None:
                 samples.append(Sample(name, status.pid, round(at_s, 1), mb))
                 if mb > self._most_mb and name not in self._too_large:
                     self._too_large.add(name)
                     self._journal.violation("memory is bounded", f"{name} holds {mb} MB")
         self._journal.memory(samples)
-
-
-def _resident_mb(pid: int) -> float | None:
-    try:
-        lines = Path(f"/proc/{pid}/status").read_text(encoding="ascii", errors="replace").splitlines()
-    except OSError:
-        return None
-    sizes = [float(line.split()[1]) / KB_PER_MB for line in lines if line.startswith("VmRSS:")]
-    return round(sizes[0], 1) if sizes else None

@@ -17,7 +17,7 @@ class LocalMatcher:
 
     def __init__(self, pipeline: Pipeline, maps: MemoryMap) -> None:
         self._pipeline, self._maps = pipeline, maps
-        self._places = Places(pipeline.identity, pipeline.profile.keypoints, pipeline.extractor.distance)
+        self._places = Places.of(pipeline)
         self.current: Features | None = None
 
     def match(

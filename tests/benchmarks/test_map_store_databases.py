@@ -1,18 +1,14 @@
 """What a write to the map costs in a SQLite file and on PostgreSQL, in turns, both waiting for the disk.
 
-Never gating: it prints, and writes JSON to the file in BENCH_JSON.
-`pytest -s tests/benchmarks/test_map_store_databases.py`
+Never gating. `pytest -s tests/benchmarks/test_map_store_databases.py`
 """
 
-import json
-import os
-import platform
 import statistics
-import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -71,7 +67,7 @@ def timed(store: MapStore, name: str, operations: list[Operation]) -> float:
     return time.perf_counter() - began_s
 
 
-def test_cost_of_a_write(urls: dict[str, str]) -> None:
+def test_cost_of_a_write(urls: dict[str, str], keep: Callable[[dict[str, Any]], None]) -> None:
     stores = {name: opened(url) for name, url in urls.items()}
     took: dict[str, dict[str, list[float]]] = {name: {"place": [], "edge": []} for name in stores}
     for store in stores.values():
@@ -88,7 +84,7 @@ def test_cost_of_a_write(urls: dict[str, str]) -> None:
     figures["postgresql"]["two_stores"] = two_writers(urls["postgresql"])
     for store in stores.values():
         store.database.close()
-    show(figures)
+    keep(figures)
 
 
 def two_writers(url: str) -> dict[str, float]:
@@ -119,14 +115,3 @@ def summary(values_s: list[float]) -> dict[str, float]:
         "p50_ms": 1e3 * statistics.median(values_s),
         "p99_ms": 1e3 * statistics.quantiles(values_s, n=100)[98],
     }
-
-
-def show(figures: dict[str, dict[str, dict[str, float]]]) -> None:
-    for name, kinds in figures.items():
-        for kind, numbers in kinds.items():
-            told = ", ".join(f"{key} {value:.1f}" for key, value in numbers.items())
-            sys.stdout.write(f"\n{name}, {kind}: {told}")
-    sys.stdout.write("\n")
-    if file := os.environ.get("BENCH_JSON"):
-        machine = {"machine": platform.platform(), "cpus": os.cpu_count(), "load_1min": os.getloadavg()[0]}
-        Path(file).write_text(json.dumps({**machine, **figures}, indent=2), encoding="utf-8")

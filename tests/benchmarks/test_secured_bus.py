@@ -1,6 +1,6 @@
 """What mTLS and access rules cost: question and answer, and the way of a picture, open and secured, in turns.
 
-Never gating: it prints. `pytest -s tests/benchmarks/test_secured_bus.py`
+Never gating. `pytest -s tests/benchmarks/test_secured_bus.py`
 """
 
 import datetime as dt
@@ -93,18 +93,16 @@ def links(tmp_path, repository):
         yield {name: Link(stack, *where) for name, where in routers.items()}
 
 
-def test_cost_of_the_secured_bus(links):
+def test_cost_of_the_secured_bus(links, keep):
     asks, pictures = {name: [] for name in links}, {name: [] for name in links}
     for _ in range(ROUNDS):  # in turns: what else the machine does meets both
         for name, link in links.items():
             asks[name] += link.asks_ms()
             pictures[name] += link.pictures_ms()
+    figures = {}
     for what, times in (("question and answer", asks), (f"{len(PICTURE) / 1e3:.0f} kB picture", pictures)):
         median = {name: statistics.median(values) for name, values in times.items()}
         tail = {name: statistics.quantiles(values, n=100)[98] for name, values in times.items()}
-        ratio = median["secured"] / median["open"]
-        sys.stdout.write(
-            f"\n{what}: median {median['open']:.2f} ms open, {median['secured']:.2f} ms secured, "
-            f"ratio {ratio:.1f}; 99 % {tail['open']:.1f} and {tail['secured']:.1f} ms"
-        )
+        figures[what] = {"p50_ms": median, "p99_ms": tail, "ratio": median["secured"] / median["open"]}
         assert all(values for values in times.values())
+    keep(figures)

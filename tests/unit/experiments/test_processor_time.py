@@ -1,0 +1,49 @@
+"""Processor time of processes is read as the system counts it."""
+
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import pytest
+
+from experiments.processor_time import ServiceTimes, processor_s, processors_s
+from shared.bus import wait_until
+
+BUSY = "while True: pass"
+
+
+@pytest.fixture
+def busy():
+    """A process that computes, whatever its name."""
+    child = subprocess.Popen([sys.executable, "-c", BUSY])
+    yield child
+    child.kill()
+    child.wait()
+
+
+def test_a_process_that_computes_takes_processor_time(busy):
+    assert wait_until(lambda: (processor_s(busy.pid) or 0.0) > 0.1, 30.0)
+
+
+def test_a_process_that_is_gone_counts_nothing(busy):
+    busy.kill()
+    busy.wait()
+    assert processor_s(busy.pid) is None
+    assert processors_s([busy.pid]) == 0.0
+
+
+def test_services_are_told_apart_and_one_that_restarted_is_left_out(busy):
+    statuses = {"drive": SimpleNamespace(pid=busy.pid), "planner": SimpleNamespace(pid=None)}
+    times = ServiceTimes(SimpleNamespace(status=lambda: statuses))
+    before_s = processor_s(busy.pid)
+    assert wait_until(lambda: processor_s(busy.pid) > before_s + 0.1, 30.0)
+    figures = times.figures(steps=10)
+    assert figures.keys() == {"drive"}
+    assert figures["drive"]["ms_per_step"] >= 10.0
+    assert 0.0 < figures["drive"]["cores"] <= 1.1
+    statuses["drive"] = SimpleNamespace(pid=1)
+    assert times.figures(steps=10) == {}
+
+
+def test_a_stack_that_somebody_else_runs_has_no_figures():
+    assert ServiceTimes(None).figures(steps=10) == {}
