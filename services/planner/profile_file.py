@@ -43,7 +43,7 @@ def _read(path: Path) -> ProfileFile:
         return ProfileFile.model_validate(json.loads(path.read_text(encoding="utf-8")))
     except OSError as error:
         raise ValueError(f"profile file {path}: {error.strerror or error}") from error
-    except (ValidationError, json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise ValueError(
             f"profile file {path}: not one of 'topnav calibrate --write' makes: {error}"
         ) from error

@@ -25,7 +25,9 @@ def header_of(data: bytes, name: str) -> dict[str, Any]:
                 raise AssetError(f"{name} must be glTF 2.0, got version {version}; export it again")
             text = data[20 : 20 + length]
         header = json.loads(text)
-    except (struct.error, UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
+    except AssetError:
+        raise
+    except (struct.error, ValueError, RecursionError) as error:  # ValueError: also a number of 5000 digits
         raise AssetError(f"{name} is not a glTF file: {error!s:.120}; export it again") from error
     if not isinstance(header, dict) or "asset" not in header:
         raise AssetError(f"{name} is not a glTF file: it has no 'asset'; export it again")

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from simulator.furniture.catalogue import FURNITURE
 from simulator.world_file import WorldFileError, load_world
+from tests.yaml_bomb import BOMB
 
 LEAVES = st.one_of(
     st.none(),
@@ -122,12 +123,6 @@ def test_any_bytes_are_refused(tmp_path, content):
     (tmp_path / "w.yaml").write_bytes(content)
     with pytest.raises(WorldFileError, match=r"w\.yaml"):
         load_world(str(tmp_path / "w.yaml"))
-
-
-BOMB = "a: &a [1,1,1,1,1,1,1,1,1]\n" + "".join(
-    f"{b}: &{b} [*{a},*{a},*{a},*{a},*{a},*{a},*{a},*{a},*{a}]\n"
-    for a, b in zip("abcdefgh", "bcdefghi", strict=True)
-)
 
 
 @pytest.mark.parametrize(

@@ -132,6 +132,7 @@ def nan_points():
         ("m.gltf", "{]", "not a glTF file"),
         ("m.gltf", "{}", "has no 'asset'"),
         ("m.gltf", "[" * 100_000, "not a glTF file"),
+        ("m.gltf", '{"asset": ' + "1" * 5_000 + "}", "not a glTF file"),
     ],
 )
 def test_broken_file_is_named_with_item_and_reason(show, tmp_path, name, content, message):
