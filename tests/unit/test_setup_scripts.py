@@ -16,7 +16,7 @@ class Machine:
         self.bin, self.log, self.sources = folder / "bin", folder / "log", folder / "topnav.list"
         self.bin.mkdir()
         self.version, self.offered = folder / "installed", folder / "offered"
-        for name in ("bash", "sed", "grep", "sh", "cat"):
+        for name in ("bash", "sed", "grep", "sh", "cat", "ls"):
             self.command(name, None)
 
     def command(self, name, body):
@@ -44,6 +44,7 @@ class Machine:
             "TOPNAV_OS_RELEASE": str(self.folder / "os-release"),
             "TOPNAV_BACKPORTS_LIST": str(self.sources),
             "TOPNAV_NVIDIA_VERSION": str(self.folder / "nvidia"),
+            "TOPNAV_POSTGRES_FOLDER": str(self.folder / "postgresql"),
         }
         command = ["/bin/bash", str(self.script)]
         return subprocess.run(
@@ -104,3 +105,40 @@ def test_a_release_without_a_new_enough_driver_is_named(machine):
     assert run.returncode == 1
     assert "No Mesa Vulkan driver 24.3 or newer for 'bullseye'" in run.stderr
     assert machine.installs == []
+
+
+@pytest.fixture
+def bare_machine(tmp_path, repository):
+    machine = Machine(tmp_path, repository / "deploy/setup/test_programs.sh")
+    machine.describe(BOOKWORM, installed="", offered="")
+    return machine
+
+
+def test_root_gets_the_programs_of_the_tests_that_are_missing(bare_machine):
+    bare_machine.command("chromium", "true")
+    assert bare_machine.run().returncode == 0
+    assert bare_machine.installs == ["install -y --no-install-recommends postgresql"]
+
+
+def test_programs_that_are_there_are_left_alone(bare_machine):
+    bare_machine.command("google-chrome", "true")
+    server = bare_machine.folder / "postgresql/15/bin/initdb"
+    server.parent.mkdir(parents=True)
+    server.touch()
+    assert bare_machine.run().returncode == 0
+    assert not bare_machine.log.exists()
+
+
+def test_others_are_told_what_is_skipped_and_the_tests_go_on(bare_machine):
+    bare_machine.command("id", "echo 1000")
+    run = bare_machine.run()
+    assert run.returncode == 0
+    assert "sudo apt-get install -y --no-install-recommends chromium postgresql" in run.stderr
+    assert not bare_machine.log.exists()
+
+
+def test_a_machine_without_packages_to_install_goes_on(bare_machine):
+    bare_machine.command("apt-get", "exit 100")
+    run = bare_machine.run()
+    assert run.returncode == 0
+    assert "the tests that need them are skipped" in run.stderr
