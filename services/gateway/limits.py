@@ -37,7 +37,7 @@ class Limits:
         _refuse(self._uploads.take(client, self._clock()), "uploads")
 
     def stop(self, robot: str) -> bool:
-        """Count an emergency stop; whether so many of them need to be passed on."""
+        """Count an emergency stop; whether it is passed on at once, or gathered with others."""
         return self._stops.take(robot, self._clock()) == 0.0
 
     def before_token(self, address: str, digest: str) -> None:

@@ -12,11 +12,13 @@ from starlette.requests import HTTPConnection
 
 from services.gateway.access import Access
 from services.gateway.asking import Asker
+from services.gateway.gathered_stops import GatheredStops
 from services.gateway.live import Hub
 from services.gateway.metrics import Metrics
 from services.gateway.mission_log import MissionLog
 from services.gateway.settings import GatewaySettings
 from services.gateway.slots import Slots
+from shared.messages.estop import EStopState
 
 T = TypeVar("T")
 
@@ -31,6 +33,7 @@ class Gateway:
         store: client of the map store's REST interface.
         pictures: the one thread that decodes and encodes pictures: a large one needs 200 MB while it decodes.
         uploads, imports, sockets: places for pictures and archives on their way in, and for WebSockets.
+        stops: emergency stops that come faster than the service that drives should hear them.
     """
 
     settings: GatewaySettings
@@ -44,6 +47,7 @@ class Gateway:
 
     def __post_init__(self) -> None:
         chosen = self.settings
+        self.stops: GatheredStops[EStopState] = GatheredStops()
         self.uploads = Slots("uploads", chosen.max_uploads, chosen.max_uploads_per_client)
         self.imports = Slots("imports", chosen.max_imports, chosen.max_imports)
         self.sockets = Slots("sockets", chosen.max_sockets, chosen.max_sockets_per_client)

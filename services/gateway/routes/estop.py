@@ -11,7 +11,7 @@ from services.gateway.live import estop_facts
 from services.gateway.problems import ProblemError
 from services.gateway.routes.robots import known
 from services.gateway.state import Gateway, GatewayDep, RobotPath
-from shared.messages import EStopRequest
+from shared.messages import EStopRequest, EStopState
 from shared.topics import ESTOP
 
 router = APIRouter(tags=["robots"])
@@ -58,7 +58,7 @@ def _body(kind: type[BaseModel]) -> dict[str, Any]:
 @router.get("/api/robots/{robot}/estop")
 async def show_estop(robot: RobotPath, gateway: GatewayDep) -> EStopAnswer:
     """Whether the emergency stop is engaged, by whom and why."""
-    return await _ask(gateway, robot, EStopRequest(action="status"))
+    return _answer(await _ask(gateway, robot, EStopRequest(action="status")))
 
 
 @router.post("/api/robots/{robot}/estop", openapi_extra=_body(Engage))
@@ -67,11 +67,11 @@ async def engage_estop(request: Request, robot: RobotPath, gateway: GatewayDep) 
     wish = Engage()
     if "content-type" in request.headers:
         wish = await read_json(request, Engage, gateway.settings.upload_timeout_s)
-    if (known_state := _known_engaged(gateway, robot)) and not gateway.access.limits.stop(robot):
-        return known_state
     who = _signed(wish.who, person_of(request).name)
     engage = EStopRequest(action="engage", who=who, why=wish.why[:LONGEST_WHY])
-    return await _ask(gateway, robot, engage)
+    if gateway.access.limits.stop(robot):
+        return _answer(await _ask(gateway, robot, engage))
+    return _answer(await gateway.stops.join(robot, lambda: _ask(gateway, robot, engage)))
 
 
 @router.delete("/api/robots/{robot}/estop", openapi_extra=_body(Clear))
@@ -90,7 +90,7 @@ async def clear_estop(request: Request, robot: RobotPath, gateway: GatewayDep, w
             next_step="look whether the robot may move, then clear it in your name",
         )
     signed = _signed(name, person_of(request).name)
-    return await _ask(gateway, robot, EStopRequest(action="clear", who=signed, why=wish.why))
+    return _answer(await _ask(gateway, robot, EStopRequest(action="clear", who=signed, why=wish.why)))
 
 
 def _signed(who: str, token: str) -> str:
@@ -99,18 +99,14 @@ def _signed(who: str, token: str) -> str:
     return who[: LONGEST_WHO - len(known_as)] + known_as
 
 
-def _known_engaged(gateway: Gateway, robot: str) -> EStopAnswer | None:
-    """The stop as last told, if engaged: a flood of stops must not reach the service that drives."""
-    view = gateway.hub.robots.get(robot)
-    state = view.estop if view is not None else None
-    return EStopAnswer(**estop_facts(state)) if state is not None and state.engaged else None
-
-
-async def _ask(gateway: Gateway, robot: str, request: EStopRequest) -> EStopAnswer:
+async def _ask(gateway: Gateway, robot: str, request: EStopRequest) -> EStopState:
     try:
-        state = await gateway.asker.ask("drive", ESTOP, request, TIMEOUT_S, robot=robot)
+        return await gateway.asker.ask("drive", ESTOP, request, TIMEOUT_S, robot=robot)
     except ProblemError as problem:
         if problem.code == "service_absent" and robot != gateway.settings.robot:
             known(gateway, robot)  # a robot nobody heard of is a better reason than a missing drive service
         raise
+
+
+def _answer(state: EStopState) -> EStopAnswer:
     return EStopAnswer(**estop_facts(state))

@@ -10,22 +10,26 @@ import httpx
 import pytest
 from websockets.sync.client import connect
 
+from services.gateway.bridge import Bridge
+from services.gateway.limits import Limits
 from shared.bus import Bus, wait_until
 from shared.estop.sides import StopDesk
+from tests.integration.gateway.gateway_process import WAIT_S, sees
 from tests.integration.gateway.standins import Peer
 
 PATH = "/api/robots/e1/estop"
 
 
 @pytest.fixture(scope="module")
-def drive(endpoint: str) -> Iterator[None]:
-    """A drive service that only knows the emergency stop."""
+def drive(endpoint: str, gateway: str, patient_stops: None) -> Iterator[None]:  # noqa: ARG001
+    """A drive service that only knows the emergency stop, and that the gateway has met."""
 
     def setup(bus: Bus) -> Callable[[], None]:
         desk = StopDesk(bus, "e1", Path(folder))
         return lambda: desk.turn(time.monotonic())
 
     with tempfile.TemporaryDirectory() as folder, Peer(endpoint, "drive", setup):
+        assert wait_until(lambda: sees(gateway, ["drive"]), WAIT_S)
         yield
 
 
@@ -34,6 +38,11 @@ def clear(http: httpx.Client, drive: None) -> Iterator[httpx.Client]:  # noqa: A
     """A client; the stop is clear before and after."""
     yield http
     assert http.delete(PATH, params={"who": "test"}).status_code == 200
+
+
+def told(http: httpx.Client) -> bool:
+    """Whether the gateway has heard on the bus that the stop is engaged."""
+    return bool((http.get("/api/robots/e1").json().get("estop") or {}).get("engaged"))
 
 
 def test_engage_look_and_clear(clear: httpx.Client) -> None:
@@ -78,16 +87,34 @@ def test_without_drive_it_says_so(http: httpx.Client) -> None:
     assert (answer.status_code, answer.json()["service"]) == (503, "drive")
 
 
+def test_in_a_flood_of_stops_none_rests_on_what_was_true_before_a_clearance(
+    clear: httpx.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    deliver = Bridge._deliver
+
+    def late(bridge: Bridge, *news: object) -> bool:
+        time.sleep(0.1)
+        return deliver(bridge, *news)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Bridge, "_deliver", late)
+    monkeypatch.setattr(Limits, "stop", lambda *_: False)
+    assert clear.post(PATH).json()["engaged"]
+    for _ in range(3):
+        assert wait_until(lambda: told(clear), WAIT_S)
+        assert not clear.delete(PATH, params={"who": "anna"}).json()["engaged"]
+        assert clear.post(PATH).json()["engaged"]
+        assert clear.get(PATH).json()["engaged"]
+
+
 def test_pages_hear_of_it_on_joining_and_on_change(clear: httpx.Client, gateway: str) -> None:
     def heard(socket: object, engaged: bool) -> bool:
-        message = json.loads(socket.recv(timeout=10.0))  # type: ignore[attr-defined]
+        message = json.loads(socket.recv(timeout=WAIT_S))  # type: ignore[attr-defined]
         return message["type"] == "estop" and message["data"]["engaged"] is engaged
 
     clear.post(PATH, json={"why": "a child"})
-    known = lambda: (clear.get("/api/robots/e1").json().get("estop") or {}).get("engaged")  # noqa: E731
-    assert wait_until(lambda: bool(known()), 10.0)
+    assert wait_until(lambda: told(clear), WAIT_S)
     url = gateway.replace("http", "ws", 1) + "/api/robots/e1/live"
-    with connect(url, proxy=None) as socket:
-        assert wait_until(lambda: heard(socket, True), 10.0)
+    with connect(url, proxy=None, open_timeout=WAIT_S) as socket:
+        assert wait_until(lambda: heard(socket, True), WAIT_S)
         clear.delete(PATH, params={"who": "anna"})
-        assert wait_until(lambda: heard(socket, False), 10.0)
+        assert wait_until(lambda: heard(socket, False), WAIT_S)
