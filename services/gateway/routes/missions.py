@@ -1,6 +1,7 @@
 """Missions: start, steer, look, wait."""
 
 import asyncio
+import contextlib
 import time
 from typing import Annotated, Any, Literal, Self
 
@@ -110,26 +111,34 @@ async def wait(
     """Answer when the mission ends, or after `timeout_s` with `done` false: then ask again."""
     deadline_s = time.monotonic() + timeout_s
     while True:
+        news = _news(gateway, robot)  # from before the question: an end may be told while it is answered
         status = await _ask_patiently(gateway, robot, deadline_s)
         done = _ended(status, mission_id)
         if done or time.monotonic() >= deadline_s:
             return WaitAnswer(done=done, mission=_facts(status))
-        await _next_end(gateway, robot, mission_id, min(deadline_s, time.monotonic() + ASK_AGAIN_S))
+        until_s = min(deadline_s, time.monotonic() + ASK_AGAIN_S)
+        await _next_end(gateway, robot, mission_id, until_s, news)
 
 
-async def _next_end(gateway: Gateway, robot: str, mission_id: str, until_s: float) -> None:
-    """Return when a status message says the mission ended, at `until_s`, or when the gateway stops."""
+def _news(gateway: Gateway, robot: str) -> asyncio.Event | None:
+    view = gateway.hub.view(robot)
+    return view.changed if view is not None else None
+
+
+async def _next_end(
+    gateway: Gateway, robot: str, mission_id: str, until_s: float, news: asyncio.Event | None
+) -> None:
+    """Return when a status message, `news` being the next, says the mission ended, or at `until_s`."""
     while (left_s := until_s - time.monotonic()) > 0.0:
-        view = gateway.hub.view(robot)
-        if view is None:
+        if news is None:
             await asyncio.sleep(left_s)
             return
-        try:
-            await asyncio.wait_for(view.changed.wait(), min(left_s, 1.0))
-        except TimeoutError:
-            continue
-        if view.status is not None and _ended(view.status, mission_id):
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(news.wait(), left_s)
+        view = gateway.hub.robots.get(robot)
+        if view is not None and view.status is not None and news.is_set() and _ended(view.status, mission_id):
             return
+        news = _news(gateway, robot)
 
 
 def _ended(status: MissionStatus, mission_id: str) -> bool:
