@@ -15,7 +15,9 @@ echo
 echo
 
 # 3. Wait for the end; each question is answered after at most 30 s.
-until answer=$("${ask[@]}" "$api/mission/wait?timeout_s=30") && [[ $answer == *'"done":true'* ]]; do
+answer=""
+until [[ $answer == *'"done":true'* ]]; do
+    answer=$("${ask[@]}" --retry 8 --retry-connrefused "$api/mission/wait?timeout_s=30")
     echo "$answer" | cut -c 1-200
 done
 echo "$answer"
