@@ -1,6 +1,5 @@
 """Fixtures that any test may use."""
 
-import socket
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -9,7 +8,10 @@ import numpy as np
 import pytest
 import zenoh
 
+from services.launcher.free_ports import free_ports
+from shared import bus_config
 from shared.bus_config import router_config
+from tests import patient
 from tests.postgres import PostgresServer, missing
 
 REPOSITORY = Path(__file__).resolve().parents[1]
@@ -29,14 +31,16 @@ def rng() -> np.random.Generator:
 
 @pytest.fixture
 def free_port() -> Callable[[], int]:
-    """Call it for a TCP port on loopback that nobody uses now."""
+    """Call it for a TCP port on loopback that nobody uses now, nor gets by chance before it is used."""
+    return lambda: free_ports(1)[0]
 
-    def pick() -> int:
-        with socket.socket() as one:
-            one.bind(("127.0.0.1", 0))
-            return int(one.getsockname()[1])
 
-    return pick
+@pytest.fixture(scope="module")
+def patient_sessions() -> Iterator[None]:
+    """Sessions that this process opens outlive a pause of it, as those of `tests.patient` do."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(bus_config, "LEASE_MS", patient.LEASE_MS)
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -16,6 +16,8 @@ from simulator.world_file import load_world
 WORLD = "apartment"
 MAP = "small"
 STEPS = 60
+PATIENT = {"GATEWAY_ASK_TIMEOUT_S": "60", "GATEWAY_COMPUTE_TIMEOUT_S": "60"}
+"""On a busy machine services stand still for seconds; the console shall not call them slow for that."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +36,7 @@ def explored(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Explored]:
     """A part of the apartment, explored in a limited number of steps."""
     data_dir = tmp_path_factory.mktemp("stack")
     space = free_space(load_world(WORLD))
-    with open_stack(StackChoice(data_dir, WORLD, seed=1, lockstep=True)) as stack:
+    with open_stack(StackChoice(data_dir, WORLD, seed=1, lockstep=True, environment=PATIENT)) as stack:
         result = explore(stack, WORLD, MAP, seed=1, max_steps=STEPS)
         game = Game(stack, space, MAP, np.random.default_rng(1))
         yield Explored(stack, space, result, game, data_dir)

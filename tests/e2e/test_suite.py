@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(600)]
+pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(1200)]
 
 CLOSET = """
 format: topnav-world/1

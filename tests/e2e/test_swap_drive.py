@@ -30,7 +30,7 @@ def stack(tmp_path, repository) -> Iterator[Stack]:
         other = subprocess.Popen([sys.executable, str(script), launcher.endpoint, ROBOT], cwd=tmp_path)
         try:
             with open_bus(launcher.endpoint) as bus:
-                assert wait_until(lambda: bool(bus.alive("drive")), timeout_s=10.0)
+                assert wait_until(lambda: bool(bus.alive("drive")), timeout_s=60.0)
                 yield Stack(bus, Address(launcher.endpoint), None, launcher)
         finally:
             other.kill()

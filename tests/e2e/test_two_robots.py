@@ -104,7 +104,7 @@ def test_both_planners_know_the_whole_map_in_the_end(shared, name):
         return status.nodes, status.edges
 
     stored = len(shared.graph.nodes), len(shared.graph.edges)
-    assert wait_until(lambda: known() == stored, 10.0, 0.2), (known(), stored)
+    assert wait_until(lambda: known() == stored, 60.0, 0.2), (known(), stored)
 
 
 @pytest.mark.parametrize("name", [FIRST, SECOND])

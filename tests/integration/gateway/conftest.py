@@ -2,7 +2,7 @@
 
 import tempfile
 import threading
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 import httpx
@@ -10,16 +10,31 @@ import pytest
 import zenoh
 from PIL import Image
 
+from services.gateway.routes import estop
 from services.gateway.service import run
 from services.gateway.settings import GatewaySettings
 from shared.bus import Bus, open_bus, wait_until
 from shared.bus_config import router_config
 from tests.integration.gateway.corpus import saved
-from tests.integration.gateway.gateway_process import UNHURRIED, Process, answers, free_port, send, started
+from tests.integration.gateway.gateway_process import (
+    ASK_S,
+    UNHURRIED,
+    WAIT_S,
+    Process,
+    free_port,
+    sees,
+    send,
+    started,
+)
 from tests.integration.gateway.standins import FeatureService, Peer, Planner, served, store_app
 
 Stored = tuple[int, list[tuple[str, str]]]
 """The map store's port and what it was asked: method and path."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _patient(patient_sessions: None) -> None:
+    """Nobody is given up for standing still; `process` is patient, too."""
 
 
 @pytest.fixture(scope="module")
@@ -67,8 +82,8 @@ def gateway(endpoint: str, stored: Stored, features: FeatureService, planner: Pl
     """The gateway's address; its neighbours are up before it."""
     assert features
     assert planner
-    store = f"http://127.0.0.1:{stored[0]}"
-    yield from serve_gateway(endpoint, map_store_url=store, max_upload_bytes=2_000_000)
+    store, beside = f"http://127.0.0.1:{stored[0]}", ("features", "planner")
+    yield from serve_gateway(endpoint, beside, map_store_url=store, max_upload_bytes=2_000_000)
 
 
 @pytest.fixture(scope="module")
@@ -77,29 +92,42 @@ def process(
 ) -> Iterator[Process]:
     """The gateway as a process, beside a feature service; it has decoded a picture before."""
     assert features
-    running = started(endpoint, tmp_path_factory.mktemp("gateway"))
-    assert send(running, "image/png", saved(Image.new("RGB", (256, 128)), "PNG")).status_code == 200
-    yield running
-    running.process.terminate()
-    assert running.process.wait(10.0) == 0
+    running = started(endpoint, tmp_path_factory.mktemp("gateway"), ["features"])
+    try:
+        assert send(running, "image/png", saved(Image.new("RGB", (256, 128)), "PNG")).status_code == 200
+        yield running
+    finally:
+        running.end()
+
+
+@pytest.fixture(scope="module")
+def patient_stops() -> Iterator[None]:
+    """Gateways wait for a drive service that stands still for a while."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(estop, "TIMEOUT_S", WAIT_S)
+        yield
 
 
 @pytest.fixture
 def http(gateway: str) -> Iterator[httpx.Client]:
     """A client of the gateway."""
-    with httpx.Client(base_url=gateway, trust_env=False, timeout=20.0) as client:
+    with httpx.Client(base_url=gateway, trust_env=False, timeout=ASK_S) as client:
         yield client
 
 
-def serve_gateway(endpoint: str, **changes: object) -> Iterator[str]:
-    """Run the real service loop on a thread; runs go to a folder of its own unless one is named."""
+def serve_gateway(endpoint: str, beside: Collection[str] = (), **changes: object) -> Iterator[str]:
+    """Run the real service loop on a thread until it has met the services that run `beside` it.
+
+    Runs go to a folder of its own unless one is named.
+    """
     with tempfile.TemporaryDirectory() as folder:
-        yield from _serve(endpoint, **{"runs_dir": Path(folder), **changes})
+        yield from _serve(endpoint, beside, **{"runs_dir": Path(folder), **changes})
 
 
-def _serve(endpoint: str, **changes: object) -> Iterator[str]:
+def _serve(endpoint: str, beside: Collection[str], **changes: object) -> Iterator[str]:
     port, stop = int(str(changes.pop("port", 0))) or free_port(), threading.Event()
-    settings = GatewaySettings(endpoint=endpoint, port=port, **{**UNHURRIED, **changes})  # type: ignore[arg-type]
+    chosen = {**UNHURRIED, "ask_timeout_s": WAIT_S, "compute_timeout_s": WAIT_S, **changes}
+    settings = GatewaySettings(endpoint=endpoint, port=port, **chosen)  # type: ignore[arg-type]
 
     def serve() -> None:
         with open_bus(endpoint) as bus:
@@ -108,7 +136,9 @@ def _serve(endpoint: str, **changes: object) -> Iterator[str]:
     thread = threading.Thread(target=serve, daemon=True)
     thread.start()
     address = f"http://127.0.0.1:{port}"
-    assert wait_until(lambda: answers(address), 10.0)
-    yield address
-    stop.set()
-    thread.join(10.0)
+    try:
+        assert wait_until(lambda: sees(address, beside), WAIT_S)
+        yield address
+    finally:
+        stop.set()
+        thread.join(WAIT_S)

@@ -15,6 +15,7 @@ from shared.messages.maps import MapReply, NodeFeatures
 from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
 from shared.messages.missions import MissionRequest, MissionStatus
 from shared.topics import EXTRACT, MAP, MATCH, MISSION, STATUS
+from tests.integration.gateway.gateway_process import WAIT_S
 
 PIPELINE = "standin/1"
 KEYPOINTS = 40
@@ -42,12 +43,12 @@ class Peer:
 
     def __enter__(self) -> "Peer":
         self._thread.start()
-        assert self._ready.wait(5.0)
+        assert self._ready.wait(WAIT_S)
         return self
 
     def __exit__(self, *_: object) -> None:
         self.stop.set()
-        self._thread.join(5.0)
+        self._thread.join(WAIT_S)
 
     def _run(self) -> None:
         with open_bus(self._endpoint) as bus:
@@ -217,7 +218,7 @@ def served(app: FastAPI, port: int = 0) -> Iterator[int]:
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run, daemon=True)
     thread.start()
-    assert wait_until(lambda: server.started, 5.0)
+    assert wait_until(lambda: server.started, WAIT_S)
     yield int(server.servers[0].sockets[0].getsockname()[1])
     server.should_exit = True
-    thread.join(5.0)
+    thread.join(WAIT_S)

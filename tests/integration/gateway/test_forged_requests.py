@@ -8,6 +8,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from tests.integration.gateway.conftest import serve_gateway
+from tests.integration.gateway.gateway_process import WAIT_S
 from tests.integration.gateway.keys import bearer, write_file
 from tests.integration.gateway.standins import Planner
 
@@ -19,13 +20,13 @@ def guarded(endpoint: str, planner: Planner, tmp_path_factory: pytest.TempPathFa
     """A gateway with tokens that guards reading, too."""
     assert planner
     file = write_file(tmp_path_factory.mktemp("tokens") / "tokens.json")
-    yield from serve_gateway(endpoint, tokens_file=file, guard_reading=True)
+    yield from serve_gateway(endpoint, ["planner"], tokens_file=file, guard_reading=True)
 
 
 @pytest.fixture
 def page(guarded: str) -> Iterator[httpx.Client]:
     """A browser in which an operator is signed in: it sends the pass along, whoever makes it ask."""
-    with httpx.Client(base_url=guarded, trust_env=False) as client:
+    with httpx.Client(base_url=guarded, trust_env=False, timeout=WAIT_S) as client:
         assert client.post("/api/session", headers=bearer("operator")).status_code == 200
         yield client
 
@@ -70,6 +71,7 @@ def test_websockets_of_other_pages_are_refused_though_the_browser_sends_the_pass
         connect(
             f"{guarded.replace('http', 'ws', 1)}/api/robots/r1/live",
             proxy=None,
+            open_timeout=WAIT_S,
             origin=origin,  # type: ignore[arg-type]
             additional_headers={"Cookie": cookie},
         )
@@ -92,12 +94,12 @@ def test_a_name_pointed_at_this_machine_is_refused_for_everything_but_the_empty_
         ("GET", "/metrics"),
         ("POST", "/api/session"),
     ):
-        answer = httpx.request(method, f"{guarded}{path}", headers=headers, trust_env=False)
+        answer = httpx.request(method, f"{guarded}{path}", headers=headers, trust_env=False, timeout=WAIT_S)
         assert (answer.status_code, answer.json()["title"]) == (403, "foreign host")
 
 
 def test_no_page_may_frame_the_console_or_bring_scripts(guarded: str) -> None:
-    headers = httpx.get(guarded, trust_env=False).headers
+    headers = httpx.get(guarded, trust_env=False, timeout=WAIT_S).headers
     policy = headers["content-security-policy"]
     assert "default-src 'self'" in policy
     assert "frame-ancestors 'none'" in policy

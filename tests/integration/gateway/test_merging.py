@@ -13,7 +13,8 @@ from shared.bus import Bus, wait_until
 from shared.messages.maps import AddNode, Edge, MapReply, MapRequest, Node, Operation, PutEdge, UpdateNode
 from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
 from shared.topics import MAP, MATCH
-from tests.integration.gateway.conftest import free_port, serve_gateway
+from tests.integration.gateway.conftest import serve_gateway
+from tests.integration.gateway.gateway_process import WAIT_S, free_port
 from tests.integration.gateway.standins import Peer
 from tests.integration.map_store.conftest import START_S, Process
 from tests.merge_world import (
@@ -30,7 +31,7 @@ from tests.merge_world import (
 )
 
 REPOSITORY = Path(__file__).resolve().parents[3]
-END_S = 30.0
+END_S = 60.0
 RNG = np.random.default_rng(5)
 HALL = dict(enumerate(row(RNG, 0.0, 0.0, 8)))
 WING = {5 * k + 2: pose for k, pose in enumerate(row(RNG, 5.2, 0.3, 7))}
@@ -88,12 +89,13 @@ def address(
 ) -> Iterator[str]:
     """A gateway beside a real map store."""
     assert matcher
-    process = Process(REPOSITORY, tmp_path_factory.mktemp("maps"), endpoint, free_port())
+    process = Process(REPOSITORY, tmp_path_factory.mktemp("maps"), endpoint, free_port(), patient=True)
     process.start()
     try:
         assert wait_until(lambda: robot_bus.alive("map_store") != [], START_S)
         folder = tmp_path_factory.mktemp("runs")
-        yield from serve_gateway(endpoint, map_store_url=process.url, robot="r1", runs_dir=folder)
+        beside = ("features", "map_store")
+        yield from serve_gateway(endpoint, beside, map_store_url=process.url, robot="r1", runs_dir=folder)
     finally:
         process.kill()
 
@@ -103,7 +105,7 @@ def http(address: str, robot_bus: Bus, matcher: Matcher) -> Iterator[httpx.Clien
     """A client; the maps hall, wing and yard are made anew."""
     matcher.hold.clear()
     matcher.before, matcher.asked = lambda _number: None, 0
-    with httpx.Client(base_url=address, trust_env=False, timeout=20.0) as client:
+    with httpx.Client(base_url=address, trust_env=False, timeout=2 * WAIT_S) as client:
         for name, poses, first in (("hall", HALL, 0), ("wing", WING, FIRST), ("yard", YARD, 2 * FIRST)):
             client.delete(f"/api/maps/{name}")
             ask(robot_bus, name, action="create")
@@ -126,7 +128,7 @@ def made(poses: Mapping[int, Pose], first: int, pipeline: str = PIPELINE) -> lis
 
 
 def ask(bus: Bus, name: str, **fields: Any) -> MapReply:
-    return bus.ask(MAP, MapRequest(**fields), 10.0, map=name)
+    return bus.ask(MAP, MapRequest(**fields), WAIT_S, map=name)
 
 
 def merge(http: httpx.Client, name: str, other: str) -> dict[str, Any]:

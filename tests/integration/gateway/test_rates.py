@@ -7,6 +7,7 @@ import httpx
 import pytest
 
 from tests.integration.gateway.conftest import serve_gateway
+from tests.integration.gateway.gateway_process import WAIT_S
 from tests.integration.gateway.keys import SECRETS, bearer, write_file
 from tests.integration.gateway.standins import Planner
 
@@ -19,6 +20,7 @@ def strict(endpoint: str, planner: Planner, tmp_path: Path) -> Iterator[str]:
     assert planner
     yield from serve_gateway(
         endpoint,
+        ["planner"],
         tokens_file=write_file(tmp_path / "tokens.json"),
         token="the single token of them all",
         writes_per_s=0.01,
@@ -31,7 +33,7 @@ def strict(endpoint: str, planner: Planner, tmp_path: Path) -> Iterator[str]:
 
 
 def client(address: str, source: str = "127.0.0.1") -> httpx.Client:
-    return httpx.Client(base_url=address, transport=httpx.HTTPTransport(local_address=source), timeout=20.0)
+    return httpx.Client(base_url=address, transport=httpx.HTTPTransport(local_address=source), timeout=WAIT_S)
 
 
 def refused(answer: httpx.Response) -> bool:

@@ -10,6 +10,7 @@ import pytest
 
 from shared.bus import Bus, wait_until
 from shared.topics import FRAME
+from tests.integration.gateway.gateway_process import WAIT_S, sees
 from tests.integration.gateway.standins import MapStore, Peer
 from tests.integration.gateway.test_robots import frame
 from tests.readme import examples
@@ -20,9 +21,10 @@ STRICT = 'set -euo pipefail; curl() { command curl --silent --show-error --fail-
 
 
 @pytest.fixture
-def map_store(endpoint: str) -> Iterator[None]:
-    """The map store on the bus."""
+def map_store(endpoint: str, gateway: str) -> Iterator[None]:
+    """The map store on the bus, where the gateway has met it."""
     with Peer(endpoint, "map_store", MapStore().setup):
+        assert wait_until(lambda: sees(gateway, ["map_store"]), WAIT_S)
         yield
 
 
@@ -34,14 +36,14 @@ def test_every_line_answers(http: httpx.Client, gateway: str, robot_bus: Bus, tm
         publisher.put(frame("r1", 42))
         return http.get("/api/robots/r1/frame.jpg").status_code == 200
 
-    assert wait_until(arrived, 20.0)
+    assert wait_until(arrived, WAIT_S)
     answer = subprocess.run(
         ["bash", "-c", STRICT + examples("bash")[0]],
         env={**os.environ, "TOPNAV_URL": gateway, "no_proxy": "127.0.0.1"},
         cwd=tmp_path,
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=150,
     )
     assert answer.returncode == 0, answer.stdout + answer.stderr
     assert '"state":"cancelled"' in answer.stdout

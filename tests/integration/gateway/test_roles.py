@@ -16,6 +16,7 @@ from websockets.sync.client import ClientConnection, connect
 from shared.bus import Bus, wait_until
 from shared.estop.sides import StopDesk
 from tests.integration.gateway.conftest import serve_gateway
+from tests.integration.gateway.gateway_process import WAIT_S, sees
 from tests.integration.gateway.keys import NAMES, bearer, write_file
 from tests.integration.gateway.standins import Peer, Planner, served
 
@@ -45,8 +46,13 @@ def authors() -> Iterator[tuple[str, list[str]]]:
 
 
 @pytest.fixture(scope="module")
-def drive(endpoint: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """A drive service that only knows the emergency stop."""
+def drive(
+    endpoint: str,
+    guarded: str,
+    patient_stops: None,  # noqa: ARG001
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Iterator[None]:
+    """A drive service that only knows the emergency stop, and that the gateway has met."""
     folder = tmp_path_factory.mktemp("drive")
 
     def setup(bus: Bus) -> Callable[[], None]:
@@ -54,6 +60,7 @@ def drive(endpoint: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[N
         return lambda: desk.turn(time.monotonic())
 
     with Peer(endpoint, "drive", setup):
+        assert wait_until(lambda: sees(guarded, ["drive"]), WAIT_S)
         yield
 
 
@@ -61,17 +68,19 @@ def drive(endpoint: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[N
 def guarded(endpoint: str, planner: Planner, authors: tuple[str, list[str]], file: Path) -> Iterator[str]:
     """A gateway that asks for tokens, to read as well, as it does off loopback."""
     assert planner
-    yield from serve_gateway(endpoint, tokens_file=file, guard_reading=True, map_store_url=authors[0])
+    settings = {"tokens_file": file, "guard_reading": True, "map_store_url": authors[0]}
+    yield from serve_gateway(endpoint, ["planner"], **settings)
 
 
 def ask(address: str, role: str | None, method: str, path: str, **options: object) -> httpx.Response:
     headers = {**bearer(role), **options.pop("headers", {})}  # type: ignore[dict-item]
-    return httpx.request(method, f"{address}{path}", headers=headers, trust_env=False, **options)  # type: ignore[arg-type]
+    wish = {"headers": headers, "trust_env": False, "timeout": WAIT_S, **options}
+    return httpx.request(method, f"{address}{path}", **wish)  # type: ignore[arg-type]
 
 
 def follow(address: str, robot: str = ROBOT, **headers: str) -> ClientConnection:
     url = f"{address.replace('http', 'ws', 1)}/api/robots/{robot}/live"
-    return connect(url, proxy=None, additional_headers=headers)
+    return connect(url, proxy=None, open_timeout=WAIT_S, additional_headers=headers)
 
 
 @pytest.mark.parametrize(
@@ -121,7 +130,7 @@ def test_anybody_stops_the_robot_and_an_operator_lets_it_go(guarded: str, drive:
 
 
 def test_a_flood_of_stops_is_answered_and_stops_nobody_else(guarded: str, drive: None) -> None:  # noqa: ARG001
-    with httpx.Client(base_url=guarded, trust_env=False) as client:
+    with httpx.Client(base_url=guarded, trust_env=False, timeout=WAIT_S) as client:
         for _ in range(200):
             answer = client.post(ESTOP)
             assert (answer.status_code, answer.json()["engaged"]) == (200, True)
@@ -136,7 +145,7 @@ def test_a_map_is_changed_in_the_tokens_name(guarded: str, authors: tuple[str, l
 
 
 def test_a_pass_opens_reading_and_nothing_else(guarded: str) -> None:
-    with httpx.Client(base_url=guarded, trust_env=False) as page:
+    with httpx.Client(base_url=guarded, trust_env=False, timeout=WAIT_S) as page:
         opened = page.post("/api/session", headers=bearer("admin"))
         assert opened.json() == {"guarded": True, "name": "ada", "role": "admin", "pass_s": 43200.0}
         cookie = opened.headers["set-cookie"].lower()
@@ -158,10 +167,10 @@ def test_a_websocket_wants_a_token_in_its_header_or_a_pass(guarded: str) -> None
         assert caught.value.response.status_code == 401
         assert json.loads(caught.value.response.body)["title"] == "token required"
     with follow(guarded, **bearer("viewer")) as live:
-        assert live.recv(timeout=20.0)
+        assert live.recv(timeout=WAIT_S)
     pass_ = ask(guarded, "viewer", "POST", "/api/session").headers["set-cookie"].partition(";")[0]
     with follow(guarded, Cookie=pass_, Origin=guarded) as live:
-        assert live.recv(timeout=20.0)
+        assert live.recv(timeout=WAIT_S)
     with pytest.raises(InvalidStatus) as caught:
         follow(guarded, Cookie=pass_, Origin="http://evil.example")
     assert caught.value.response.status_code == 403
@@ -171,16 +180,19 @@ def test_a_removed_token_ends_what_it_opened(endpoint: str, tmp_path: Path) -> N
     file = write_file(tmp_path / "tokens.json")
     running = serve_gateway(endpoint, tokens_file=file, guard_reading=True)
     address = next(running)
-    with httpx.Client(base_url=address, trust_env=False) as page, follow(address, **bearer("viewer")) as live:
+    with (
+        httpx.Client(base_url=address, trust_env=False, timeout=WAIT_S) as page,
+        follow(address, **bearer("viewer")) as live,
+    ):
         assert page.post("/api/session", headers=bearer("viewer")).status_code == 200
-        assert live.recv(timeout=20.0)
+        assert live.recv(timeout=WAIT_S)
         write_file(file, without="viewer")
         with contextlib.suppress(ConnectionClosed):
-            deadline_s = time.monotonic() + 20.0
+            deadline_s = time.monotonic() + WAIT_S
             while time.monotonic() < deadline_s:
-                live.recv(timeout=20.0)
+                live.recv(timeout=WAIT_S)
         assert (live.close_code, live.close_reason) == (1008, "token_removed")
-        assert wait_until(lambda: page.get("/api/robots").status_code == 401, 10.0)
+        assert wait_until(lambda: page.get("/api/robots").status_code == 401, WAIT_S)
         assert ask(address, "viewer", "GET", "/api/robots").status_code == 401
         assert ask(address, "operator", "GET", "/api/robots").status_code == 200
     assert next(running, None) is None

@@ -11,6 +11,7 @@ from services.gateway.mission_log import FILE
 from shared.bus import wait_until
 from shared.runs import CommandRun
 from tests.integration.gateway.conftest import serve_gateway
+from tests.integration.gateway.gateway_process import WAIT_S
 from tests.integration.gateway.standins import Planner
 
 STARTED = datetime(2020, 1, 1, tzinfo=UTC)
@@ -26,7 +27,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def gateway(endpoint: str, planner: Planner, folder: Path) -> Iterator[str]:
     """A gateway with this folder."""
     assert planner
-    yield from serve_gateway(endpoint, runs_dir=folder)
+    yield from serve_gateway(endpoint, ["planner"], runs_dir=folder)
 
 
 def listed(http: httpx.Client, **query: object) -> list[dict[str, object]]:
@@ -45,13 +46,13 @@ def test_a_mission_is_listed_once_it_ended_and_only_once(
         planner.say(step=1)
         return http.get("/api/robots/r1").status_code == 200
 
-    assert wait_until(under_way, 20.0)
+    assert wait_until(under_way, WAIT_S)
     for _ in range(3):
         planner.say(state="succeeded", step=40, nodes=9, reason="all seen")
-    assert wait_until(lambda: bool(listed(http)), 20.0)
+    assert wait_until(lambda: bool(listed(http)), WAIT_S)
     planner.say(mission_id="m2", action="goto", state="running")
     planner.say(mission_id="m2", action="goto", state="failed", failure="lost")
-    assert wait_until(lambda: len(listed(http)) == 2, 20.0)
+    assert wait_until(lambda: len(listed(http)) == 2, WAIT_S)
     second, first = listed(http)
     assert (first["id"], first["source"], first["kind"], first["map"], first["outcome"]) == (
         "mission:r1:m1", "mission", "explore", "flat", "succeeded",

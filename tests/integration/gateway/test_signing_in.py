@@ -9,6 +9,7 @@ import pytest
 from shared.bus import wait_until
 from tests.browser import WAIT_MS, needs_chromium
 from tests.integration.gateway.conftest import Stored, serve_gateway
+from tests.integration.gateway.gateway_process import WAIT_S
 from tests.integration.gateway.keys import SECRETS, write_file
 from tests.integration.gateway.standins import Planner
 
@@ -29,7 +30,8 @@ def guarded(endpoint: str, planner: Planner, stored: Stored, file: Path) -> Iter
     """A gateway that asks for tokens, to read as well."""
     assert planner
     store = f"http://127.0.0.1:{stored[0]}"
-    yield from serve_gateway(endpoint, tokens_file=file, guard_reading=True, map_store_url=store)
+    settings = {"tokens_file": file, "guard_reading": True, "map_store_url": store}
+    yield from serve_gateway(endpoint, ["planner"], **settings)
 
 
 @pytest.fixture
@@ -55,7 +57,7 @@ def test_a_viewer_sees_everything_and_is_told_what_takes_more(page: "Page", plan
     sign_in(page, SECRETS["viewer"])
     page.wait_for_selector("#connection.up", timeout=WAIT_MS)
     page.wait_for_selector('#graph[data-nodes="5"]', timeout=WAIT_MS)
-    assert page.inner_text("#identity") == "vera, viewer"
+    page.wait_for_selector("#identity:text-is('vera, viewer')", timeout=WAIT_MS)
     asked = len(planner.asked)
     page.click("#explore")
     page.wait_for_selector("#answer.bad", timeout=WAIT_MS)
@@ -82,8 +84,9 @@ def test_an_operator_steers_after_a_reload_without_being_asked_again(page: "Page
     page.wait_for_selector("#connection.up", timeout=WAIT_MS)
     assert not page.is_visible("#token-dialog")
     page.wait_for_selector("#identity:text-is('otto, operator')", timeout=WAIT_MS)
+    before = len(planner.asked)
     page.click("#explore")
-    assert wait_until(lambda: any(wish.action == "explore" for wish in planner.asked[-1:]), 20.0)
+    assert wait_until(lambda: any(wish.action == "explore" for wish in planner.asked[before:]), WAIT_S)
 
 
 def test_a_wrong_token_is_said_and_asked_for_again(page: "Page") -> None:

@@ -6,6 +6,7 @@ import httpx
 import pytest
 
 from tests.integration.gateway.conftest import serve_gateway
+from tests.integration.gateway.gateway_process import WAIT_S
 from tests.integration.gateway.standins import Planner
 
 TOKEN = "s3cret"
@@ -15,11 +16,11 @@ TOKEN = "s3cret"
 def guarded(endpoint: str, planner: Planner) -> Iterator[str]:
     """A gateway with a token."""
     assert planner
-    yield from serve_gateway(endpoint, token=TOKEN)
+    yield from serve_gateway(endpoint, ["planner"], token=TOKEN)
 
 
 def ask(address: str, method: str, path: str, **headers: str) -> httpx.Response:
-    return httpx.request(method, f"{address}{path}", headers=headers, trust_env=False)
+    return httpx.request(method, f"{address}{path}", headers=headers, trust_env=False, timeout=WAIT_S)
 
 
 @pytest.mark.parametrize(
@@ -48,7 +49,8 @@ def test_writes_without_the_token_are_refused(
     guarded: str, method: str, path: str, authorization: str
 ) -> None:
     headers = {"authorization": authorization.encode("latin-1")} if authorization else {}
-    answer = httpx.request(method, f"{guarded}{path}", headers=headers, trust_env=False)  # type: ignore[arg-type]
+    url = f"{guarded}{path}"
+    answer = httpx.request(method, url, headers=headers, trust_env=False, timeout=WAIT_S)  # type: ignore[arg-type]
     assert answer.status_code == 401
     assert answer.headers["www-authenticate"] == "Bearer"
 

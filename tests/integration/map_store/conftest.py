@@ -10,13 +10,15 @@ import pytest
 
 from shared.bus import Bus, open_bus, wait_until
 
-START_S = 30.0
+START_S = 60.0
+"""To start or to end, on a machine where all may stand still for seconds; elsewhere two are enough."""
 
 
 class Process:
     """A map store on a database of its own, or that of `database_url`; `start` it as often as it was killed.
 
-    `inside` is a command that runs another one, for example in a namespace with a disk of its own.
+    `inside` is a command that runs another one, for example in a namespace with a disk of its own. One that
+    is `patient` is not given up for standing still, where this process has `patient_sessions`.
     """
 
     def __init__(
@@ -28,8 +30,10 @@ class Process:
         inside: Sequence[str] = (),
         listen: str = "tcp/127.0.0.1:0",
         database_url: str = "",
+        patient: bool = False,
     ) -> None:
-        self._repository, self._inside = repository, inside
+        module = [*(["tests.patient"] if patient else []), "services.map_store"]
+        self._repository, self._command = repository, [*inside, sys.executable, "-m", *module]
         self._environment = os.environ | {
             "TOPNAV_ENDPOINT": endpoint,
             "TOPNAV_LISTEN": listen,
@@ -41,22 +45,30 @@ class Process:
 
     def start(self) -> None:
         """Start the process."""
-        command = [*self._inside, sys.executable, "-m", "services.map_store"]
-        self.child = subprocess.Popen(command, cwd=self._repository, env=self._environment)
+        self.child = subprocess.Popen(self._command, cwd=self._repository, env=self._environment)
 
     def kill(self) -> None:
         """End it without a chance to clean up."""
         assert self.child is not None
         self.child.kill()
-        self.child.wait(10)
+        self.child.wait(START_S)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _patient(patient_sessions: None) -> None:
+    """Nobody is given up for standing still."""
 
 
 @pytest.fixture
 def process(
-    repository: Path, tmp_path: Path, router_endpoint: str, free_port: Callable[[], int]
+    repository: Path,
+    tmp_path: Path,
+    patient_sessions: None,  # noqa: ARG001
+    router_endpoint: str,
+    free_port: Callable[[], int],
 ) -> Iterator[Process]:
     """A map store that was started and is stopped at the end whatever happens."""
-    process = Process(repository, tmp_path, router_endpoint, free_port())
+    process = Process(repository, tmp_path, router_endpoint, free_port(), patient=True)
     process.start()
     yield process
     if process.child is not None and process.child.poll() is None:

@@ -16,7 +16,7 @@ from tests.faults.lived_maps import place
 from tests.integration.gateway.conftest import serve_gateway
 from tests.integration.map_store.conftest import START_S, Process
 
-ANSWER_S = 10.0
+ANSWER_S = 30.0
 MOUNT = (
     *("unshare", "-rm", "sh", "-c"),
     'mount -t tmpfs -o size=3m none "$0" && export TMPDIR="$0" && exec "$@"',
@@ -58,7 +58,7 @@ def disk(
     inside = (*MOUNT, str(tmp_path))
     if subprocess.run([*inside, "true"], capture_output=True, check=False).returncode != 0:
         pytest.skip("no disk can be mounted here")
-    process = Process(repository, tmp_path, router_endpoint, free_port(), inside)
+    process = Process(repository, tmp_path, router_endpoint, free_port(), inside, patient=True)
     process.start()
     try:
         with open_bus(router_endpoint) as bus:
@@ -118,7 +118,7 @@ def test_an_archive_for_which_there_is_no_room_is_refused_as_such(
             if way == "gateway":
                 url, path = opened.enter_context(gateway(router_endpoint, disk.url)), "/api/maps/import"
             sent = (bytes(1_000_000) for _ in range(40))
-            answer = httpx.post(f"{url}{path}", content=sent, trust_env=False, timeout=60.0)
+            answer = httpx.post(f"{url}{path}", content=sent, trust_env=False, timeout=2 * ANSWER_S)
         assert (number, answer.status_code) == (number, 507), answer.text
         assert answer.json()["type"] == "urn:topnav:problem:storage-full"
         assert "no room for an archive" in answer.json()["detail"]

@@ -17,6 +17,7 @@ from services.launcher.supervisor import Launcher
 from services.map_store import file_seal
 from services.map_store.database import Database
 from services.map_store.store import MapStore
+from shared.bus import wait_until
 from tests.faults.lived_maps import link, place
 from tests.unit.services.map_store.test_store import damage
 
@@ -74,14 +75,19 @@ def test_a_running_stack_is_checked_repaired_and_backed_up_but_not_replaced(
         "flat is at revision 2",
     ]
     assert call("check", "flat").output == "map flat: no damage\n"
-    with httpx.Client(base_url=stack.map_store_url, trust_env=False) as rest:
+    with httpx.Client(base_url=stack.map_store_url, trust_env=False, timeout=30.0) as rest:
         assert rest.get("/maps/flat/revisions").json()[0]["author"] == "repair"
 
 
 def test_a_byte_that_changes_while_no_stack_runs_is_listed_until_a_repair(data_dir: Path):
     file = data_dir / "maps" / "maps.sqlite3"
-    with Launcher(data_dir, only=["map-store"]):
-        assert Path(f"{file}-wal").exists()
+
+    def at_rest() -> bool:  # one that is slow to stop is killed, and leaves its log
+        with Launcher(data_dir, only=["map-store"]):
+            assert Path(f"{file}-wal").exists()
+        return not Path(f"{file}-wal").exists()
+
+    assert wait_until(at_rest, 60.0)
     data = bytearray(file.read_bytes())
     data[80] ^= 1  # of the header, kept for later releases of SQLite
     file.write_bytes(data)

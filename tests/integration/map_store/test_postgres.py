@@ -26,7 +26,7 @@ from tests.integration.map_store.conftest import START_S, Process
 from tests.postgres import PostgresServer
 from tests.unit.services.map_store.conftest import add
 
-ANSWER_S = 20.0
+ANSWER_S = 30.0
 
 
 @pytest.fixture
@@ -56,7 +56,9 @@ def launch(
     started: list[Process] = []
 
     def start(endpoint: str, database_url: str = url) -> Process:
-        process = Process(repository, tmp_path, endpoint, free_port(), database_url=database_url)
+        process = Process(
+            repository, tmp_path, endpoint, free_port(), database_url=database_url, patient=True
+        )
         process.start()
         started.append(process)
         return process
@@ -145,7 +147,7 @@ def test_a_store_that_hangs_in_a_transaction_does_not_stop_the_others_for_ever(
     url: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(engines, "BUSY_TIMEOUT_S", 0.5)
-    monkeypatch.setattr(engines, "HUNG_AFTER_S", 3)
+    monkeypatch.setattr(engines, "HUNG_AFTER_S", 6)  # longer than this thread may stand still before `create`
     hung, other = Database(url), Database(url)
     store = MapStore(other, lambda: 1, lambda _: None)
     try:

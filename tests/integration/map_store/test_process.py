@@ -19,7 +19,7 @@ from shared.topics import MAP, MAP_DELTA, MISSION_RECORD
 from tests.integration.map_store.conftest import START_S, Process
 from tests.unit.services.map_store.conftest import add
 
-ANSWER_S = 10.0
+ANSWER_S = 30.0
 
 
 def ask(bus: Bus, name: str, **fields) -> MapReply:
@@ -118,7 +118,7 @@ def test_kill_9_during_a_write_loop_loses_no_acknowledged_write(bus: Bus, proces
         number = 0
         while not stop.is_set():
             try:
-                bus.ask(MAP, MapRequest(action="transact", operations=(add(number),)), 1.0, map="flat")
+                bus.ask(MAP, MapRequest(action="transact", operations=(add(number),)), 5.0, map="flat")
                 acknowledged.append(number)
             except RefusedError as error:
                 refused.append(str(error))
@@ -130,7 +130,7 @@ def test_kill_9_during_a_write_loop_loses_no_acknowledged_write(bus: Bus, proces
     writer.start()
     try:
         for killed_after in (10, 30, 50):
-            assert wait_until(lambda wanted=killed_after: len(acknowledged) >= wanted, 20.0)
+            assert wait_until(lambda wanted=killed_after: len(acknowledged) >= wanted, START_S)
             restart(bus, process)
     finally:
         stop.set()
@@ -187,7 +187,7 @@ def call(process: Process, method: str, path: str) -> dict:
 def test_a_signal_stops_it_cleanly(process: Process, number: signal.Signals):
     assert process.child is not None
     process.child.send_signal(number)
-    assert process.child.wait(10) == 0
+    assert process.child.wait(START_S) == 0
 
 
 def test_a_port_in_use_is_an_error_at_start(bus: Bus, process: Process):
