@@ -9,6 +9,10 @@ from typing import IO
 from pydantic import BaseModel, ConfigDict
 
 from services.launcher.runner import State
+from shared.bus import wait_until
+
+LOOKERS_S = 0.5
+"""Who looks whether a stack runs holds the lock for a moment; an owner keeps it."""
 
 
 class ServiceStatus(BaseModel):
@@ -67,16 +71,14 @@ class StateFolder:
         """
         self.logs.mkdir(parents=True, exist_ok=True)
         lock = self._lock_path.open("a+")
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
+        if not wait_until(lambda: _locked(lock, fcntl.LOCK_EX), LOOKERS_S):
             lock.seek(0)
             owner = lock.read().strip()
             lock.close()
             raise AlreadyRunningError(
                 f"a stack is already running in {self.folder.parent} (launcher pid {owner}): "
                 "stop it with 'topnav down', or name another --data-dir"
-            ) from None
+            )
         lock.truncate(0)
         lock.write(str(os.getpid()))
         lock.flush()
@@ -105,12 +107,19 @@ class StateFolder:
             return None
 
     def owned(self) -> bool:
-        """Whether a living launcher holds the lock."""
+        """Whether a living launcher holds the lock; any number of processes may look at once."""
         try:
             with self._lock_path.open("r") as lock:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                return not _locked(lock, fcntl.LOCK_SH)
         except FileNotFoundError:
             return False
         except OSError:
             return True
+
+
+def _locked(lock: IO[str], kind: int) -> bool:
+    try:
+        fcntl.flock(lock, kind | fcntl.LOCK_NB)
+    except BlockingIOError:
         return False
+    return True

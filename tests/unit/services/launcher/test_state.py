@@ -1,6 +1,8 @@
 """What a stack leaves on disk."""
 
+import fcntl
 import os
+import threading
 
 import pytest
 
@@ -48,6 +50,19 @@ def test_a_second_launcher_is_told_who_runs(tmp_path):
     mine.acquire()
     with pytest.raises(AlreadyRunningError, match=rf"pid {os.getpid()}\): stop it with 'topnav down'"):
         StateFolder(tmp_path).acquire()
+    mine.release()
+
+
+def test_who_looks_is_no_owner_to_others_who_look_and_keeps_nobody_from_becoming_one(tmp_path):
+    mine = StateFolder(tmp_path)
+    mine.acquire()
+    mine.release()
+    with (tmp_path / "launcher" / "lock").open("r") as looker:
+        fcntl.flock(looker, fcntl.LOCK_SH)
+        assert not StateFolder(tmp_path).owned()
+        threading.Timer(0.1, fcntl.flock, (looker, fcntl.LOCK_UN)).start()
+        mine.acquire()
+    assert StateFolder(tmp_path).owned()
     mine.release()
 
 
