@@ -81,10 +81,13 @@ def _bus(endpoint: str | None, data_dir: Path, robots: set[str]) -> Iterator[Bus
 
 
 def _refuse_mixing(bus: Bus, robots: set[str]) -> None:
-    if not robots or not wait_until(lambda: bool(SPEAKERS & set(bus.alive())), LOOK_FOR_S):
-        return
-    alive = sorted(SPEAKERS & set(bus.alive()))
-    if alive:
+    alive: list[str] = []
+
+    def met() -> bool:
+        alive[:] = sorted(SPEAKERS & set(bus.alive()))
+        return bool(alive)
+
+    if robots and wait_until(met, LOOK_FOR_S):
         raise ExperimentError(
             f"{', '.join(alive)} live here: a replay of {', '.join(sorted(robots))} would mix with them and "
             f"may move a robot. Use another --data-dir, or --remap {min(robots)}=ghost"
