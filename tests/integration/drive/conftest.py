@@ -5,6 +5,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from itertools import count
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,8 @@ from shared.bus import Bus, open_bus, wait_until
 from shared.messages import Command, EStopRequest, EStopState, Heading, Ranges
 from shared.topics import COMMAND, ESTOP, HEADING, RANGES, STANDING, STOPPED
 
-START_S = 20.0
+START_S, SOON_S = 60.0, 30.0
+"""Long enough where other processes take most of the machine, and may stop ours for seconds."""
 
 
 class Neighbours:
@@ -24,7 +26,13 @@ class Neighbours:
         self._headings, self._ranges = bus.publisher(HEADING, robot="r1"), bus.publisher(RANGES, robot="r1")
         self.standing = bus.publisher(STANDING, robot="r1")
         self._commands = bus.subscribe(COMMAND, robot="r1")
+        self.newest: Command | None = None
+        self._frames = count(1)
         self.stopped = bus.subscribe(STOPPED, robot="r1")
+
+    def frame(self) -> int:
+        """Number of the next frame: an answer to the same one again and again soon is one to an old one."""
+        return next(self._frames)
 
     def see(self, seq: int, *, stamp_ns: int = 0, lockstep: bool = False, near_m: float = 4.0) -> None:
         """Distances of frame `seq`, measured now unless a time is given; nothing is near unless told."""
@@ -47,21 +55,32 @@ class Neighbours:
             )
         )  # fmt: skip
 
-    def commands(self, during_s: float, act: Callable[[], None] = lambda: None) -> list[Command]:
-        """All commands of a while in which `act` is done again and again."""
-        deadline_s, came = time.monotonic() + during_s, []
-        while time.monotonic() < deadline_s:
+    def commands(
+        self,
+        during_s: float,
+        act: Callable[[], None] = lambda: None,
+        until: Callable[[list[Command]], bool] = lambda _: True,
+    ) -> list[Command]:
+        """All commands of a while in which `act` is done again and again; it goes on until `until` holds."""
+        began_s, came = time.monotonic(), []
+        while (gone_s := time.monotonic() - began_s) < during_s or (not until(came) and gone_s < SOON_S):
             act()
             time.sleep(0.03)
             came += self._commands.take_all()
+            self.newest = came[-1] if came else self.newest
         return came
 
     def drives(self, act: Callable[[], None]) -> bool:
         """Whether `act`, repeated, makes drive turn the wheels."""
-        return wait_until(lambda: any(c.wheel_speed_radps for c in self.commands(0.1, act)), 10.0)
+        return wait_until(lambda: any(c.wheel_speed_radps for c in self.commands(0.1, act)), SOON_S)
 
     def estop(self, action: str, who: str = "", why: str = "") -> EStopState:
-        return self.bus.ask(ESTOP, EStopRequest(action=action, who=who, why=why), 5.0, robot="r1")
+        return self.bus.ask(ESTOP, EStopRequest(action=action, who=who, why=why), SOON_S, robot="r1")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _patient(patient_sessions: None) -> None:
+    """All sessions but that of drive are in this process, and stand still with it."""
 
 
 @pytest.fixture

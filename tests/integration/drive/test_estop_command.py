@@ -4,6 +4,7 @@ import pytest
 from typer.testing import CliRunner
 
 from experiments.estop import app
+from tests.integration.drive.conftest import SOON_S
 
 
 @pytest.fixture
@@ -14,6 +15,14 @@ def topnav_estop(router_endpoint):
     return run
 
 
+@pytest.fixture
+def patience(monkeypatch):
+    """Each call is a session of its own, which on a slow machine may meet drive later than people wait."""
+    monkeypatch.setattr("experiments.estop.TIMEOUT_S", SOON_S)
+    monkeypatch.setattr("shared.queries.MEETING_S", SOON_S)
+
+
+@pytest.mark.usefixtures("patience")
 def test_engage_status_and_clear(start, topnav_estop):
     start()
     assert topnav_estop("--status").exit_code == 0

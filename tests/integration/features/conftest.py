@@ -1,19 +1,21 @@
 """A router on a free port, the feature service in a thread, and a stand-in for the map store."""
 
-import socket
 import threading
 from collections.abc import Iterator
 
 import pytest
-import zenoh
 
 from services.features.service import run
 from services.features.settings import FeaturesSettings
 from shared.bus import Bus, Request, open_bus, wait_until
-from shared.bus_config import router_config
 from shared.messages.features import Features
 from shared.messages.maps import AddNode, MapDelta, MapReply, MapRequest, Node, NodeFeatures
-from shared.topics import MAP_DELTA, MAP_READ
+from shared.messages.matching import MatchRequest
+from shared.queries import RefusedError
+from shared.topics import MAP_DELTA, MAP_READ, MATCH
+from tests.bare_places import FEATURES
+
+ANSWER_S = 60.0
 
 
 class StandInStore:
@@ -77,15 +79,15 @@ class StandInStore:
         self._thread.join()
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _patient(patient_sessions: None) -> None:
+    """All sessions are in this process, and stand still with it."""
+
+
 @pytest.fixture
-def endpoint() -> Iterator[str]:
-    """A router on a port that was free a moment ago."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        address = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
-    router = zenoh.open(router_config(address))
-    yield address
-    router.close()
+def endpoint(router_endpoint: str) -> str:
+    """A router."""
+    return router_endpoint
 
 
 @pytest.fixture
@@ -96,19 +98,30 @@ def bus(endpoint: str) -> Iterator[Bus]:
 
 
 @pytest.fixture
-def store(endpoint: str) -> Iterator[StandInStore]:
-    """A map store with one empty map, `flat`."""
+def store(endpoint: str, bus: Bus, service: None) -> Iterator[StandInStore]:
+    """A map store with one empty map, `flat`; the feature service has met it."""
+    del service  # only asked for to be up
+    question = MatchRequest(map="no-map-at-all", features=FEATURES, best_k=1)
+
+    def met() -> bool:
+        with pytest.raises(RefusedError) as refused:
+            bus.ask(MATCH, question, ANSWER_S, robot="r1")
+        return "is not known to the map store" in str(refused.value)
+
     with open_bus(endpoint) as mine:
         stand_in = StandInStore(mine, "flat")
-        yield stand_in
-        stand_in.close()
+        try:
+            assert wait_until(met, ANSWER_S)
+            yield stand_in
+        finally:
+            stand_in.close()
 
 
 @pytest.fixture
 def service(endpoint: str, bus: Bus) -> Iterator[None]:
     """The feature service, alive on the bus."""
     stop = threading.Event()
-    settings = FeaturesSettings(endpoint=endpoint, map_timeout_s=2.0)
+    settings = FeaturesSettings(endpoint=endpoint, map_timeout_s=ANSWER_S / 2)
 
     def serve() -> None:
         with open_bus(endpoint) as mine:
@@ -116,7 +129,9 @@ def service(endpoint: str, bus: Bus) -> Iterator[None]:
 
     thread = threading.Thread(target=serve)
     thread.start()
-    assert wait_until(lambda: bus.alive("features") == ["features"], timeout_s=10.0)
-    yield
-    stop.set()
-    thread.join()
+    try:
+        assert wait_until(lambda: bus.alive("features") == ["features"], ANSWER_S)
+        yield
+    finally:
+        stop.set()
+        thread.join()

@@ -13,6 +13,7 @@ from shared.messages.matching import MatchReply, MatchRequest
 from shared.messages.sensors import Frame
 from shared.queries import RefusedError
 from shared.topics import EXTRACT, FEATURES, FRAME, MATCH
+from tests.integration.features.conftest import ANSWER_S
 from tests.unit.services.features.room import render_room
 
 PLACES_M = ((0.4, 0.0), (0.8, 0.3), (-1.0, 0.2), (-1.5, -0.6))
@@ -34,11 +35,11 @@ def frame_at(x_m: float, y_m: float, seq: int = 0, stamp_ns: int = 1, lockstep: 
 
 
 def extract(bus: Bus, frame: Frame) -> Features:
-    return bus.ask(EXTRACT, ExtractRequest(frame=frame), 5.0)
+    return bus.ask(EXTRACT, ExtractRequest(frame=frame), ANSWER_S)
 
 
 def match(bus: Bus, **fields: object) -> MatchReply:
-    return bus.ask(MATCH, MatchRequest(**{"map": "flat", **fields}), 5.0, robot="r1")
+    return bus.ask(MATCH, MatchRequest(**{"map": "flat", **fields}), ANSWER_S, robot="r1")
 
 
 def send_until_features(bus: Bus, frame: Frame) -> Features:
@@ -53,7 +54,7 @@ def send_until_features(bus: Bus, frame: Frame) -> Features:
             got.append(features)
         return bool(got)
 
-    assert wait_until(arrived, timeout_s=10.0)
+    assert wait_until(arrived, ANSWER_S)
     return got[0]
 
 
@@ -75,7 +76,8 @@ def test_extract_of_a_goal_picture_equals_the_features_of_the_same_frame(bus: Bu
 
 
 @pytest.mark.usefixtures("service")
-def test_match_finds_the_places_in_order_and_follows_deltas(bus: Bus, store) -> None:
+def test_match_finds_the_places_in_order_and_follows_deltas(bus: Bus, store, monkeypatch) -> None:
+    monkeypatch.setattr("services.features.map_reader.DELTA_WAIT_S", ANSWER_S / 2)  # else it asks the store
     for node_id, place in enumerate(PLACES_M[:3]):
         store.add(node_id, extract(bus, frame_at(*place)), tell=False)
     current = extract(bus, frame_at(0.0, 0.0))
@@ -95,7 +97,7 @@ def test_match_finds_the_places_in_order_and_follows_deltas(bus: Bus, store) -> 
 
     store.nodes.pop(0)
     store.reset()
-    assert wait_until(lambda: match(bus, features=current, best_k=9).map_revision == 5, timeout_s=20.0)
+    assert wait_until(lambda: match(bus, features=current, best_k=9).map_revision == 5, ANSWER_S)
     assert {result.node_id for result in match(bus, features=current, best_k=9).results} == {1, 2, 3}
 
 
@@ -189,13 +191,16 @@ def test_questions_are_answered_while_frames_come_faster_than_they_are_extracted
                 )
             )
 
+    def answered() -> bool:
+        return match(bus, features=current, targets=(current,)).results[0].status == "no_baseline"
+
     sender = threading.Thread(target=send)
     sender.start()
     try:
-        assert features.wait(10.0) is not None
-        for _ in range(5):
-            assert match(bus, features=current, targets=(current,)).results[0].status == "no_baseline"
-        assert features.take() is not None  # and frames went on being extracted
+        assert features.wait(ANSWER_S) is not None
+        assert all(answered() for _ in range(5))
+        # and between questions that do not end frames go on being extracted
+        assert wait_until(lambda: answered() and features.take() is not None, ANSWER_S)
     finally:
         stop.set()
         sender.join()

@@ -19,7 +19,7 @@ from shared.wire import encode
 from tests.integration.features.test_feature_service import frame_at
 
 ROBOTS = ("r1", "r2", "r3")
-ANSWER_S, AGAIN_S = 30.0, 3.0
+ANSWER_S, AGAIN_S = 60.0, 3.0
 
 
 @pytest.fixture

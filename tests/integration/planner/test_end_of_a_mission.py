@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import httpx
 import pytest
@@ -14,11 +15,13 @@ from tests.integration.map_store.conftest import START_S
 from tests.integration.map_store.conftest import bus as bus
 from tests.integration.map_store.conftest import process as process
 
-ANSWER_S = 10.0
+ANSWER_S = 60.0
+
+pytestmark = pytest.mark.usefixtures("patient_sessions")
 
 
 @pytest.fixture
-def planner(bus: Bus, router_endpoint: str):
+def planner(bus: Bus, router_endpoint: str, repository: Path):
     """Starts a planner and waits for it; the one before is killed."""
     running: list[subprocess.Popen[bytes]] = []
 
@@ -32,7 +35,8 @@ def planner(bus: Bus, router_endpoint: str):
         kill()
         assert wait_until(lambda: "planner" not in bus.alive(), START_S)
         environment = os.environ | {"TOPNAV_ENDPOINT": router_endpoint}
-        running.append(subprocess.Popen([sys.executable, "-m", "services.planner"], env=environment))
+        command = [sys.executable, "-m", "tests.patient", "services.planner"]
+        running.append(subprocess.Popen(command, cwd=repository, env=environment))
         assert wait_until(lambda: "planner" in bus.alive(), START_S)
 
     yield start
@@ -67,7 +71,7 @@ def test_the_end_of_a_mission_outlives_the_planner_and_is_told_unasked(bus: Bus,
 def test_after_it_another_mission_starts_also_where_the_map_is_gone(bus: Bus, planner, process):
     planner()
     end(bus)
-    httpx.delete(f"{process.url}/maps/flat", trust_env=False).raise_for_status()
+    httpx.delete(f"{process.url}/maps/flat", trust_env=False, timeout=ANSWER_S).raise_for_status()
     planner()
     assert ask(bus, action="status").state == "cancelled"
     assert ask(bus, action="explore", map="loft", mission_id="m-2").state == "running"

@@ -19,7 +19,10 @@ from shared.queries import AbsentError, RefusedError, Requests, TimedOutError
 from shared.topics import COMMAND, EVENT, MAP, MAP_DELTA, STATUS
 from shared.wire import WireError
 
-SOON_S = 15.0
+SOON_S = 30.0
+PROBE = "probe"
+
+pytestmark = pytest.mark.usefixtures("patient_sessions")
 
 
 @pytest.fixture
@@ -83,12 +86,15 @@ def test_events_come_all_and_in_order(here: Bus, there: Bus):
 def test_junk_on_a_topic_is_counted_and_the_next_message_is_read(here: Bus, there: Bus):
     inbox, publisher = there.subscribe(EVENT, robot="r1"), here.publisher(EVENT, robot="r1")
     linked(lambda: publisher.put(Event(robot="r1", kind="hello")), inbox)
-    for junk in (b"", b"\xc1", b"\x91" * 5_000, b"\x80", bytes(200_000)):
-        here._session.put("topnav/r1/event", junk)
-    here._session.put("topnav/r1/event", publisher_bytes := b"\x81\xa6schema\xa8frame.v1")
-    assert publisher_bytes
-    publisher.put(Event(robot="r1", kind="after", seq=1))
-    collected(inbox, lambda messages: any(event.seq == 1 for event in messages))
+    other = b"\x81\xa6schema\xa8frame.v1"
+    for junk in (b"", b"\xc1", b"\x91" * 5_000, b"\x80", bytes(200_000), other):
+        here._session.put("topnav/r1/event", junk, congestion_control=zenoh.CongestionControl.BLOCK)
+
+    def after_came() -> bool:
+        publisher.put(Event(robot="r1", kind="after", seq=1))  # dropped where the junk is still under way
+        return any(event.seq == 1 for event in inbox.take_all())
+
+    assert wait_until(after_came, SOON_S)
     assert there.counters.snapshot() == {"malformed": 6}
 
 
@@ -141,7 +147,7 @@ def answering(here: Bus, there: Bus) -> Requests:
 
     def reachable() -> bool:
         with contextlib.suppress(AbsentError, TimedOutError):
-            there.ask(MAP, MapRequest(action="read"), 0.05, map="probe")
+            there.ask(MAP, MapRequest(action="read"), 0.05, map=PROBE)
         return requests.take() is not None
 
     assert wait_until(reachable, SOON_S)
@@ -152,9 +158,14 @@ def answering(here: Bus, there: Bus) -> Requests:
 
 def taken(requests: Requests):
     found: list = []
-    assert wait_until(
-        lambda: (question := requests.take()) is not None and (found.append(question) or True), SOON_S
-    )
+
+    def asked() -> bool:
+        question = requests.take()
+        if question is not None and question.name != PROBE:  # one of those may come late
+            found.append(question)
+        return bool(found)
+
+    assert wait_until(asked, SOON_S)
     return found[0]
 
 
@@ -253,7 +264,7 @@ def test_a_process_killed_hard_is_gone_from_the_bus(here: Bus, router_endpoint: 
         assert wait_until(lambda: ("child", True) in changes and here.alive("child") == ["child"], SOON_S)
         child.kill()
         assert wait_until(lambda: changes[-1] == ("child", False), SOON_S)
-        assert here.alive("child") == []
+        assert wait_until(lambda: here.alive("child") == [], SOON_S)
 
 
 def delta(revision: int) -> MapDelta:

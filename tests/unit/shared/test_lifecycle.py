@@ -14,6 +14,8 @@ import pytest
 
 from shared.lifecycle import STOPPING, JsonFormatter, stop_on_signals
 
+SOON_S = 60.0
+
 SERVICE = """
 import sys
 from shared.lifecycle import run_service
@@ -73,7 +75,7 @@ def stop() -> Iterator[threading.Event]:
 def test_a_signal_sets_the_event_even_in_the_middle_of_waiting_for_it(stop: threading.Event):
     with stop._cond:  # as it is for a moment inside stop.wait
         os.kill(os.getpid(), signal.SIGTERM)
-    assert stop.wait(5.0)
+    assert stop.wait(SOON_S)
 
 
 @pytest.mark.parametrize("number", STOPPING)
@@ -82,7 +84,7 @@ def test_a_signal_that_does_not_interrupt_the_wait_ends_it(stop: threading.Event
     threading.Timer(0.2, os.kill, (os.getpid(), number)).start()
     signal.pthread_sigmask(signal.SIG_BLOCK, [number])
     try:
-        assert stop.wait(5.0)
+        assert stop.wait(SOON_S)
     finally:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, [number])
 
@@ -104,13 +106,13 @@ def test_a_service_with_callbacks_stops_cleanly_on_a_signal(
         assert child.stdout is not None
         assert child.stdout.readline() == "ready\n"
         child.send_signal(number)
-        _, errors = child.communicate(timeout=20)
+        _, errors = child.communicate(timeout=SOON_S)
     assert child.returncode == 0
     assert [json.loads(line)["text"] for line in errors.splitlines()][-1] == "stopped"
 
 
 def test_a_loop_that_fails_ends_the_process_instead_of_hanging_it(repository: Path, router_endpoint: str):
     with start(repository, router_endpoint, "fail") as child:
-        _, errors = child.communicate(timeout=20)
+        _, errors = child.communicate(timeout=SOON_S)
     assert child.returncode == 1
     assert "RuntimeError: broken" in errors

@@ -141,10 +141,10 @@ def test_any_bytes_are_refused(tmp_path, content):
     ],
 )  # fmt: skip
 def test_traps_of_yaml_are_refused_within_a_second(tmp_path, text, message):
-    began = time.perf_counter()
+    began_s = time.thread_time()
     with pytest.raises(WorldFileError, match=message):
         load(tmp_path, text)
-    assert time.perf_counter() - began < 2.0
+    assert time.thread_time() - began_s < 2.0
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 """Token buckets: bursts, filling, and a bounded memory."""
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from services.gateway.buckets import Buckets
@@ -37,6 +37,7 @@ def test_memory_is_bounded_and_the_oldest_client_is_forgotten() -> None:
     assert buckets.take("client 0", 0.001) == 0.0
 
 
+@settings(deadline=None)
 @given(st.lists(st.floats(0.0, 3.0), min_size=1, max_size=80), st.floats(0.1, 50.0), st.integers(1, 20))
 def test_no_more_pass_than_burst_and_rate_allow(gaps: list[float], rate_per_s: float, burst: int) -> None:
     buckets, now_s, passed = Buckets(rate_per_s, burst), 0.0, 0

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from shared.geometry.angles import circular_mean_rad, difference_rad, wrap_rad
@@ -18,6 +18,7 @@ def test_wrap_of_known_angles(angle, wrapped):
     assert wrap_rad(angle) == pytest.approx(wrapped, abs=1e-12)
 
 
+@settings(deadline=None)
 @given(ANGLES)
 def test_wrapped_angle_is_half_open_and_points_the_same_way(angle):
     wrapped = float(wrap_rad(angle))
