@@ -15,7 +15,7 @@ from urllib.parse import urlsplit
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed
 
-PATIENCE_S = 60.0
+PATIENCE_S = 150.0
 AT_ONCE = 25
 DROP_S = 1.0
 SMALL_BUFFER = 4096

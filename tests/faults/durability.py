@@ -5,10 +5,8 @@
 """
 
 import argparse
-import contextlib
 import json
 import logging
-import socket
 import sys
 import tempfile
 from pathlib import Path
@@ -16,6 +14,7 @@ from typing import Any
 
 import zenoh
 
+from services.launcher.free_ports import free_ports
 from shared.bus_config import router_config
 from tests.faults.flips import figures, flips
 from tests.faults.kills import Report, kill_often
@@ -48,18 +47,14 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _kills(folder: Path, kills: int, seed: int) -> Report:
-    endpoint = f"tcp/127.0.0.1:{_free_port()}"
+    bus_port, rest_port = free_ports(2)
+    endpoint = f"tcp/127.0.0.1:{bus_port}"
 
     def tell(report: Report) -> None:
         _say({"kills": report.kills, "acknowledged": report.acknowledged, "wrong": report.wrong[:3]})
 
     with zenoh.open(router_config(endpoint)):
-        return kill_often(folder, REPOSITORY, endpoint, _free_port(), kills, seed, tell=tell)
-
-
-def _free_port() -> int:
-    with contextlib.closing(socket.create_server(("127.0.0.1", 0))) as one:
-        return int(one.getsockname()[1])
+        return kill_often(folder, REPOSITORY, endpoint, rest_port, kills, seed, tell=tell)
 
 
 def _short(part: dict[str, Any]) -> dict[str, Any]:

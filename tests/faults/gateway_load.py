@@ -15,7 +15,7 @@ from pathlib import Path
 import httpx
 
 from experiments.memory import RESIDENT, memory_mb
-from shared.bus import wait_until
+from shared.bus import open_bus, wait_until
 from tests.faults.latency import Stopwatch, told
 
 START_S = 60.0
@@ -33,9 +33,9 @@ class Loaded:
     pid: int
 
     def alive(self) -> bool:
-        """Whether it answers within ten seconds."""
+        """Whether it answers within half a minute."""
         with contextlib.suppress(httpx.HTTPError):
-            return httpx.get(f"{self.address}/healthz", trust_env=False, timeout=10.0).is_success
+            return httpx.get(f"{self.address}/healthz", trust_env=False, timeout=30.0).is_success
         return False
 
     @contextmanager
@@ -71,12 +71,14 @@ def loaded(
         ]
         running = Loaded(endpoint, f"http://127.0.0.1:{port}", processes[1].pid)
         assert wait_until(running.alive, START_S), "the gateway did not start"
+        with open_bus(endpoint) as bus:
+            assert wait_until(lambda: bus.alive("drive") == ["drive"], START_S), "drive did not start"
         yield running
 
 
 @contextmanager
 def _process(name: str, repository: Path, environment: dict[str, str]) -> Iterator["subprocess.Popen[bytes]"]:
-    command = [sys.executable, "-m", f"services.{name}"]
+    command = [sys.executable, "-m", "tests.patient", f"services.{name}"]
     with subprocess.Popen(command, cwd=repository, env=environment, stderr=subprocess.DEVNULL) as process:
         try:
             yield process

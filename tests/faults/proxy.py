@@ -12,6 +12,7 @@ from typing import Self
 
 CHUNK = 65_536
 PERIOD_S = 0.02
+CONNECT_S = 5.0
 
 
 class Proxy:
@@ -24,6 +25,7 @@ class Proxy:
         self._near: set[socket.socket] = set()
         self._whole, self._stop = threading.Event(), threading.Event()
         self._losing = False
+        self._passing = threading.Lock()  # held while something goes through: who cuts waits until it has
         self._whole.set()
         self._thread = threading.Thread(target=self._run, name="proxy")
 
@@ -33,8 +35,9 @@ class Proxy:
         return f"tcp/127.0.0.1:{self._listener.getsockname()[1]}"
 
     def cut(self) -> None:
-        """Let nothing through, in either direction, nor any new connection."""
-        self._whole.clear()
+        """Let nothing through from the return on, in either direction, nor any new connection."""
+        with self._passing:
+            self._whole.clear()
 
     def heal(self) -> None:
         """Let everything through again, first what waited."""
@@ -42,14 +45,16 @@ class Proxy:
 
     def lose(self) -> None:
         """Throw away what comes from the near ends from now on; nobody notices yet."""
-        self._losing = True
+        with self._passing:
+            self._losing = True
 
     def hang_up(self) -> None:
         """End every connection; new ones lose nothing."""
-        for end in list(self._pairs):
-            with contextlib.suppress(OSError):  # the thread may have closed it just now
-                end.shutdown(socket.SHUT_RDWR)
-        self._losing = False
+        with self._passing:
+            for end in self._pairs:
+                with contextlib.suppress(OSError):  # the other side may have closed it just now
+                    end.shutdown(socket.SHUT_RDWR)
+            self._losing = False
 
     def __enter__(self) -> Self:
         self._thread.start()
@@ -68,19 +73,21 @@ class Proxy:
         while not self._stop.is_set():
             self._whole.wait()
             ready, _, _ = select.select([self._listener, *self._pairs], [], [], PERIOD_S)
-            for end in ready if self._whole.is_set() else ():
-                if end is self._listener:
-                    self._accept()
-                elif end in self._pairs:
-                    self._forward(end)
+            with self._passing:
+                for end in ready if self._whole.is_set() else ():
+                    if end is self._listener:
+                        self._accept()
+                    elif end in self._pairs:
+                        self._forward(end)
 
     def _accept(self) -> None:
         near, _ = self._listener.accept()
         try:
-            far = socket.create_connection(self._target, timeout=1.0)
+            far = socket.create_connection(self._target, timeout=CONNECT_S)
         except OSError:
             near.close()
             return
+        far.settimeout(None)  # one that takes its time is no reason to end a connection
         self._pairs |= {near: far, far: near}
         self._near.add(near)
 

@@ -10,11 +10,11 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from shared.bus import Bus, open_bus, wait_until
+from shared.bus import Bus, UnreachableError, open_bus, wait_until
 from shared.certificates.issuing import make
 from shared.certificates.layout import everyone
 
-START_S = 40.0
+START_S = 60.0
 
 
 class SecuredBus:
@@ -62,9 +62,15 @@ class SecuredBus:
         """Start a service with its own certificate and wait until it is alive."""
         own = {"TOPNAV_ENDPOINT": self.endpoint, "TOPNAV_CERTS": str(self.certs / holder)}
         variables = {**os.environ, **own, **(environment or {})}
-        command = [sys.executable, "-m", module]
+        command = [sys.executable, "-m", "tests.patient", module]
         self._children.append(subprocess.Popen(command, cwd=self._repository, env=variables))
-        assert wait_until(lambda: self.bus("operator").alive(holder) == [holder], START_S), holder
+        assert wait_until(lambda: self._alive(holder), START_S), holder
+
+    def _alive(self, holder: str) -> bool:
+        try:
+            return self.bus("operator").alive(holder) == [holder]
+        except UnreachableError:  # the router, the first to be started, is not up yet
+            return False
 
     def start_map_store(self) -> None:
         """The map store, with REST for those who may write."""

@@ -12,6 +12,8 @@ KILLS, FLIPS = 12, 60
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(600)
+@pytest.mark.usefixtures("patient_sessions")
 def test_no_acknowledged_transaction_is_lost_by_kill_9_at_any_moment(
     repository: Path,
     tmp_path: Path,
@@ -30,6 +32,7 @@ def test_no_acknowledged_transaction_is_lost_by_kill_9_at_any_moment(
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(600)
 def test_a_changed_byte_is_noticed_or_changes_nothing(tmp_path: Path):
     found = list(flips(tmp_path, FLIPS, seed=3, mend=False))
     assert [flip for flip in found if flip.verdict != "detected"] == []

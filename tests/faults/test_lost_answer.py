@@ -14,9 +14,9 @@ from shared.queries import AbsentError
 from shared.topics import MAP
 from tests.faults.lived_maps import place
 from tests.faults.test_cut_network import behind_a_proxy
-from tests.integration.map_store.conftest import START_S, Process
+from tests.integration.map_store.conftest import Process
 
-ANSWER_S = 20.0
+START_S, ANSWER_S = 60.0, 30.0
 
 
 @pytest.fixture
@@ -33,22 +33,24 @@ def parted(repository, tmp_path, free_port):
 
 
 class Write:
-    """A bare edge, driven once more, asked for on a thread until there is an answer."""
+    """A bare edge, driven once more, asked for on a thread until there is an answer or `join` ends."""
 
     def __init__(self, bus: Bus) -> None:
         self.answer: MapReply | None = None
+        self._over = threading.Event()
         self._thread = threading.Thread(target=self._ask, args=(bus,))
         self._thread.start()
 
     def _ask(self, bus: Bus) -> None:
         edge = PutEdge(edge=Edge(a=0, b=1, traversals=1))
         request = MapRequest(action="transact", operations=(edge,))
-        while self.answer is None:
+        while self.answer is None and not self._over.is_set():
             with suppress(AbsentError):  # a map store takes longer to start than asking again goes on
                 self.answer = bus.ask(MAP, request, ANSWER_S, map="m")
 
     def join(self) -> int:
         self._thread.join(2 * ANSWER_S)
+        self._over.set()
         assert self.answer is not None
         return self.answer.revision
 

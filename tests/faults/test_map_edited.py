@@ -12,7 +12,12 @@ from shared.messages import MapRequest, MissionRequest
 from shared.messages.maps import DeleteNode
 from shared.topics import MAP
 
-pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(300)]
+pytestmark = [
+    pytest.mark.render,
+    pytest.mark.slow,
+    pytest.mark.timeout(900),
+    pytest.mark.usefixtures("patient_sessions"),
+]
 
 STEPS = 60
 LONGEST = 300
@@ -60,7 +65,7 @@ def farthest(stack):
 def delete(stack, node):
     operation = DeleteNode(node_id=node)
     stack.bus.ask(
-        MAP, MapRequest(action="transact", author="rest", operations=(operation,)), 10.0, map="small"
+        MAP, MapRequest(action="transact", author="rest", operations=(operation,)), 30.0, map="small"
     )
 
 

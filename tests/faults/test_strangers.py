@@ -19,9 +19,9 @@ from shared.certificates.layout import everyone
 from shared.topics import alive_key
 from tests.faults.secured import SecuredBus
 
-pytestmark = [pytest.mark.timeout(240)]
+pytestmark = [pytest.mark.timeout(600)]
 
-REFUSED_MS = 2_000
+REFUSED_MS, ADMITTED_MS = 2_000, 30_000
 
 
 @pytest.fixture(scope="module")
@@ -30,9 +30,9 @@ def secured(tmp_path_factory, repository):
         yield bus
 
 
-def refused(config):
+def refused(config, patience_ms=REFUSED_MS):
     """Whether a session with these settings never gets to the router."""
-    config.insert_json5("connect/timeout_ms", str(REFUSED_MS))
+    config.insert_json5("connect/timeout_ms", str(patience_ms))
     try:
         session = zenoh.open(config)
     except zenoh.ZError:
@@ -41,9 +41,14 @@ def refused(config):
     return False
 
 
+def admitted(config):
+    """Whether it does get there, on a machine that may take long to let it."""
+    return not refused(config, ADMITTED_MS)
+
+
 def test_strangers_do_not_get_in(secured, tmp_path):
     ours = secured.certs / "drive"
-    assert not refused(client_config(secured.endpoint, credentials_in(ours)))
+    assert admitted(client_config(secured.endpoint, credentials_in(ours)))
     make(tmp_path / "foreign", everyone("r1"), dt.datetime.now(dt.UTC))
     foreign = credentials_in(tmp_path / "foreign" / "drive")
     assert refused(client_config(secured.endpoint, foreign)), "of another authority"
@@ -61,7 +66,7 @@ def test_an_expired_certificate_does_not_get_in(tmp_path):
     make(tmp_path, [h for h in everyone("r1") if h.name in ("router", "viewer")], now)
     endpoint = f"tls/127.0.0.1:{port}"
     with zenoh.open(secured_router_config(endpoint, credentials_in(tmp_path / "router"), ["r1"])):
-        assert not refused(client_config(endpoint, credentials_in(tmp_path / "viewer")))
+        assert admitted(client_config(endpoint, credentials_in(tmp_path / "viewer")))
         assert refused(client_config(endpoint, credentials_in(tmp_path / "drive")))
 
 

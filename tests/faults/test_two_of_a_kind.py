@@ -17,9 +17,12 @@ from tests.integration.map_store.conftest import Process
 from tests.integration.simulator.conftest import room_data as room_data
 from tests.integration.simulator.conftest import room_file as room_file
 
-START_S = 60.0
+pytestmark = [pytest.mark.timeout(600), pytest.mark.usefixtures("patient_sessions")]
+
+START_S, SOON_S = 120.0, 30.0
 FRAME_S = 0.3
-"""An exploration that recognises nothing gives up after some 120 frames."""
+"""An exploration that recognises nothing gives up after some 120: none is shown while processes start."""
+ENOUGH = 5
 NUMBERS = np.zeros((1, 2), np.float32), np.zeros(1, np.float32), np.zeros((1, 4), np.uint8)
 
 
@@ -43,11 +46,13 @@ class Eyes:
             self._features.put(
                 Features(**now, pipeline="x", lonlat_rad=lonlat, scores=scores, descriptors=descriptors)
             )
-            self._answer(time.monotonic() + FRAME_S)
+            self.answer(FRAME_S)
             epochs += [heading.epoch for heading in self._headings.take_all()]
         return epochs
 
-    def _answer(self, until_s):
+    def answer(self, during_s):
+        """Show nothing for a while, but answer what is asked about the last frame."""
+        until_s = time.monotonic() + during_s
         while (left_s := until_s - time.monotonic()) > 0.0:
             self._bus.wait(left_s)
             while (question := self._matches.take()) is not None:
@@ -63,7 +68,8 @@ def run(router_endpoint, tmp_path):
     def launch(module, **variables):
         environment = os.environ | {"TOPNAV_ENDPOINT": router_endpoint} | variables
         log = (tmp_path / f"{module}-{len(processes)}.log").open("w+b")
-        processes.append((subprocess.Popen([sys.executable, "-m", module], env=environment, stderr=log), log))
+        command = [sys.executable, "-m", "tests.patient", module]
+        processes.append((subprocess.Popen(command, env=environment, stderr=log), log))
         return processes[-1][0]
 
     def told(process):
@@ -81,26 +87,40 @@ def run(router_endpoint, tmp_path):
 def test_of_two_planners_the_later_decides_alone_and_the_other_stands_by(
     run, router_endpoint, repository, tmp_path, free_port
 ):
-    store = Process(repository, tmp_path, router_endpoint, free_port())
+    store = Process(repository, tmp_path, router_endpoint, free_port(), patient=True)
     store.start()
     try:
         with open_bus(router_endpoint) as bus:
             eyes = Eyes(bus)
             first = run("services.planner")
             assert wait_until(lambda: bus.alive("planner") == ["planner"], START_S)
-            status = bus.ask(MISSION, MissionRequest(action="explore", map="m"), 10.0, robot="r1")
-            assert wait_until(lambda: status.epoch in eyes.look(0.3), 20.0)
+            status = bus.ask(MISSION, MissionRequest(action="explore", map="m"), SOON_S, robot="r1")
+            assert wait_until(lambda: status.epoch in eyes.look(FRAME_S), SOON_S)
             run("services.planner")
-            assert wait_until(lambda: status.epoch + 1 in eyes.look(0.3), START_S)
-            eyes.look(1.5)  # the first hears of it by the other's heartbeat
-            epochs = eyes.look(2.0)
-            assert epochs
+
+            def both_are_there():
+                eyes.answer(FRAME_S)
+                return len(bus.alive("planner")) == 2
+
+            def heard_of_it():
+                eyes.look(FRAME_S)
+                return "another planner drives this robot" in run.told(first)
+
+            def spoken():
+                epochs.extend(eyes.look(FRAME_S))
+                return len(epochs) >= ENOUGH
+
+            assert wait_until(both_are_there, START_S)
+            assert wait_until(lambda: status.epoch + 1 in eyes.look(FRAME_S), SOON_S)
+            assert wait_until(heard_of_it, SOON_S)
+            eyes.look(FRAME_S)  # what it said before may be under way
+            epochs = []
+            assert wait_until(spoken, SOON_S)
             assert set(epochs) == {status.epoch + 1}
             for _ in range(5):
-                now = bus.ask(MISSION, MissionRequest(action="status"), 10.0, robot="r1")
+                now = bus.ask(MISSION, MissionRequest(action="status"), SOON_S, robot="r1")
                 assert (now.epoch, now.mission_id) == (status.epoch + 1, status.mission_id)
             assert first.poll() is None
-            assert "another planner drives this robot" in run.told(first)
     finally:
         store.kill()
 
@@ -125,12 +145,14 @@ def test_a_second_robot_of_the_same_name_ends_with_an_alarm_and_the_first_drives
         second = robot("two")
         assert second.wait(START_S) == 1
         assert "driven by another process already" in run.told(second)
-        assert "alarm: another process calls itself robot 'r1'" in run.told(first)
+        assert wait_until(lambda: "alarm: another process calls itself robot 'r1'" in run.told(first), SOON_S)
         truths.take_all()
-        before = truths.wait(5.0)
-        assert wait_until(lambda: (t := truths.take()) is not None and t.sim_time_s > before.sim_time_s, 10.0)
-        assert bus.alive("simulator") == ["simulator"]
+        before = truths.wait(SOON_S)
+        assert before is not None
+        assert wait_until(lambda: any(t.sim_time_s > before.sim_time_s for t in truths.take_all()), SOON_S)
+        assert wait_until(lambda: bus.alive("simulator") == ["simulator"], SOON_S)
         first.kill()
         first.wait()
+        assert wait_until(lambda: bus.alive("simulator") == [], SOON_S)
         robot("three")
         assert wait_until(lambda: bus.alive("simulator") == ["simulator"], START_S), "the name is free again"

@@ -79,7 +79,6 @@ class Writer:
 
     def run(self) -> None:
         """Add pairs of joined nodes."""
-        self.create()
         while not self.stop.wait(PAUSE_S):
             self.done.append(self.add())
 
@@ -115,7 +114,6 @@ class OwnWriter(Writer):
 
     def run(self) -> None:
         """Add and undo; after a failure look what became of it."""
-        self.create()
         revision, standing = 0, []
         while not self.stop.wait(PAUSE_S):
             undo = bool(standing) and self.rng.random() < UNDO
@@ -171,7 +169,9 @@ class Load:
         self._threads = [threading.Thread(target=writer.run, name=writer.author) for writer in self._writers]
 
     def start(self) -> None:
-        """Begin to write."""
+        """Make the maps and begin to write; each map is read in the end, also that of a writer held up."""
+        for writer in self._writers:
+            writer.create()
         for thread in self._threads:
             thread.start()
 
