@@ -54,8 +54,8 @@ class Planner:
         self._stopped = self._stops.take() or self._stopped
         while (request := self._requests.take()) is not None:
             self._handle(request)
-        if self._stopped is not None and self._stopped.engaged and self.control.state == "running":
-            self.control.pause(f"emergency stop: {self._stopped.why}".rstrip(": "))
+        if (stop := self._emergency_stop()) and self.control.state == "running":
+            self.control.pause(stop)
             self._publish_status(now_s)
         for delta in self._deltas.take_all():
             self.control.follow_store(delta)
@@ -162,7 +162,17 @@ class Planner:
             )
         )
 
+    def _emergency_stop(self) -> str:
+        """Why the emergency stop holds the robot; "" when none does."""
+        stopped = self._stopped
+        if stopped is None or not stopped.engaged:
+            return ""
+        return f"emergency stop: {stopped.why}".rstrip(": ")
+
     def _handle(self, request: Request[MissionRequest, MissionStatus]) -> None:
+        if request.message.action == "resume" and (stop := self._emergency_stop()):
+            request.refuse(f"{stop} holds the robot: clear it first, then resume", "conflict")
+            return
         try:
             status = self.control.handle(request.message)
         except (MissionError, QueryError, WireError) as error:

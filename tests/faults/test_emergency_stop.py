@@ -85,11 +85,11 @@ def engage(stack, watch):
 
 
 def drives_on(stack, watch):
-    """Whether the robot goes on when asked to: a planner that has yet to hear of a clearing pauses again."""
+    """Whether the robot goes on when asked to: a planner that has yet to hear of a clearing refuses."""
     began_s = time.monotonic()
 
     def moves():
-        with suppress(RefusedError):  # it is not paused
+        with suppress(RefusedError):
             ask(stack, action="resume")
         return watch.moving(began_s)
 
