@@ -76,21 +76,25 @@ class Drive:
         """Take the newest heading and distances; whether there was news.
 
         What waited while this process was suspended, or cut off from the robot, may be as old as that, and
-        looks fresh when it is read: it is thrown away.
+        looks fresh when it is read: it is thrown away. What is read now may have come just after the last
+        turn, so its age is counted from then.
         """
-        if now_s - self._turned_s > SUSPENDED_S:
-            log.warning("suspended for %.1f s: what came meanwhile is thrown away", now_s - self._turned_s)
+        since_s = min(self._turned_s, now_s)
+        if now_s - since_s > SUSPENDED_S:
+            log.warning("suspended for %.1f s: what came meanwhile is thrown away", now_s - since_s)
             self._be_deaf(now_s)
+        elif since_s < self._deaf_until_s:  # a burst waits for as long as this process was held up
+            self._deaf_until_s += max(0.0, now_s - since_s - PERIOD_S)
         self._turned_s = now_s
         ranges, heading = self._ranges_in.take(), self._headings.take()
         if ranges is not None:
             self._sense(ranges, now_s)
         if now_s < self._deaf_until_s:
             return False
-        fresh = ranges is not None and self._take_ranges(ranges, now_s)
+        fresh = ranges is not None and self._take_ranges(ranges, now_s, since_s)
         if heading is None or not self._accept(heading, now_s):
             return fresh
-        self._heading, self._heading_s = heading, now_s
+        self._heading, self._heading_s = heading, since_s
         self._last_heading = heading
         return True
 
@@ -106,13 +110,13 @@ class Drive:
     def _be_deaf(self, now_s: float) -> None:
         self._heading_s, self._deaf_until_s = EXPIRED_S, now_s + BURST_S
 
-    def _take_ranges(self, ranges: Ranges, now_s: float) -> bool:
+    def _take_ranges(self, ranges: Ranges, now_s: float, since_s: float) -> bool:
         last = self._last_ranges
         if last is not None and is_behind(ranges, last):
             self._counters.count("late", f"distances of frame {ranges.seq} after those of {last.seq}")
             return False
         self._ranges = self._last_ranges = ranges
-        self._ranges_s, self._lockstep = now_s, ranges.lockstep
+        self._ranges_s, self._lockstep = since_s, ranges.lockstep
         self._ages.heard(ranges.seq, now_s)
         return True
 
