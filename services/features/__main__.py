@@ -2,18 +2,17 @@
 
 import os
 
-from services.features.settings import FeaturesSettings
-
 
 def main() -> None:
     """Read the environment and serve."""
-    settings = FeaturesSettings.from_environment()
-    # OpenBLAS reads this once, when numpy is loaded. Its second thread waits by spinning: on two shared
-    # cores the products of one question then took 313 ms of processor time instead of 68.
+    # OpenBLAS reads this once, when numpy is loaded, which the imports below do. Its second thread waits by
+    # spinning: on two shared cores the products of one question then took 313 ms of processor time, not 68.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from services.features.service import run
+    from services.features.settings import FeaturesSettings
     from shared.lifecycle import run_service
 
+    settings = FeaturesSettings.from_environment()
     run_service("features", settings, lambda bus, stop: run(settings, bus, stop))
 
 
