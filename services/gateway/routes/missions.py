@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from services.gateway.bodies import read_json
 from services.gateway.goal import goal_of
+from services.gateway.live import RobotView
 from services.gateway.problems import ProblemError
 from services.gateway.routes.goals import PICTURE_BODY
 from services.gateway.routes.robots import known
@@ -111,34 +112,25 @@ async def wait(
     """Answer when the mission ends, or after `timeout_s` with `done` false: then ask again."""
     deadline_s = time.monotonic() + timeout_s
     while True:
-        news = _news(gateway, robot)  # from before the question: an end may be told while it is answered
+        view = gateway.hub.view(robot) or RobotView()  # of too many robots nothing is heard
+        news = view.changed  # from before the question: an end may be told while it is answered
         status = await _ask_patiently(gateway, robot, deadline_s)
         done = _ended(status, mission_id)
-        if done or time.monotonic() >= deadline_s:
+        left_s = deadline_s - time.monotonic()
+        if done or left_s <= 0.0:
             return WaitAnswer(done=done, mission=_facts(status))
-        until_s = min(deadline_s, time.monotonic() + ASK_AGAIN_S)
-        await _next_end(gateway, robot, mission_id, until_s, news)
-
-
-def _news(gateway: Gateway, robot: str) -> asyncio.Event | None:
-    view = gateway.hub.view(robot)
-    return view.changed if view is not None else None
-
-
-async def _next_end(
-    gateway: Gateway, robot: str, mission_id: str, until_s: float, news: asyncio.Event | None
-) -> None:
-    """Return when a status message, `news` being the next, says the mission ended, or at `until_s`."""
-    while (left_s := until_s - time.monotonic()) > 0.0:
-        if news is None:
-            await asyncio.sleep(left_s)
-            return
         with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(news.wait(), left_s)
-        view = gateway.hub.robots.get(robot)
-        if view is not None and view.status is not None and news.is_set() and _ended(view.status, mission_id):
+            async with asyncio.timeout(min(left_s, ASK_AGAIN_S)):
+                await _next_end(view, news, mission_id)
+
+
+async def _next_end(view: RobotView, news: asyncio.Event, mission_id: str) -> None:
+    """Return when a status, of which `news` tells first, says the mission ended."""
+    while True:
+        await news.wait()
+        news = view.changed
+        if view.status is not None and _ended(view.status, mission_id):
             return
-        news = _news(gateway, robot)
 
 
 def _ended(status: MissionStatus, mission_id: str) -> bool:
