@@ -5,7 +5,7 @@ import threading
 import time
 import uuid
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
@@ -17,6 +17,7 @@ from shared.bus_config import client_config, peer_config
 from shared.bus_security import Credentials, credentials_in
 from shared.inbox import Counters, Inbox
 from shared.messages.base import Message
+from shared.parted_peers import PartedPeers
 from shared.queries import Request, Requests
 from shared.topics import Delivery, Query, Topic, alive_key
 from shared.wire import WireError, encode
@@ -198,7 +199,8 @@ def open_bus(endpoint: str, listen: str = "tcp/127.0.0.1:0", certs: Path | None 
     """Open a session to the router at `endpoint` and close it whatever happens.
 
     Without certificates in the folder `certs` it is a peer, reachable at `listen`, which never waits for the
-    router. With certificates it is a client, which listens nowhere and waits up to ten seconds.
+    router and looks for peers that it lost. With certificates it is a client, which listens nowhere and waits
+    up to ten seconds.
 
     Raises:
         CredentialsError: the folder cannot be used, or the endpoint is secured and there is none.
@@ -206,11 +208,13 @@ def open_bus(endpoint: str, listen: str = "tcp/127.0.0.1:0", certs: Path | None 
     """
     credentials = credentials_in(certs)
     if credentials is None:
-        bus = Bus(zenoh.open(peer_config(endpoint, listen)))
+        session = zenoh.open(peer_config(endpoint, listen))
     else:
-        bus = Bus(_secured_session(endpoint, credentials))
+        session = _secured_session(endpoint, credentials)
+    bus = Bus(session)
     try:
-        yield bus
+        with PartedPeers(session, endpoint) if credentials is None else nullcontext():
+            yield bus
     finally:
         bus.close()
 

@@ -1,0 +1,82 @@
+"""Two peers whose link is cut while both keep the one to the router, which had told them of each other."""
+
+import contextlib
+import os
+import socket
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+import zenoh
+
+from shared.bus import Bus, open_bus, wait_until
+from shared.bus_config import peer_config, router_config
+from shared.parted_peers import PartedPeers, listens
+
+SOON_S = 30.0
+
+pytestmark = pytest.mark.usefixtures("patient_sessions")
+
+
+@pytest.fixture
+def router_port(free_port: Callable[[], int]) -> Iterator[int]:
+    """Port of a router."""
+    port = free_port()
+    with zenoh.open(router_config(f"tcp/127.0.0.1:{port}")):
+        yield port
+
+
+@contextlib.contextmanager
+def peer(router_port: int, name: str) -> Iterator[Bus]:
+    with open_bus(f"tcp/127.0.0.1:{router_port}") as bus:
+        bus.announce(name)
+        yield bus
+
+
+def hear_each_other(here: Bus, there: Bus) -> bool:
+    return here.alive() == there.alive() == ["here", "there"]
+
+
+def cut_link(here: Bus, there: Bus) -> None:
+    """Break the TCP connection between two peers of this process."""
+    ports = {
+        int(link.src.rpartition(":")[2])
+        for link in here._session.info.links()
+        if str(link.zid) == str(there._session.info.zid())
+    }
+    assert ports
+    for number in Path("/proc/self/fd").iterdir():
+        with contextlib.suppress(OSError), socket.socket(fileno=os.dup(int(number.name))) as end:
+            if end.family == socket.AF_INET and end.getpeername()[1] in ports:
+                end.shutdown(socket.SHUT_RDWR)
+
+
+def test_two_that_lost_each_other_and_not_the_router_meet_again(router_port: int):
+    with peer(router_port, "here") as here, peer(router_port, "there") as there:
+        assert wait_until(lambda: hear_each_other(here, there), SOON_S)
+        cut_link(here, there)
+        assert wait_until(lambda: not hear_each_other(here, there), SOON_S)
+        assert wait_until(lambda: hear_each_other(here, there), SOON_S)
+
+
+def test_a_peer_that_ended_is_not_looked_for_long(router_port: int, caplog: pytest.LogCaptureFixture):
+    caplog.set_level("INFO", logger="shared.parted_peers")
+    endpoint = f"tcp/127.0.0.1:{router_port}"
+    with zenoh.open(peer_config(endpoint)) as session, PartedPeers(session, endpoint) as parted:
+        for _ in range(4):  # of two peers the one with the greater id dials: about half of these were dialled
+            with zenoh.open(peer_config(endpoint)) as other:
+                assert wait_until(lambda: other.info.zid() in session.info.peers_zid(), SOON_S)
+            assert wait_until(lambda: parted.looked_for, SOON_S)
+        assert wait_until(lambda: not parted.looked_for, SOON_S)
+    assert not caplog.records
+
+
+def test_only_where_something_listens_is_a_peer_to_be_found(free_port: Callable[[], int]):
+    with (
+        socket.create_server(("127.0.0.1", 0)) as server,
+        socket.create_connection(server.getsockname()) as end,
+    ):
+        assert listens(f"tcp/127.0.0.1:{server.getsockname()[1]}")
+        assert not listens(f"tcp/127.0.0.1:{end.getsockname()[1]}")
+    assert not listens(f"tcp/127.0.0.1:{free_port()}")
+    assert not listens("tcp/nonsense")
