@@ -131,15 +131,16 @@ def test_a_robot_that_floods_the_service_leaves_the_others_their_turn(
     def flood() -> None:
         while not enough.wait(0.005):
             loud.send()
+            loud.read()
 
     thread = threading.Thread(target=flood)
     thread.start()
     try:
-        assert wait_until(lambda: loud.read() > 10, ANSWER_S)
-        before = loud.read()
+        assert wait_until(lambda: loud.answers.total() > 10, ANSWER_S)
+        before = loud.answers.total()
         for _ in range(5):
             quiet.send_and_wait()
-        between = loud.read() - before
+        between = loud.answers.total() - before
     finally:
         enough.set()
         thread.join()
