@@ -5,7 +5,7 @@ from abc import ABC, abstractmethod
 from types import TracebackType
 from typing import Self
 
-READY_S = 10.0
+READY_S = 60.0
 
 
 class Background(ABC):
@@ -16,9 +16,15 @@ class Background(ABC):
         self._thread = threading.Thread(target=self._run, name=name)
 
     def __enter__(self) -> Self:
-        """Start, and wait until it is ready."""
+        """Start, and wait until it is ready.
+
+        Raises:
+            TimeoutError: it was not within a minute.
+        """
         self._thread.start()
-        self._ready.wait(READY_S)
+        if not self._ready.wait(READY_S):
+            self._stop.set()
+            raise TimeoutError(f"{self._thread.name}: expected it to be ready within {READY_S:.0f} s")
         return self
 
     def __exit__(
