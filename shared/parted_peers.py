@@ -3,11 +3,10 @@
 Zenoh's peers dial each other once, when the router tells of a new one, and not while they still hold a link.
 Whoever stands still for about as long as the lease loses some links and keeps others for a moment. A link
 that goes when the router's is up again is dialled by nobody: two processes that live never hear each other
-again. So whoever had dialled a peer and lost it looks for it: while something still listens there, it opens
-a second session for a moment, and the router tells everybody of everybody.
+again. So whoever had dialled a peer and lost it looks for it: unless its port refuses by now, it opens a
+second session for a moment, and the router tells everybody of everybody.
 """
 
-import contextlib
 import logging
 import socket
 import threading
@@ -81,7 +80,7 @@ class PartedPeers:
             away = [zid for zid, peer in due.items() if self._is_away(zid, peer)]
             # Zenoh itself goes on dialling a router, and one that is found again introduces everybody.
             if away and self._info.routers_zid():
-                log.info("lost and still listening, introduced anew: %s", ", ".join(away))
+                log.info("lost without having ended, introduced anew: %s", ", ".join(away))
                 self._introduce(away)
 
     def _wait_for_due(self) -> dict[str, Parted] | None:
@@ -96,9 +95,9 @@ class PartedPeers:
         return None
 
     def _is_away(self, zid: str, peer: Parted) -> bool:
-        """Whether it is not heard and something listens where it did; otherwise it is forgotten."""
+        """Whether it is not heard and may still listen where it did; otherwise it is forgotten."""
         now_s = time.monotonic()
-        if self._hears(zid) or now_s > peer.give_up_s or not listens(peer.locator):
+        if self._hears(zid) or now_s > peer.give_up_s or refused(peer.locator):
             with self._changed:
                 if self._parted.get(zid) is peer:
                     del self._parted[zid]
@@ -121,15 +120,16 @@ class PartedPeers:
             log.warning("no second session to introduce peers: %s", str(error)[:200])
 
 
-def listens(locator: str) -> bool:
-    """Whether a process listens at `locator` (tcp/HOST:PORT).
+def refused(locator: str) -> bool:
+    """Whether nobody listens at `locator` (tcp/HOST:PORT), as where a link was accepted and not dialled.
 
-    The other end of a link that was accepted, not dialled, is a port at which nobody listens.
+    A process that stands still does not refuse, nor does a network that is cut.
     """
     host, _, port = locator.partition("/")[2].rpartition(":")
-    with (
-        contextlib.suppress(OSError, ValueError),
-        socket.create_connection((host.strip("[]"), int(port)), CONNECT_S),
-    ):
+    try:
+        with socket.create_connection((host.strip("[]"), int(port)), CONNECT_S):
+            return False
+    except (ConnectionRefusedError, ValueError):
         return True
-    return False
+    except OSError:
+        return False
