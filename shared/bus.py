@@ -2,7 +2,6 @@
 
 import re
 import threading
-import time
 import uuid
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
@@ -20,6 +19,7 @@ from shared.messages.base import Message
 from shared.parted_peers import PartedPeers
 from shared.queries import Request, Requests
 from shared.topics import Delivery, Query, Topic, alive_key
+from shared.waiting import wait_until
 from shared.wire import WireError, encode
 
 M = TypeVar("M", bound=Message)
@@ -227,16 +227,6 @@ def _secured_session(endpoint: str, credentials: Credentials) -> zenoh.Session:
             f"no secured router at {endpoint} takes the certificate in {credentials.certificate.parent}: "
             f"is it up, of the same authority, and not expired ('topnav certs --check')? {str(error)[:200]}"
         ) from error
-
-
-def wait_until(condition: Callable[[], bool], timeout_s: float, period_s: float = 0.02) -> bool:
-    """Poll `condition` until it holds or `timeout_s` passes; returns whether it held."""
-    deadline_s = time.monotonic() + timeout_s
-    while not condition():
-        if time.monotonic() > deadline_s:
-            return False
-        time.sleep(period_s)
-    return True
 
 
 __all__ = ["Bus", "Inbox", "Publisher", "Request", "Requests", "UnreachableError", "open_bus", "wait_until"]

@@ -17,6 +17,7 @@ from typing import Any, Self
 import zenoh
 
 from shared.bus_config import peer_config
+from shared.waiting import wait_until
 
 log = logging.getLogger(__name__)
 
@@ -113,9 +114,7 @@ class PartedPeers:
         """Be new on the bus until those who are away are heard, two seconds at most."""
         try:
             with zenoh.open(peer_config(self._endpoint)):
-                until_s = time.monotonic() + MEET_S
-                while not self._closing and time.monotonic() < until_s and not all(map(self._hears, away)):
-                    time.sleep(0.02)
+                wait_until(lambda: self._closing or all(map(self._hears, away)), MEET_S)
         except zenoh.ZError as error:  # no port or no file left: it is tried again
             log.warning("no second session to introduce peers: %s", str(error)[:200])
 

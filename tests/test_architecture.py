@@ -49,6 +49,7 @@ IMPURE_OURS = {
     "shared.parted_peers",
     "shared.queries",
     "shared.settings",
+    "shared.waiting",
 }
 FORBIDDEN = {
     "planner": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},

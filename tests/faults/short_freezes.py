@@ -32,12 +32,6 @@ MEET_S = 12.0
 START_S = 60.0
 
 
-def router(port: int) -> None:
-    """Introduce the peers to each other."""
-    with zenoh.open(router_config(f"tcp/127.0.0.1:{port}")):
-        time.sleep(1e9)
-
-
 def peer(number: int, port: int, heard_s: Any) -> None:
     """Send, and note when each of the others was heard last."""
     size, period_s = (CAMERA_BYTES, CAMERA_PERIOD_S) if number == 0 else (OTHER_BYTES, OTHER_PERIOD_S)
@@ -49,8 +43,9 @@ def peer(number: int, port: int, heard_s: Any) -> None:
         session = bus._session
         session.declare_subscriber("freezes/*", zenoh.handlers.Callback(note, indirect=False))
         publisher = session.declare_publisher(f"freezes/{number}")
+        payload = bytes(size)
         while True:
-            publisher.put(bytes(size))
+            publisher.put(payload)
             time.sleep(period_s)
 
 
@@ -89,14 +84,13 @@ class Peers:
 def running() -> Iterator[Peers]:
     """A router and its peers, killed in the end."""
     (port,) = free_ports(1)
-    introducer = multiprocessing.get_context("spawn").Process(target=router, args=(port,), daemon=True)
-    introducer.start()
-    peers = Peers(port)
-    try:
-        yield peers
-    finally:
-        for process in (introducer, *peers.processes):
-            process.kill()
+    with zenoh.open(router_config(f"tcp/127.0.0.1:{port}")):
+        peers = Peers(port)
+        try:
+            yield peers
+        finally:
+            for process in peers.processes:
+                process.kill()
 
 
 def freeze_often(peers: Peers, freezes: int, least_s: float, most_s: float, rng: random.Random) -> dict:
