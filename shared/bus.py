@@ -12,13 +12,13 @@ import zenoh
 from zenoh import ext
 
 from shared import queries
-from shared.bus_config import client_config, peer_config
-from shared.bus_security import Credentials, credentials_in
+from shared.access.credentials import Credentials, credentials_in
 from shared.inbox import Counters, Inbox
 from shared.messages.base import Message
-from shared.parted_peers import PartedPeers
 from shared.queries import Request, Requests
 from shared.topics import Delivery, Query, Topic, alive_key
+from shared.transport.reconnection import PartedPeers
+from shared.transport.session_config import client_config, peer_config
 from shared.waiting import wait_until
 from shared.wire import WireError, encode
 

@@ -4,8 +4,8 @@ import os
 import sys
 from pathlib import Path
 
+from shared.access.credentials import CredentialsError
 from shared.bus import UnreachableError, open_bus, wait_until
-from shared.bus_security import CredentialsError
 
 
 def main(arguments: list[str]) -> int:

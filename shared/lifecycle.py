@@ -9,8 +9,8 @@ import threading
 import time
 from collections.abc import Callable
 
+from shared.access.credentials import CredentialsError
 from shared.bus import Bus, UnreachableError, open_bus
-from shared.bus_security import CredentialsError
 from shared.settings import ServiceSettings
 
 log = logging.getLogger(__name__)

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import zenoh
 
-from shared.access_rules import robot_names
+from shared.access.credentials import credentials_in
+from shared.access.rules import robot_names
 from shared.bus import Bus
-from shared.bus_config import router_config, secured_router_config
-from shared.bus_security import credentials_in
 from shared.lifecycle import configure_logging, stop_on_signals
+from shared.transport.session_config import router_config, secured_router_config
 
 log = logging.getLogger(__name__)
 

@@ -7,8 +7,8 @@ from shared.lifecycle import run_service
 from shared.sole_robot import TakenError
 from simulator.service import run
 from simulator.service_settings import SimulatorSettings
-from simulator.world_check import start_faults
-from simulator.world_file import WorldFileError, load_world
+from simulator.world.world_check import start_faults
+from simulator.world.world_file import WorldFileError, load_world
 
 
 def main() -> None:

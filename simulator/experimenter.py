@@ -1,9 +1,9 @@
 """Answers the experimenter's requests: reset, placing robots and furniture, pictures from anywhere."""
 
 from shared.messages import Frame, SimulationReply, SimulationRequest
-from simulator.changes import ChangeError
 from simulator.outbox import MessageMaker
 from simulator.simulation import Pose2, Simulation
+from simulator.world.changes import ChangeError
 
 
 class RequestError(ValueError):

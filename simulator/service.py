@@ -10,12 +10,12 @@ from shared.estop.sides import StopFollower
 from shared.messages import Command, Frame, Ranges, Truth
 from shared.sole_robot import SoleRobot
 from shared.topics import COMMAND, FRAME, RANGES, SIMULATION, TRUTH
-from simulator.command_age import CommandAge
 from simulator.experimenter import Experimenter, RequestError
 from simulator.outbox import MessageMaker
+from simulator.robot.command_age import CommandAge
 from simulator.service_settings import SimulatorSettings
 from simulator.simulation import Simulation
-from simulator.world_file import WorldFile
+from simulator.world.world_file import WorldFile
 
 log = logging.getLogger(__name__)
 

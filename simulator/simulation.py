@@ -7,22 +7,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from simulator.bodies import Bodies
-from simulator.changes import ChangeError, Changes, changed_world, with_item, with_obstacle
 from simulator.disturbances.camera import Moment
 from simulator.disturbances.outlines import combined
 from simulator.disturbances.rearranging import rearranged
 from simulator.disturbances.walking import Crowd, crowd_of
-from simulator.footprints import clearance_m, footprints
-from simulator.freespace import BODY_BAND_M, free_space
-from simulator.physics_scene import PhysicsScene
-from simulator.ranges import measure, sensor_angles_rad
-from simulator.scene_parts import expand
+from simulator.robot.physics_scene import PhysicsScene
+from simulator.sensors.ranges import measure, sensor_angles_rad
 from simulator.settings import SimulationSettings
-from simulator.world_file import WorldFile
+from simulator.world.bodies import Bodies
+from simulator.world.changes import ChangeError, Changes, changed_world, with_item, with_obstacle
+from simulator.world.footprints import clearance_m, footprints
+from simulator.world.freespace import BODY_BAND_M, free_space
+from simulator.world.scene_parts import expand
+from simulator.world.world_file import WorldFile
 
 if TYPE_CHECKING:
-    from simulator.view import View
+    from simulator.scene.view import View
 
 Pose2 = tuple[float, float, float]
 Image = npt.NDArray[np.uint8]
@@ -177,7 +177,7 @@ class Simulation:
 
     def _look_at(self) -> "View":
         # SAPIEN's renderer is loaded only where pictures are wanted.
-        from simulator.view import View
+        from simulator.scene.view import View
 
         figures = [walker.figure for walker in self._crowd.walkers]
         return View(self.world, (self._parts, self._lights), self.settings, figures)

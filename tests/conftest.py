@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import zenoh
 
-from services.launcher.free_ports import free_ports
-from shared import bus_config
-from shared.bus_config import router_config
+from services.launcher.processes.free_ports import free_ports
+from shared.transport import session_config as bus_config
+from shared.transport.session_config import router_config
 from tests import patient
 from tests.postgres import PostgresServer, missing
 

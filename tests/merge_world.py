@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from services.gateway.merging.core.places import Places
-from shared.geometry.edge_ends import edge_between
+from shared.mapgraph.edge_ends import edge_between
 from shared.messages.features import Features
 from shared.messages.maps import Edge, Node
 from shared.messages.matching import NodeMatch

@@ -7,7 +7,7 @@ meant for services that hang, but a busy machine may hold up any process for as 
 import runpy
 import sys
 
-from shared import bus_config
+from shared.transport import session_config as bus_config
 
 LEASE_MS = 30_000
 

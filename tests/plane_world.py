@@ -17,10 +17,10 @@ from services.planner.ports import Decision, Mission, Observation
 from shared.messages import Features, Heading, Ranges
 from shared.messages.maps import AddNode, Operation
 from shared.messages.matching import NodeMatch
-from simulator.footprints import Footprints, cast_rays, clearance_m, footprints
-from simulator.freespace import FreeSpace, free_space
-from simulator.parts import Material, Part, post
-from simulator.world_file import load_world
+from simulator.scene.parts import Material, Part, post
+from simulator.world.footprints import Footprints, cast_rays, clearance_m, footprints
+from simulator.world.freespace import FreeSpace, free_space
+from simulator.world.world_file import load_world
 
 DISTANCES_M = (0.0, 0.35, 0.75, 1.25, 1.75, 2.25, 3.0, 5.0)
 INLIERS = (260, 109, 81, 54, 43, 33, 22, 12)

@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from experiments.exploration import explore
-from experiments.rounds import Game
-from experiments.stack import StackChoice, open_stack
-from simulator.freespace import free_space
-from simulator.world_file import load_world
+from services.launcher.client.stack import StackChoice, open_stack
+from services.launcher.evaluation.exploration import explore
+from services.launcher.evaluation.rounds import Game
+from simulator.world.freespace import free_space
+from simulator.world.world_file import load_world
 from tests.browser import WAIT_MS, chromium
 from tests.e2e.test_console import png_of
 

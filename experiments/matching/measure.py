@@ -17,10 +17,10 @@ from experiments.matching.placing import (
     view_of,
 )
 from experiments.matching.precision import Curve, curve_of
-from services.features.extraction import extract
-from services.features.interfaces import Distance, FeatureSet, Representation, View
-from services.features.matching import find_neighbours
-from services.features.pipeline import Pipeline
+from services.features.matching.nearest_neighbours import find_neighbours
+from services.features.pipeline.extraction import extract
+from services.features.pipeline.interfaces import Distance, FeatureSet, Representation, View
+from services.features.pipeline.pipeline import Pipeline
 from shared.geometry.angles import FloatArray
 
 BORDER_PX = 6.0

@@ -6,14 +6,14 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from experiments.failure import ExperimentError
 from experiments.matching.placing import FOV_RAD, Image
+from services.launcher.client.failure import ExperimentError
 from shared.geometry.perspective import PerspectiveView
 from shared.geometry.resampling import view_table
 from shared.geometry.sphere import EquirectGrid
-from simulator.freespace import free_space
 from simulator.settings import CameraSettings, SimulationSettings
-from simulator.world_file import load_world
+from simulator.world.freespace import free_space
+from simulator.world.world_file import load_world
 
 SOURCES = ("apartment", "break_room", "factory", "village")
 PANORAMA_PX = 2048

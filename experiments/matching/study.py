@@ -11,9 +11,9 @@ import numpy as np
 from experiments.matching.measure import PairResult, measure_pair, words_of
 from experiments.matching.placing import UNCHANGED, Image
 from experiments.matching.plan import MATCHERS, REPRESENTATIONS, Size, changes, profile_of
-from services.features.extraction import extract
 from services.features.networks.runtime import WeightsError
-from services.features.pipeline import Pipeline
+from services.features.pipeline.extraction import extract
+from services.features.pipeline.pipeline import Pipeline
 
 Row = dict[str, Any]
 

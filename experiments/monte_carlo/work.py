@@ -12,7 +12,7 @@ import torch
 from rich.console import Console
 from rich.progress import Progress
 
-from experiments.workers import workers
+from experiments.studies.workers import workers
 from shared.geometry.angles import FloatArray
 
 

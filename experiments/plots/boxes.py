@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from experiments.monte_carlo.ahae import METHODS
 from experiments.monte_carlo.statistics import Statistics
 from experiments.plots.colours import MARKERS, SERIES
-from experiments.plots.saving import save
+from services.launcher.drawing.saving import save
 from shared.geometry.angles import FloatArray
 
 

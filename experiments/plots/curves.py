@@ -6,7 +6,7 @@ from typing import Any
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from experiments.plots.saving import save
+from services.launcher.drawing.saving import save
 
 SIZE_IN = (10.0, 4.4)
 MEASURES = (("success_rate", "success rate"), ("spl_mean", "mean SPL"))

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from experiments.monte_carlo.examples import FailedPath, LatitudeCase, PairCloud
 from experiments.monte_carlo.scene import SIDE_M, MonteCarloScene
 from experiments.plots.colours import SERIES
-from experiments.plots.saving import save
+from services.launcher.drawing.saving import save
 
 
 def draw_pair_cloud(path: Path, cloud: PairCloud) -> None:

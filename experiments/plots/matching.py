@@ -8,7 +8,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from experiments.plots.colours import MARKERS, SERIES
-from experiments.plots.saving import save
+from services.launcher.drawing.saving import save
 
 LINES = {"equirectangular": "-", "tangent": "--"}
 LABELS = {

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from experiments.plots.saving import save
+from services.launcher.drawing.saving import save
 
 SIZE_IN = (10.0, 8.4)
 CURVES = (

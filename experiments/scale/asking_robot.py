@@ -6,13 +6,13 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from experiments.eye import camera
 from experiments.scale.frames import Seen, WorldFrames
 from experiments.scale.measure import TRACKED
+from experiments.studies.rendered_views import camera
 from shared.bus import Bus
 from shared.messages import Frame, MatchRequest
 from shared.topics import FEATURES, FRAME, MATCH
-from simulator.world_file import load_world
+from simulator.world.world_file import load_world
 
 MAP_NAME, VIEWS = "robots", 32
 ASK_S, AGAIN_S = 30.0, 0.5

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from experiments.eye import cache_folder, eye
 from experiments.scale.poses import SPACING_M, place_poses, query_poses
-from services.features.interfaces import FeatureSet
-from services.features.pipeline import Pipeline
+from experiments.studies.rendered_views import cache_folder, eye
+from services.features.pipeline.interfaces import FeatureSet
+from services.features.pipeline.pipeline import Pipeline
 from shared.messages.simulation import Pose
-from simulator.freespace import free_space
-from simulator.world_file import WorldFile, load_world
+from simulator.world.freespace import free_space
+from simulator.world.world_file import WorldFile, load_world
 
 CHUNK = 50
 """Pictures per file: what an interruption loses at most."""

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from services.features.interfaces import FeatureSet, Float32Array
+from services.features.pipeline.interfaces import FeatureSet, Float32Array
 from shared.messages.features import Features
 
 PARTS = 4

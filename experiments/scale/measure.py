@@ -7,18 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from experiments.output import rounded
 from experiments.scale.frames import Seen
 from experiments.scale.maps import as_message
-from services.features.interfaces import FeatureSet
-from services.features.matching_requests import pair, verify_paired
-from services.features.pipeline import Pipeline
-from services.features.places import Places
-from services.features.verification import Candidate, verify
+from services.features.matching.matching_requests import pair, verify_paired
+from services.features.matching.verification import Candidate, verify
+from services.features.pipeline.interfaces import FeatureSet
+from services.features.pipeline.pipeline import Pipeline
+from services.features.places.places import Places
+from services.launcher.terminal.output import rounded
 from shared.messages.matching import MatchRequest, NodeMatch
 
 TRACKED = 4
-"""Places compared on a way: those ahead and around (services/planner/following.py)."""
+"""Places compared on a way: those ahead and around (services/planner/travel/following.py)."""
 
 
 @dataclass(frozen=True)

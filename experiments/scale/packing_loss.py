@@ -6,17 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from experiments.eye import eye
 from experiments.matching.study import pipeline_with_weights
-from experiments.output import rounded
 from experiments.scale.poses import SPACING_M, place_poses, query_poses
-from services.features.interfaces import FeatureSet
-from services.features.packing import Packing
-from services.features.pipeline import Pipeline
-from services.features.verification import Candidate, verify
+from experiments.studies.rendered_views import eye
+from services.features.matching.verification import Candidate, verify
+from services.features.pipeline.interfaces import FeatureSet
+from services.features.pipeline.pipeline import Pipeline
+from services.features.places.packing import Packing
+from services.launcher.terminal.output import rounded
 from shared.messages.simulation import Pose
-from simulator.freespace import free_space
-from simulator.world_file import WorldFile
+from simulator.world.freespace import free_space
+from simulator.world.world_file import WorldFile
 
 EXTRACTORS = ("sift", "orb", "beblid", "tfeat", "mkd", "aliked-t16")
 SCATTER_DRAWS = 3

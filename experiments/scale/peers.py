@@ -12,8 +12,8 @@ import numpy as np
 import torch
 from kornia.feature import match_smnn
 
-from services.features.interfaces import FeatureSet, Float32Array
-from services.features.matching import as_vectors
+from services.features.matching.nearest_neighbours import as_vectors
+from services.features.pipeline.interfaces import FeatureSet, Float32Array
 from services.features.retrieval.model import learn
 from services.features.retrieval.vlad import unit
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from shared.messages.simulation import Pose
-from simulator.freespace import FreeSpace
+from simulator.world.freespace import FreeSpace
 
 SPACING_M = {"indoor": 0.6, "outdoor": 1.5}
 """Distance of neighbouring places, as exploring leaves them."""

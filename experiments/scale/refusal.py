@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from experiments.output import rounded
+from services.launcher.terminal.output import rounded
 
 
 @dataclass(frozen=True)

@@ -16,16 +16,16 @@ from typing import Any
 
 import numpy as np
 
-from experiments.failure import ExperimentError
-from experiments.output import rounded
-from experiments.processor_time import processors_s
+from experiments.bench.processor_time import processors_s
 from experiments.scale.asking_robot import ASK_S, MAP_NAME, AskingRobot, View, views_of
 from experiments.scale.frames import Seen, WorldFrames
 from experiments.scale.maps import as_message
-from services.features.pipelines import find_profile
-from services.launcher.compose_file import COMPOSE_FILE
-from services.launcher.process import ChildProcess, stop_all
-from services.launcher.supervisor import Launcher
+from services.features.pipeline.named_pipelines import find_profile
+from services.launcher.client.failure import ExperimentError
+from services.launcher.processes.compose_file import COMPOSE_FILE
+from services.launcher.processes.process import ChildProcess, stop_all
+from services.launcher.processes.supervisor import Launcher
+from services.launcher.terminal.output import rounded
 from shared.bus import Bus, open_bus, wait_until
 from shared.messages import MapRequest
 from shared.messages.maps import AddNode, Node

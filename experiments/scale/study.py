@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from experiments.output import rounded
 from experiments.scale.frames import Seen, WorldFrames
 from experiments.scale.maps import places_of
 from experiments.scale.measure import TRACKED, Found, exhaustive, load, localise, times, track
 from experiments.scale.peers import peers, timed
 from experiments.scale.refusal import calibrated, refusal_curve
-from services.features.interfaces import FeatureSet
-from services.features.pipeline import Pipeline
-from services.features.places import Places
+from services.features.pipeline.interfaces import FeatureSet
+from services.features.pipeline.pipeline import Pipeline
+from services.features.places.places import Places
+from services.launcher.terminal.output import rounded
 
 Row = dict[str, Any]
 EXHAUSTIVE_PICTURES = {1000: 60, 10_000: 3}

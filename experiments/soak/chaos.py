@@ -8,11 +8,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from experiments.output import rounded
 from experiments.soak.journal import Journal
 from experiments.soak.network import cut
-from services.launcher.supervisor import Launcher
-from services.launcher.wait import LaunchError
+from services.launcher.processes.supervisor import Launcher
+from services.launcher.processes.wait import LaunchError
+from services.launcher.terminal.output import rounded
 
 PAUSE_S = (5.0, 25.0)
 FROZEN_S = (0.5, 6.0)

@@ -9,19 +9,19 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
-from experiments import options
-from experiments.failure import ExperimentError, one_line_errors
-from experiments.map_client import require_map
 from experiments.soak.chaos import Chaos
 from experiments.soak.journal import Journal
 from experiments.soak.ledger import Ledger
 from experiments.soak.missions import Missions
 from experiments.soak.monitor import Monitor
 from experiments.soak.network import enter_own_network
-from experiments.stack import Stack, StackChoice, open_stack
-from experiments.tables import print_rows
-from simulator.freespace import free_space
-from simulator.world_file import load_world
+from services.launcher.client.failure import ExperimentError, one_line_errors
+from services.launcher.client.map_client import require_map
+from services.launcher.client.stack import Stack, StackChoice, open_stack
+from services.launcher.terminal import options
+from services.launcher.terminal.tables import print_rows
+from simulator.world.freespace import free_space
+from simulator.world.world_file import load_world
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 

@@ -7,17 +7,17 @@ from typing import TypeVar
 
 import numpy as np
 
-from experiments.failure import ExperimentError
-from experiments.hand import Hand
-from experiments.output import rounded
-from experiments.rounds import hiding_place
 from experiments.soak.journal import Journal
-from experiments.stack import Stack
+from services.launcher.client.experimenter import Hand
+from services.launcher.client.failure import ExperimentError
+from services.launcher.client.stack import Stack
+from services.launcher.evaluation.rounds import hiding_place
+from services.launcher.terminal.output import rounded
 from shared.messages import ExtractRequest, MissionRequest, MissionStatus
 from shared.queries import QueryError
 from shared.topics import EXTRACT, MISSION
 from shared.wire import WireError
-from simulator.freespace import FreeSpace
+from simulator.world.freespace import FreeSpace
 
 TERMINAL = frozenset({"succeeded", "failed", "cancelled"})
 MAX_STEPS = 600

@@ -3,10 +3,10 @@
 import threading
 import time
 
-from experiments.memory import RESIDENT, memory_mb
+from experiments.bench.memory import RESIDENT, memory_mb
 from experiments.soak.growth import Sample
 from experiments.soak.journal import Journal
-from services.launcher.supervisor import Launcher
+from services.launcher.processes.supervisor import Launcher
 from shared.bus import open_bus
 from shared.messages import Truth
 from shared.topics import TRUTH

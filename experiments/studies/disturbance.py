@@ -7,22 +7,22 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from experiments import options
-from experiments.failure import ExperimentError, one_line_errors
-from experiments.map_client import require_map
 from experiments.plots.curves import draw_curves
-from experiments.progress import mission_progress
-from experiments.rounds import Game, hiding_place
-from experiments.stack import StackChoice, open_stack
 from experiments.studies.disturbance_results import CLEAN, settings_to_run, summary
 from experiments.studies.results_file import ResultsFile, Row
-from experiments.tables import print_rows, wide_console
-from services.launcher.state import StateFolder
-from simulator.changes import changed_world
+from services.launcher.client.failure import ExperimentError, one_line_errors
+from services.launcher.client.map_client import require_map
+from services.launcher.client.stack import StackChoice, open_stack
+from services.launcher.evaluation.rounds import Game, hiding_place
+from services.launcher.processes.state import StateFolder
+from services.launcher.terminal import options
+from services.launcher.terminal.progress import mission_progress
+from services.launcher.terminal.tables import print_rows, wide_console
 from simulator.disturbances.levels import Disturbances
 from simulator.disturbances.rearranging import rearranged
-from simulator.freespace import free_space
-from simulator.world_file import WorldFile, load_world
+from simulator.world.changes import changed_world
+from simulator.world.freespace import free_space
+from simulator.world.world_file import WorldFile, load_world
 
 LEVELS = "0,0.33,0.66,1"
 SHOWN = (

@@ -7,22 +7,22 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from experiments import options
-from experiments.eye import WIDTH_PX
-from experiments.output import rounded, write_json
 from experiments.studies.disturbance_results import CLEAN
-from experiments.tables import print_rows
-from services.features.interfaces import FeatureSet
-from services.features.pipeline import Pipeline
-from services.features.pipelines import find_profile
-from services.features.verification import Candidate, feature_set, verify
+from experiments.studies.rendered_views import WIDTH_PX
+from services.features.matching.verification import Candidate, feature_set, verify
+from services.features.pipeline.interfaces import FeatureSet
+from services.features.pipeline.named_pipelines import find_profile
+from services.features.pipeline.pipeline import Pipeline
+from services.launcher.terminal import options
+from services.launcher.terminal.output import rounded, write_json
+from services.launcher.terminal.tables import print_rows
 from shared.messages.sensors import Frame
 from simulator.disturbances.levels import Disturbances
-from simulator.freespace import FreeSpace, free_space
 from simulator.service_settings import user_cache_dir
 from simulator.settings import CameraSettings, SimulationSettings
 from simulator.simulation import Image, Simulation
-from simulator.world_file import WorldFile, load_world
+from simulator.world.freespace import FreeSpace, free_space
+from simulator.world.world_file import WorldFile, load_world
 
 APART_M = 1.0
 SPEED_MPS = 0.4

@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from experiments.output import rounded
 from experiments.studies.results_file import Row
+from services.launcher.terminal.output import rounded
 
 CLEAN = "none"
 

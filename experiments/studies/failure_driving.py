@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from experiments.exploration import explore, figures
-from experiments.measures.reversals import longest_stay, reversals
-from experiments.output import rounded
-from experiments.rounds import Game, Round
-from experiments.stack import StackChoice, open_stack
-from experiments.trail import collisions, driven_m
-from simulator.freespace import free_space
-from simulator.world_file import load_world
+from services.launcher.client.stack import StackChoice, open_stack
+from services.launcher.evaluation.exploration import explore, figures
+from services.launcher.evaluation.reversals import longest_stay, reversals
+from services.launcher.evaluation.rounds import Game, Round
+from services.launcher.evaluation.trail import collisions, driven_m
+from services.launcher.terminal.output import rounded
+from simulator.world.freespace import free_space
+from simulator.world.world_file import load_world
 
 STAY_M = 0.6
 EXPLORE_STEPS = 600

@@ -8,24 +8,24 @@ from typing import Any
 
 import numpy as np
 
-from experiments.environments import environment_of
-from experiments.eye import cache_folder
-from experiments.map_client import require_map
-from experiments.output import rounded
-from experiments.stack import StackChoice, open_stack
 from experiments.studies.pair_features import features_of_pairs
 from experiments.studies.pair_headings import PairResult, judge_pair
 from experiments.studies.pairs import PosePair, draw_pair
-from experiments.truth_file import load_truth, truth_path
-from services.features.pipeline import Pipeline
-from services.features.pipelines import find_profile
-from services.features.verification import feature_set
+from experiments.studies.rendered_views import cache_folder
+from services.features.matching.verification import feature_set
+from services.features.pipeline.named_pipelines import find_profile
+from services.features.pipeline.pipeline import Pipeline
+from services.launcher.client.map_client import require_map
+from services.launcher.client.stack import StackChoice, open_stack
+from services.launcher.evaluation.environments import environment_of
+from services.launcher.evaluation.truth_file import load_truth, truth_path
+from services.launcher.terminal.output import rounded
 from services.planner.profiles import Profile
 from shared.messages import MapRequest
 from shared.messages.simulation import Pose
 from shared.topics import MAP
-from simulator.freespace import FreeSpace, free_space
-from simulator.world_file import load_world
+from simulator.world.freespace import FreeSpace, free_space
+from simulator.world.world_file import load_world
 
 WRONG_RAD = math.radians(45.0)
 READ_TIMEOUT_S = 60.0

@@ -5,12 +5,12 @@ from typing import Annotated
 
 import typer
 
-from experiments import options
-from experiments.failure import ExperimentError, one_line_errors
-from experiments.output import write_json
 from experiments.studies.failure_driving import Row, corner, oscillation
 from experiments.studies.failure_pictures import long_edges, wrong_headings
-from experiments.tables import print_rows
+from services.launcher.client.failure import ExperimentError, one_line_errors
+from services.launcher.terminal import options
+from services.launcher.terminal.output import write_json
+from services.launcher.terminal.tables import print_rows
 from services.planner.profiles import OUTDOOR
 
 KINDS = ("oscillation", "corner", "door", "truck", "long-edges")

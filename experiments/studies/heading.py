@@ -6,17 +6,17 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from experiments import options
-from experiments.failure import ExperimentError
 from experiments.monte_carlo import examples, study
 from experiments.monte_carlo.claims import CLAIMS, Figures, judged
 from experiments.monte_carlo.scene import PLACEMENTS, Placement
 from experiments.monte_carlo.tracking import DEG
 from experiments.monte_carlo.work import results_of
-from experiments.output import write_json
-from experiments.page import write_page
 from experiments.plots import heading_examples as drawings
-from experiments.tables import print_rows, wide_console
+from experiments.studies.page import write_page
+from services.launcher.client.failure import ExperimentError
+from services.launcher.terminal import options
+from services.launcher.terminal.output import write_json
+from services.launcher.terminal.tables import print_rows, wide_console
 
 Part = Literal["ahae", "dcpe", "noise", "sweep", "examples"]
 UNITS = (("ahae", "deg"), ("dcpe", "pct"))

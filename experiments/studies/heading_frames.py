@@ -7,18 +7,18 @@ import numpy as np
 import typer
 from rich.progress import track
 
-from experiments import options
-from experiments.eye import cache_folder
-from experiments.output import write_json
 from experiments.studies.pair_features import features_of_pairs
 from experiments.studies.pair_headings import PairResult, judge_pair
 from experiments.studies.pair_tables import distance_table, method_table, status_counts
 from experiments.studies.pairs import APART_M, draw_pairs
-from experiments.tables import print_rows, wide_console
-from services.features.pipeline import Pipeline
-from services.features.pipelines import find_profile
-from simulator.freespace import free_space
-from simulator.world_file import load_world
+from experiments.studies.rendered_views import cache_folder
+from services.features.pipeline.named_pipelines import find_profile
+from services.features.pipeline.pipeline import Pipeline
+from services.launcher.terminal import options
+from services.launcher.terminal.output import write_json
+from services.launcher.terminal.tables import print_rows, wide_console
+from simulator.world.freespace import free_space
+from simulator.world.world_file import load_world
 
 Pairs = Annotated[int, typer.Option(min=1, help="How many pairs of frames.")]
 Quick = Annotated[bool, typer.Option("--quick", help="60 pairs only.")]

@@ -8,17 +8,17 @@ import numpy as np
 import typer
 from rich.console import Console
 
-from experiments import options
-from experiments.failure import ExperimentError
 from experiments.matching import plan, study
 from experiments.matching.measure import measure_pair, words_of
 from experiments.matching.pictures import from_folder, rendered
 from experiments.matching.placing import UNCHANGED, Change, Image
-from experiments.page import write_page
 from experiments.plots.matching import draw_curves, draw_matching
+from experiments.studies.page import write_page
 from experiments.studies.results_file import ResultsFile
-from experiments.tables import print_rows, wide_console
-from services.features.plugins import CLASSIC
+from services.features.pipeline.plugins import CLASSIC
+from services.launcher.client.failure import ExperimentError
+from services.launcher.terminal import options
+from services.launcher.terminal.tables import print_rows, wide_console
 
 TIMED_PX = 2048
 

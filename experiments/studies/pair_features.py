@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from experiments.eye import eye
 from experiments.studies.pairs import PosePair
-from services.features.interfaces import FeatureSet
-from services.features.pipeline import Pipeline
+from experiments.studies.rendered_views import eye
+from services.features.pipeline.interfaces import FeatureSet
+from services.features.pipeline.pipeline import Pipeline
 from shared.messages.simulation import Pose
-from simulator.world_file import WorldFile
+from simulator.world.world_file import WorldFile
 
 FeaturePair = tuple[FeatureSet, FeatureSet]
 ARRAYS = ("lonlat_rad", "scores", "descriptors")

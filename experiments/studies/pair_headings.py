@@ -9,7 +9,7 @@ import numpy as np
 
 from experiments.studies.pair_features import FeaturePair
 from experiments.studies.pairs import PosePair
-from services.features.pipeline import Pipeline
+from services.features.pipeline.pipeline import Pipeline
 from services.planner.heading.registry import heading_method
 from shared.geometry.two_view import TwoViewResult, two_view
 

@@ -5,8 +5,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from experiments.output import rounded
 from experiments.studies.pair_headings import METHODS, PairResult
+from services.launcher.terminal.output import rounded
 
 BINS_M = (0.3, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0, 8.0, 12.0)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shared.messages.simulation import Pose
-from simulator.freespace import FreeSpace
+from simulator.world.freespace import FreeSpace
 
 APART_M = (0.3, 3.0)
 MAX_DRAWS = 10_000

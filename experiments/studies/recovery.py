@@ -7,21 +7,21 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from experiments import options
-from experiments.eye import camera_settings
-from experiments.failure import ExperimentError, one_line_errors
-from experiments.map_client import require_map
-from experiments.output import rounded, write_json
-from experiments.rounds import EXTRACT_TIMEOUT_S, MARGIN_M, Game, Round
-from experiments.stack import Stack, StackChoice, open_stack
-from experiments.tables import print_rows
-from experiments.trail import collisions
+from experiments.studies.rendered_views import camera_settings
+from services.launcher.client.failure import ExperimentError, one_line_errors
+from services.launcher.client.map_client import require_map
+from services.launcher.client.stack import Stack, StackChoice, open_stack
+from services.launcher.evaluation.rounds import EXTRACT_TIMEOUT_S, MARGIN_M, Game, Round
+from services.launcher.evaluation.trail import collisions
+from services.launcher.terminal import options
+from services.launcher.terminal.output import rounded, write_json
+from services.launcher.terminal.tables import print_rows
 from shared.messages import ExtractRequest, MissionRequest, MissionStatus
 from shared.messages.sensors import Frame
 from shared.messages.simulation import Pose
 from shared.topics import EXTRACT
-from simulator.freespace import FreeSpace, free_space
-from simulator.world_file import load_world
+from simulator.world.freespace import FreeSpace, free_space
+from simulator.world.world_file import load_world
 
 TRIES = 10
 CARRIED_AT_STEPS = (5, 40)

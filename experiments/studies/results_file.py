@@ -4,8 +4,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from experiments.failure import ExperimentError
-from experiments.output import write_json
+from services.launcher.client.failure import ExperimentError
+from services.launcher.terminal.output import write_json
 
 Row = dict[str, Any]
 

@@ -6,19 +6,19 @@ from typing import Annotated, Any
 
 import typer
 
-from experiments import options
-from experiments.failure import one_line_errors
-from experiments.machine import machine
-from experiments.output import write_json
+from experiments.bench.machine import machine
 from experiments.plots.scale import draw_growth
 from experiments.scale.frames import frames_of
 from experiments.scale.packing_loss import packing_losses
 from experiments.scale.robots import Load, Work, measure_loads
 from experiments.scale.study import ScaleStudy
-from experiments.tables import print_rows, wide_console
-from services.features.pipeline import Pipeline
-from services.features.pipelines import find_profile
-from simulator.world_file import load_world
+from services.features.pipeline.named_pipelines import find_profile
+from services.features.pipeline.pipeline import Pipeline
+from services.launcher.client.failure import one_line_errors
+from services.launcher.terminal import options
+from services.launcher.terminal.output import write_json
+from services.launcher.terminal.tables import print_rows, wide_console
+from simulator.world.world_file import load_world
 
 MAPPED = {"apartment": 100, "factory": 200, "village": 200}
 FOREIGN = {"break_room": 100}

@@ -6,7 +6,7 @@ from itertools import pairwise
 import networkx as nx
 from matplotlib.figure import Figure
 
-from experiments.plots.plans import EDGE, NODE, START, TARGET, VIA
+from services.launcher.drawing.plans import EDGE, NODE, START, TARGET, VIA
 from services.planner.graph import MapGraph
 from services.planner.ports import GOAL
 

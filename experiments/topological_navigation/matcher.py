@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 from experiments.topological_navigation.memory_map import MemoryMap
-from services.features.matching_requests import pair, verify_paired
-from services.features.pipeline import Pipeline
-from services.features.places import Places
+from services.features.matching.matching_requests import pair, verify_paired
+from services.features.pipeline.pipeline import Pipeline
+from services.features.places.places import Places
 from shared.messages.features import Features
 from shared.messages.matching import MatchRequest, NodeMatch
 

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from services.features.interfaces import FeatureSet
-from services.features.verification import feature_set
-from services.map_store.archive import Archive, write_archive
-from services.map_store.blobs import checksum, pack_features, unpack_features
-from services.map_store.contents import Kind
+from services.features.matching.verification import feature_set
+from services.features.pipeline.interfaces import FeatureSet
 from services.map_store.errors import MapError
-from services.map_store.graph import AddPlace, Graph, Place
+from services.map_store.storage.archive import Archive, write_archive
+from services.map_store.storage.blobs import checksum, pack_features, unpack_features
+from services.map_store.storage.contents import Kind
+from services.map_store.storage.graph import AddPlace, Graph, Place
 from services.planner.graph import MapGraph
 from shared.messages.features import Features
 from shared.messages.maps import AddNode, Operation, PutEdge

@@ -21,12 +21,12 @@ from experiments.topological_navigation.vectors import (
 )
 from services.drive.momentary import obstacle_heading
 from services.features.networks.runtime import WeightsError
-from services.planner.goto import Goto
 from services.planner.heading.choose import HeadingSettings, choose_heading
 from services.planner.heading.registry import MethodName
+from services.planner.missions.goto import Goto
+from services.planner.missions.strategies import ThesisExploration
 from services.planner.ports import Decision, Mission, Observation
 from services.planner.profiles import THESIS, Profile
-from services.planner.strategies import ThesisExploration
 from shared.geometry.angles import FloatArray
 from shared.messages.features import Features
 from shared.messages.sensors import Ranges

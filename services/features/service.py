@@ -6,13 +6,13 @@ from threading import Event
 
 import cv2
 
-from services.features.decoding import BadPictureError
 from services.features.frame_cache import FrameKey
-from services.features.map_cache import MapCache, MapWords
-from services.features.map_reader import MapReader
-from services.features.matching_requests import FrameNotKeptError, RequestError, pair, verify_paired
-from services.features.pipeline import Pipeline
-from services.features.places import Places
+from services.features.matching.matching_requests import FrameNotKeptError, RequestError, pair, verify_paired
+from services.features.pipeline.decoding import BadPictureError
+from services.features.pipeline.pipeline import Pipeline
+from services.features.places.map_cache import MapCache, MapWords
+from services.features.places.map_reader import MapReader
+from services.features.places.places import Places
 from services.features.robot_streams import RobotStreams
 from services.features.settings import FeaturesSettings
 from shared.bus import Bus, Request

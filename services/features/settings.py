@@ -6,9 +6,9 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, PositiveFloat, field_validator, model_validator
 from pydantic_settings import NoDecode, SettingsConfigDict
 
-from services.features.pipelines import Profile, find_profile
-from services.features.registry import Runtime
-from shared.bus_security import credentials_in
+from services.features.pipeline.named_pipelines import Profile, find_profile
+from services.features.pipeline.registry import Runtime
+from shared.access.credentials import credentials_in
 from shared.settings import ServiceSettings
 from shared.topics import NAME
 

@@ -2,7 +2,7 @@
 
 import sys
 
-from services.gateway.book import open_book
+from services.gateway.auth.book import open_book
 from services.gateway.service import run
 from services.gateway.settings import GatewaySettings
 from shared.lifecycle import run_service

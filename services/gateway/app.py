@@ -6,18 +6,19 @@ from contextlib import asynccontextmanager
 
 from fastapi import Depends, FastAPI
 
-from services.gateway import problems
-from services.gateway.access import Access
-from services.gateway.asking import Asker
-from services.gateway.book import open_book
-from services.gateway.bridge import BEAT_S, Bridge
-from services.gateway.described import describing_roles
-from services.gateway.edge import Edge
-from services.gateway.guard import guard
-from services.gateway.live import Hub
+from services.gateway.auth.access import Access
+from services.gateway.auth.book import open_book
+from services.gateway.auth.guard import guard
+from services.gateway.http import problems
+from services.gateway.http.asking import Asker
+from services.gateway.http.described import describing_roles
+from services.gateway.http.map_store_proxy import open_client
+from services.gateway.http.metrics import Metrics
+from services.gateway.http.response_headers import Edge
+from services.gateway.live.bridge import BEAT_S, Bridge
+from services.gateway.live.hub import Hub
+from services.gateway.live.mission_log import MissionLog
 from services.gateway.merging.desk import MergeDesk
-from services.gateway.metrics import Metrics
-from services.gateway.mission_log import MissionLog
 from services.gateway.routes import (
     estop,
     evidence,
@@ -34,7 +35,6 @@ from services.gateway.routes import (
 )
 from services.gateway.settings import GatewaySettings
 from services.gateway.state import Gateway
-from services.gateway.storage import open_client
 from shared.bus import Bus
 
 

@@ -10,14 +10,14 @@ import httpx
 from fastapi import Depends, Path, Query
 from starlette.requests import HTTPConnection
 
-from services.gateway.access import Access
-from services.gateway.asking import Asker
-from services.gateway.gathered_stops import GatheredStops
-from services.gateway.live import Hub
-from services.gateway.metrics import Metrics
-from services.gateway.mission_log import MissionLog
+from services.gateway.auth.access import Access
+from services.gateway.http.asking import Asker
+from services.gateway.http.metrics import Metrics
+from services.gateway.http.slots import Slots
+from services.gateway.live.gathered_stops import GatheredStops
+from services.gateway.live.hub import Hub
+from services.gateway.live.mission_log import MissionLog
 from services.gateway.settings import GatewaySettings
-from services.gateway.slots import Slots
 from shared.messages.estop import EStopState
 
 T = TypeVar("T")

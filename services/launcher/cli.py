@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
-from services.launcher.commands import COMMANDS, CommandMissingError, register
+from services.launcher.lazy_commands import COMMANDS, CommandMissingError, register
 
 app = typer.Typer(
     name="topnav",
@@ -48,8 +48,8 @@ def up(
     file: Annotated[Path, typer.Option("--file", "-f", help="Which processes there are.")] = COMPOSE_FILE,
 ) -> None:
     """Start the processes of docker-compose.yml on this machine."""
-    from services.launcher.stack_settings import StackSettings
-    from services.launcher.up import run_detached, run_foreground
+    from services.launcher.commands.up import run_detached, run_foreground
+    from services.launcher.processes.stack_settings import StackSettings
 
     choices: dict[str, Any] = {"world": world, "lockstep": lockstep, "seed": seed, "profile": profile}
     settings = StackSettings(data_dir.resolve(), **choices, secure=secure)
@@ -65,7 +65,7 @@ def down(
     timeout_s: Annotated[float, typer.Option(help="Kill the launcher after this.")] = 30.0,
 ) -> None:
     """Stop the stack of a data folder."""
-    from services.launcher.down import stop_stack
+    from services.launcher.commands.down import stop_stack
 
     typer.echo(stop_stack(data_dir.resolve(), timeout_s))
 
@@ -73,8 +73,8 @@ def down(
 @app.command()
 def status(data_dir: DataDir = DEFAULT_DATA_DIR, as_json: AsJson = False) -> None:
     """Show the stack of a data folder; exit 1 unless every service is healthy."""
-    from services.launcher.display import status_table
-    from services.launcher.state import StateFolder
+    from services.launcher.processes.state import StateFolder
+    from services.launcher.terminal.display import status_table
 
     state = StateFolder(data_dir.resolve()).read()
     if as_json:
@@ -96,9 +96,9 @@ def doctor(data_dir: DataDir = DEFAULT_DATA_DIR, as_json: AsJson = False) -> Non
     import json
     from dataclasses import asdict
 
-    from services.launcher.display import check_table
-    from services.launcher.doctor import examine
-    from services.launcher.stack_settings import Ports
+    from services.launcher.commands.doctor import examine
+    from services.launcher.processes.stack_settings import Ports
+    from services.launcher.terminal.display import check_table
 
     checks = examine(data_dir.resolve(), Ports.from_variables(os.environ))
     if as_json:
@@ -110,8 +110,8 @@ def doctor(data_dir: DataDir = DEFAULT_DATA_DIR, as_json: AsJson = False) -> Non
 
 def main() -> None:
     """Run a command; what users can mend is one line on standard error and exit 1."""
-    from services.launcher.state import AlreadyRunningError
-    from services.launcher.wait import LaunchError
+    from services.launcher.processes.state import AlreadyRunningError
+    from services.launcher.processes.wait import LaunchError
 
     try:
         app()  # reports wrong options itself and raises SystemExit

@@ -5,17 +5,17 @@ import sys
 import time
 from threading import Event
 
-from services.map_store.api import create_app
-from services.map_store.database import Database
+from services.map_store.api.app import create_app
+from services.map_store.api.guard import LOOPBACK_NAMES
+from services.map_store.api.server import serve
 from services.map_store.errors import MapError
-from services.map_store.guard import LOOPBACK_NAMES
-from services.map_store.missions import MissionStore
-from services.map_store.server import serve
 from services.map_store.service import Deltas, run
 from services.map_store.settings import MapStoreSettings
+from services.map_store.storage.database import Database
+from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
+from shared.access.credentials import credentials_in
 from shared.bus import Bus
-from shared.bus_security import credentials_in
 from shared.lifecycle import run_service
 
 log = logging.getLogger(__name__)

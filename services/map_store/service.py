@@ -8,7 +8,7 @@ from threading import Event
 from typing import TypeVar
 
 from services.map_store.errors import ConflictError, InvalidError, MapError
-from services.map_store.missions import MissionStore
+from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
 from shared.bus import Bus, Publisher, Request
 from shared.messages.base import Message

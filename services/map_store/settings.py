@@ -5,9 +5,9 @@ from typing import Self
 from pydantic import Field, SecretStr, model_validator
 from pydantic_settings import SettingsConfigDict
 
-from shared.bus_security import credentials_in
+from shared.access.credentials import credentials_in
+from shared.access.token import check_chosen
 from shared.settings import ServiceSettings
-from shared.tokens.token import check_chosen
 from shared.web.loopback import is_loopback
 
 

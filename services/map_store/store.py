@@ -7,20 +7,22 @@ from dataclasses import replace
 
 from sqlalchemy import Connection
 
-from services.map_store import answers, blobs, catalogue, history, losses
-from services.map_store.catalogue import MapRecord
-from services.map_store.check import check_contents
-from services.map_store.contents import Contents
-from services.map_store.database import Database
 from services.map_store.errors import ConflictError, InvalidError
-from services.map_store.graph import Change, Graph, Step, apply
-from services.map_store.graphs import Graphs
-from services.map_store.history import Revision
-from services.map_store.operations import prepare
-from services.map_store.past import Past
-from services.map_store.repair import Repaired, mend, relink_all
-from services.map_store.rows import write_change
-from services.map_store.summaries import Summaries
+from services.map_store.history import revisions as history
+from services.map_store.history.past import Past
+from services.map_store.history.revisions import Revision
+from services.map_store.history.summaries import Summaries
+from services.map_store.integrity import losses
+from services.map_store.integrity.check import check_contents
+from services.map_store.integrity.repair import Repaired, mend, relink_all
+from services.map_store.storage import answers, blobs, catalogue
+from services.map_store.storage.catalogue import MapRecord
+from services.map_store.storage.contents import Contents
+from services.map_store.storage.database import Database
+from services.map_store.storage.graph import Change, Graph, Step, apply
+from services.map_store.storage.graphs import Graphs
+from services.map_store.storage.operations import prepare
+from services.map_store.storage.rows import write_change
 from shared.messages.maps import MapDelta, Operation
 
 

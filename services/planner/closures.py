@@ -7,7 +7,7 @@ claimed must then fit as well: the turn and the direction it is seen at follow f
 from collections.abc import Mapping, Set
 
 from services.planner.graph import MapGraph
-from shared.geometry.triangle import Sight, triangle_closes
+from shared.mapgraph.triangle import Sight, triangle_closes
 from shared.messages.matching import NodeMatch
 
 NEAR_HOPS = 1

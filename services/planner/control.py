@@ -6,15 +6,15 @@ from contextlib import suppress
 
 import numpy as np
 
-from services.planner.explore import FrontierExploration
 from services.planner.frontiers import open_directions
-from services.planner.goto import Goto
 from services.planner.graph import MapGraph
+from services.planner.missions.explore import FrontierExploration
+from services.planner.missions.goto import Goto
+from services.planner.missions.strategies import ThesisExploration
 from services.planner.ports import Decision, Mission, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.remote import RemoteMap, RemoteMatcher
 from services.planner.settings import PlannerSettings
-from services.planner.strategies import ThesisExploration
 from shared.bus import Bus
 from shared.messages import MapDelta, MissionRecord, MissionRecordRequest, MissionRequest, MissionStatus
 from shared.messages.missions import FailureKind, MissionState

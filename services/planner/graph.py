@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping
 
 import networkx as nx
 
-from shared.geometry.edge_ends import edge_between as edge_between
+from shared.mapgraph.edge_ends import edge_between as edge_between
 from shared.messages.maps import AddNode, DeleteEdge, DeleteNode, Edge, Node, Operation, PutEdge, UpdateNode
 
 EdgeCost = Callable[[Edge], float]

@@ -8,7 +8,7 @@ import os
 import sys
 from pathlib import Path
 
-from shared.access_rules import robot_names
+from shared.access.rules import robot_names
 from shared.certificates.issuing import make
 from shared.certificates.layout import another_robot, everyone
 

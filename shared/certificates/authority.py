@@ -10,8 +10,8 @@ from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
-from shared.access_rules import Role
-from shared.bus_security import AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE, MAP_STORE_HOST
+from shared.access.credentials import AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE, MAP_STORE_HOST
+from shared.access.rules import Role
 from shared.certificates.files import private_folder, write, write_key
 from shared.certificates.layout import AUTHORITY, Holder
 

@@ -8,7 +8,13 @@ from pathlib import Path
 from cryptography import x509
 from cryptography.exceptions import InvalidSignature
 
-from shared.bus_security import AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE, CredentialsError, credentials_in
+from shared.access.credentials import (
+    AUTHORITY_FILE,
+    CERTIFICATE_FILE,
+    KEY_FILE,
+    CredentialsError,
+    credentials_in,
+)
 from shared.certificates.authority import CertificatesError
 from shared.certificates.layout import AUTHORITY
 from shared.certificates.reading import UnreadableError, holder_of, read_certificate

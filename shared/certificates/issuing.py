@@ -6,7 +6,7 @@ from pathlib import Path
 
 from cryptography import x509
 
-from shared.bus_security import CERTIFICATE_FILE
+from shared.access.credentials import CERTIFICATE_FILE
 from shared.certificates.authority import Authority, CertificatesError, has_authority
 from shared.certificates.layout import AUTHORITY, Holder
 from shared.certificates.reading import holder_of, hosts_of, read_certificate

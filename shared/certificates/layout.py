@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from shared.access_rules import Role
+from shared.access.rules import Role
 
 AUTHORITY = "authority"
 """Folder of the private key that signs all others. No service ever needs it: keep it off the robot."""

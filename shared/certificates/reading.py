@@ -5,7 +5,7 @@ from pathlib import Path
 from cryptography import x509
 from cryptography.x509.oid import NameOID
 
-from shared.access_rules import Role
+from shared.access.rules import Role
 from shared.certificates.layout import Holder
 
 

@@ -6,7 +6,7 @@ from pathlib import Path, PurePosixPath
 from simulator.assets.model import AssetError, Model
 from simulator.assets.model_file import SUFFIXES, read_model
 from simulator.assets.picture_file import PICTURE_SUFFIXES, picture_from_bytes
-from simulator.parts import Picture
+from simulator.scene.parts import Picture
 
 MOST_BYTES = 64_000_000
 NAMED_SUFFIXES = (".mtl", ".bin")  # what a model may name beside pictures

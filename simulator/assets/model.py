@@ -7,8 +7,8 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from simulator.meshes import Mesh
-from simulator.parts import Picture, Piece
+from simulator.scene.meshes import Mesh
+from simulator.scene.parts import Picture, Piece
 
 FloatArray = npt.NDArray[np.floating]
 UpAxis = Literal["y", "z"]

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from PIL import Image, UnidentifiedImageError
 
 from simulator.assets.model import AssetError
-from simulator.parts import Picture
+from simulator.scene.parts import Picture
 
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".webp")
 MOST_SIDE_PX = 4096

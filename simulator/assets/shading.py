@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from simulator.meshes import Mesh
+from simulator.scene.meshes import Mesh
 
 FloatArray = npt.NDArray[np.floating]
 CREASE_COS = float(np.cos(np.deg2rad(40.0)))

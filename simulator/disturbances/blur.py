@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.panorama import Image
+from simulator.sensors.panorama import Image
 
 EXPOSURE_S = 0.2  # at level 1
 PICTURES = 5

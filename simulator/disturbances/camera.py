@@ -7,7 +7,7 @@ from simulator.disturbances.levels import Disturbances
 from simulator.disturbances.noise import noisy
 from simulator.disturbances.rain import rained
 from simulator.disturbances.seeds import generator
-from simulator.panorama import Image
+from simulator.sensors.panorama import Image
 
 NIGHT_NOISE = 0.35  # a camera that has little light turns its gain up
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from simulator.disturbances.seeds import generator
-from simulator.panorama import Image
+from simulator.sensors.panorama import Image
 
 STOPS = 2.0  # of the largest error, at level 1: four times too bright or too dark
 PERIOD_S = 24.0

@@ -8,8 +8,8 @@ was daylight. Shadows and gradients therefore change, as they really do, not jus
 from dataclasses import replace
 from typing import Any
 
-from simulator.parts import Light, Material, Part
-from simulator.world_file import WorldFile
+from simulator.scene.parts import Light, Material, Part
+from simulator.world.world_file import WorldFile
 
 Contents = tuple[tuple[Part, ...], tuple[Light, ...]]
 Rgb = tuple[float, float, float]

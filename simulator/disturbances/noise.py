@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from simulator.panorama import Image
+from simulator.sensors.panorama import Image
 
 GAMMA = 2.2
 FEW_ELECTRONS = 50.0  # full pixel at level 1; level 0.5 has four times as many

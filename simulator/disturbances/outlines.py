@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.footprints import Footprints
+from simulator.world.footprints import Footprints
 
 
 def combined(standing: Footprints, walking: Footprints) -> Footprints:

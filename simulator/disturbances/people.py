@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from simulator.parts import Material, Part, Rgb, box, post
+from simulator.scene.parts import Material, Part, Rgb, box, post
 
 SKIN: tuple[Rgb, ...] = ((224, 184, 156), (188, 140, 108), (120, 84, 62))
 CLOTHES: tuple[Rgb, ...] = ((172, 52, 44), (44, 92, 152), (64, 122, 74), (196, 160, 60), (96, 66, 120))

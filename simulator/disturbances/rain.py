@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simulator.disturbances.seeds import generator
-from simulator.panorama import Image
+from simulator.sensors.panorama import Image
 
 STREAKS = 1800  # at level 1
 NEAR_M, FAR_M = 0.5, 7.0

@@ -8,16 +8,16 @@ import math
 
 import numpy as np
 
-from simulator.changes import Changes, at_pose, changed_world, item_names
 from simulator.disturbances.seeds import generator
-from simulator.footprints import Footprints, clearance_m, footprints
-from simulator.freespace import BODY_BAND_M, FreeSpace, free_space
 from simulator.furniture.catalogue import FURNITURE
-from simulator.mesh_shapes import mesh_of
-from simulator.parts import Part, moved
-from simulator.scene_parts import expand
-from simulator.surface_points import surface_points
-from simulator.world_file import Item, WorldFile
+from simulator.scene.mesh_shapes import mesh_of
+from simulator.scene.parts import Part, moved
+from simulator.scene.surface_points import surface_points
+from simulator.world.changes import Changes, at_pose, changed_world, item_names
+from simulator.world.footprints import Footprints, clearance_m, footprints
+from simulator.world.freespace import BODY_BAND_M, FreeSpace, free_space
+from simulator.world.scene_parts import expand
+from simulator.world.world_file import Item, WorldFile
 
 LARGEST_M = 1.3
 MOST_SHARE = 0.7  # of the movable items, at level 1

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from simulator.freespace import FreeSpace, Point
+from simulator.world.freespace import FreeSpace, Point
 
 FloatArray = npt.NDArray[np.float64]
 STEP_M = 0.05

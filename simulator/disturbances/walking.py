@@ -8,9 +8,9 @@ import numpy as np
 from simulator.disturbances.people import Figure, cart, person
 from simulator.disturbances.routes import STEP_M, FloatArray, closed_route
 from simulator.disturbances.seeds import generator
-from simulator.footprints import Footprints, clearance_m, footprints
-from simulator.freespace import BODY_BAND_M, FreeSpace, Point
-from simulator.parts import Piece, moved
+from simulator.scene.parts import Piece, moved
+from simulator.world.footprints import Footprints, clearance_m, footprints
+from simulator.world.freespace import BODY_BAND_M, FreeSpace, Point
 
 GAP_M = 0.4  # to the robot's edge, below which a walker does not come nearer
 BETWEEN_M = 0.1  # the same between walkers

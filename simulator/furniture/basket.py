@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.parts import Material, Piece, Rgb, post
+from simulator.scene.parts import Material, Piece, Rgb, post
 
 
 def basket(

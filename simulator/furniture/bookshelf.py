@@ -3,7 +3,7 @@
 import numpy as np
 
 from simulator.furniture.stacks import book_row, ornament
-from simulator.parts import Material, Part, Piece, Rgb, box
+from simulator.scene.parts import Material, Part, Piece, Rgb, box
 
 
 def bookshelf(

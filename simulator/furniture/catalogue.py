@@ -43,8 +43,8 @@ from simulator.furniture import (
     trees,
     vehicles,
 )
-from simulator.option_limits import MOST_PARTS, MOST_SIZE_M, check_value, short
-from simulator.parts import Piece
+from simulator.scene.parts import Piece
+from simulator.world.option_limits import MOST_PARTS, MOST_SIZE_M, check_value, short
 
 FileKind = Literal["model", "picture"]
 

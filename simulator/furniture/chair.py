@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.parts import Material, Part, Piece, Rgb, box
+from simulator.scene.parts import Material, Part, Piece, Rgb, box
 
 
 def chair(rng: np.random.Generator, colour: Rgb = (150, 106, 66), cushion: Rgb = (182, 84, 62)) -> Piece:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.parts import Material, Piece, Rgb, box
+from simulator.scene.parts import Material, Piece, Rgb, box
 
 
 def clock(rng: np.random.Generator, size_m: float = 0.34, colour: Rgb = (240, 236, 224)) -> Piece:

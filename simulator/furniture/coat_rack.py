@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.parts import Material, Part, Piece, Rgb, box
+from simulator.scene.parts import Material, Part, Piece, Rgb, box
 
 COATS: tuple[Rgb, ...] = ((66, 74, 92), (150, 112, 70), (118, 40, 46), (84, 98, 72), (190, 184, 172))
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.parts import Light, Material, Part, Piece, Rgb, box
+from simulator.scene.parts import Light, Material, Part, Piece, Rgb, box
 
 
 def window(

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.parts import Material, Piece, Rgb, box
+from simulator.scene.parts import Material, Piece, Rgb, box
 
 
 def door(

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from simulator.faces import face
-from simulator.parts import Material, Part, Piece, Rgb, Vec3, box
+from simulator.scene.faces import face
+from simulator.scene.parts import Material, Part, Piece, Rgb, Vec3, box
 
 PLINTH_M, OVERHANG_M = 0.35, 0.45
 GLASS = Material("view", (70, 84, 98), 7)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from simulator.furniture.loads import load_on_pallet, pallet_parts
-from simulator.parts import Light, Material, Part, Piece, Rgb, box, post
+from simulator.scene.parts import Light, Material, Part, Piece, Rgb, box, post
 
 STEEL = Material("metal", (168, 172, 176), 4)
 DARK = Material("metal", (58, 62, 66), 3)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.parts import Material, Part, Piece, Rgb, Vec3, box, post
+from simulator.scene.parts import Material, Part, Piece, Rgb, Vec3, box, post
 
 WOOD = Material("planks", (176, 138, 92), 6)
 CARTON: tuple[Rgb, ...] = ((190, 150, 104), (176, 132, 86), (202, 168, 122))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.parts import Material, Part, Piece, Rgb, box, post
+from simulator.scene.parts import Material, Part, Piece, Rgb, box, post
 
 GLASS = Material("mirror", (78, 92, 104), 4)
 TYRE = Material("fabric", (34, 34, 36), 1)

@@ -8,11 +8,11 @@ import numpy.typing as npt
 from pydantic import InstanceOf
 
 from simulator.assets.model import AssetError, Model, Patch, UpAxis
-from simulator.mesh_shapes import GRAIN_M
-from simulator.meshes import Mesh, joined
-from simulator.parts import Geometry, Material, Part, Picture, Piece
-from simulator.prisms import SKIN_M, Prism, hull_outline, prisms_of
-from simulator.refine import refined
+from simulator.scene.mesh_shapes import GRAIN_M
+from simulator.scene.meshes import Mesh, joined
+from simulator.scene.parts import Geometry, Material, Part, Picture, Piece
+from simulator.scene.prisms import SKIN_M, Prism, hull_outline, prisms_of
+from simulator.scene.refine import refined
 
 FloatArray = npt.NDArray[np.float64]
 Collision = Literal["convex", "box", "none"]

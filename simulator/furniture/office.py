@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.parts import Material, Part, Piece, Rgb, box, post
+from simulator.scene.parts import Material, Part, Piece, Rgb, box, post
 
 STEEL = Material("metal", (176, 178, 182), 4)
 DARK = Material("lacquer", (44, 46, 50), 3)

@@ -4,7 +4,7 @@ from typing import Literal
 
 import numpy as np
 
-from simulator.parts import Material, Piece, Rgb, box
+from simulator.scene.parts import Material, Piece, Rgb, box
 
 
 def picture(

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.parts import Material, Part, Piece, Rgb, box, post
+from simulator.scene.parts import Material, Part, Piece, Rgb, box, post
 
 STEEL = Material("metal", (186, 188, 190), 3)
 DARK = Material("lacquer", (38, 40, 44), 2)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.parts import Material, Part, Piece, Rgb, post
+from simulator.scene.parts import Material, Part, Piece, Rgb, post
 
 
 def plant(

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.parts import Material, Piece, box
+from simulator.scene.parts import Material, Piece, box
 
 
 def radiator(rng: np.random.Generator, width_m: float = 0.9, height_m: float = 0.6) -> Piece:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.parts import Material, Part, Piece, Rgb, box, post
+from simulator.scene.parts import Material, Part, Piece, Rgb, box, post
 
 LEG = Material("wood", (82, 58, 40), 3)
 

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 from simulator.furniture.stacks import framed, ornament
-from simulator.parts import Material, Piece, Rgb, box
+from simulator.scene.parts import Material, Piece, Rgb, box
 
 
 def shoe_cabinet(

@@ -3,7 +3,7 @@
 import numpy as np
 
 from simulator.furniture.stacks import book_pile, framed, ornament
-from simulator.parts import Material, Piece, Rgb, box, post
+from simulator.scene.parts import Material, Piece, Rgb, box, post
 
 
 def sideboard(

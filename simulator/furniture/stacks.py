@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from simulator.parts import Material, Part, Rgb, Vec3, box, post
+from simulator.scene.parts import Material, Part, Rgb, Vec3, box, post
 from simulator.textures.objects import SPINES
 
 COVERS: tuple[Rgb, ...] = (

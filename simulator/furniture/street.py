@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.parts import Material, Part, Piece, Rgb, box, post
+from simulator.scene.parts import Material, Part, Piece, Rgb, box, post
 
 STEEL = Material("metal", (92, 98, 104), 2)
 DARK = Material("metal", (52, 58, 62), 3)

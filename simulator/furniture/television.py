@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.parts import Material, Piece, box
+from simulator.scene.parts import Material, Piece, box
 
 
 def television(rng: np.random.Generator, width_m: float = 1.25, height_m: float = 0.72) -> Piece:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.parts import Material, Part, Piece, Rgb, box
+from simulator.scene.parts import Material, Part, Piece, Rgb, box
 
 GLASS = Material("mirror", (84, 98, 110), 4)
 TYRE = Material("fabric", (36, 36, 38), 1)

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from experiments.machine import machine
-from experiments.output import rounded, write_json
+from experiments.bench.machine import machine
+from services.launcher.terminal.output import rounded, write_json
 
 
 @pytest.fixture

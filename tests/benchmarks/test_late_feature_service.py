@@ -16,11 +16,11 @@ import zenoh
 from services.features.service import run
 from services.features.settings import FeaturesSettings
 from shared.bus import Bus, open_bus, wait_until
-from shared.bus_config import router_config
 from shared.messages.features import Features
 from shared.messages.maps import AddNode, MapRequest, Node
 from shared.messages.matching import MatchRequest
 from shared.topics import MAP, MATCH
+from shared.transport.session_config import router_config
 from tests.integration.gateway.conftest import free_port
 from tests.integration.map_store.conftest import START_S, Process
 

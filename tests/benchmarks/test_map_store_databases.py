@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from services.map_store.database import Database
+from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
 from shared.messages import Features
 from shared.messages.maps import AddNode, Edge, Node, Operation, PutEdge

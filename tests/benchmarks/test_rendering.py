@@ -11,9 +11,9 @@ import time
 import numpy as np
 import pytest
 
-from simulator.panorama import CubeToEquirect, face_fov_rad, face_rotations
+from simulator.sensors.panorama import CubeToEquirect, face_fov_rad, face_rotations
 from simulator.settings import CameraSettings, SimulationSettings
-from simulator.world_file import load_world
+from simulator.world.world_file import load_world
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(600)]
 
@@ -47,7 +47,7 @@ class FloatFaces:
         render.set_camera_shader_dir(before)
 
     def panorama(self, *pose):
-        from simulator.render_scene import flat_pose
+        from simulator.scene.render_scene import flat_pose
 
         self._mount.set_pose(flat_pose(*pose, z_m=CameraSettings().height_m))
         self._scene.update_render()

@@ -14,7 +14,7 @@ from contextlib import ExitStack
 
 import pytest
 
-from services.launcher.free_ports import free_ports
+from services.launcher.processes.free_ports import free_ports
 from shared.bus import open_bus, wait_until
 from shared.certificates.issuing import make
 from shared.certificates.layout import everyone

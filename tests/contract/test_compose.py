@@ -11,10 +11,10 @@ import pytest
 import yaml
 from jsonschema import Draft201909Validator
 
-from services.launcher.compose_file import COMPOSE_FILE, load_compose
-from services.launcher.interpolate import interpolate_tree
-from services.launcher.local import LocalMachine, local_process
-from services.launcher.stack_settings import Ports, StackSettings
+from services.launcher.processes.compose_file import COMPOSE_FILE, load_compose
+from services.launcher.processes.interpolate import interpolate_tree
+from services.launcher.processes.local import LocalMachine, local_process
+from services.launcher.processes.stack_settings import Ports, StackSettings
 from shared.certificates.layout import AUTHORITY, everyone
 from shared.settings import ServiceSettings
 

@@ -2,8 +2,8 @@
 
 import zenoh
 
-from shared.bus_config import router_config
-from shared.router_file import router_config_of_the_file, router_file
+from shared.transport.router_file import router_config_of_the_file, router_file
+from shared.transport.session_config import router_config
 
 
 def test_the_file_for_a_stock_router_says_what_ours_does(repository):
@@ -14,5 +14,5 @@ def test_the_file_for_a_stock_router_says_what_ours_does(repository):
 
 def test_the_secured_file_for_a_stock_router_says_what_ours_does(repository):
     path = repository / "deploy/zenoh/router-secure.json5"
-    assert path.read_text(encoding="utf-8") == router_file(), "run 'python -m shared.router_file'"
+    assert path.read_text(encoding="utf-8") == router_file(), "run 'python -m shared.transport.router_file'"
     assert str(zenoh.Config.from_file(str(path))) == str(router_config_of_the_file())

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from experiments.hand import Hand
-from experiments.mission import MissionClient, MissionRun
-from experiments.stack import Stack
+from services.launcher.client.experimenter import Hand
+from services.launcher.client.mission import MissionClient, MissionRun
+from services.launcher.client.stack import Stack
 from shared.bus import Inbox, wait_until
 from shared.messages import Event, MissionRequest
 from shared.topics import EVENT

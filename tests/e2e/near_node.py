@@ -2,9 +2,9 @@
 
 import math
 
-from experiments.exploration import Exploration
+from services.launcher.evaluation.exploration import Exploration
 from shared.messages.simulation import Pose
-from simulator.freespace import FreeSpace
+from simulator.world.freespace import FreeSpace
 
 OFFSETS_M = ((0.3, 0.0), (-0.3, 0.0), (0.0, 0.3), (0.0, -0.3), (0.0, 0.0))
 

@@ -9,7 +9,6 @@ import pytest
 import zenoh
 
 from shared.bus import wait_until
-from shared.bus_config import peer_config
 from shared.messages import (
     Command,
     Features,
@@ -23,6 +22,7 @@ from shared.messages import (
 from shared.messages.maps import DeleteNode
 from shared.queries import RefusedError
 from shared.topics import MAP, MATCH, MISSION
+from shared.transport.session_config import peer_config
 from shared.wire import encode
 from tests.e2e.near_node import hiding_place_near_a_node
 

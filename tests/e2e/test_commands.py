@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from experiments.plots.pictures import save_picture
+from services.launcher.drawing.pictures import save_picture
 from tests.e2e.near_node import hiding_place_near_a_node
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(600)]

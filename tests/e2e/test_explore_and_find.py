@@ -2,7 +2,7 @@
 
 import pytest
 
-from experiments.exploration import figures
+from services.launcher.evaluation.exploration import figures
 from tests.e2e.near_node import hiding_place_near_a_node
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(600)]

@@ -5,7 +5,7 @@ import pytest
 
 from experiments.scale.frames import Seen, WorldFrames
 from experiments.scale.robots import Load, Work, measure_loads
-from services.features.interfaces import FeatureSet
+from services.features.pipeline.interfaces import FeatureSet
 from shared.messages.simulation import Pose
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(600)]

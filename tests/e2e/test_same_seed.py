@@ -2,8 +2,8 @@
 
 import pytest
 
-from experiments.exploration import explore
-from experiments.stack import StackChoice, open_stack
+from services.launcher.client.stack import StackChoice, open_stack
+from services.launcher.evaluation.exploration import explore
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(900)]
 

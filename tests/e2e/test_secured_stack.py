@@ -8,11 +8,11 @@ from pathlib import Path
 import httpx
 import pytest
 
-from experiments.address import find_address
-from experiments.estop import ENGAGED, UNKNOWN
-from services.launcher.free_ports import free_ports
+from services.launcher.client.address import find_address
+from services.launcher.commands.estop import ENGAGED, UNKNOWN
+from services.launcher.processes.free_ports import free_ports
+from shared.access.credentials import FILES
 from shared.bus import wait_until
-from shared.bus_security import FILES
 from shared.messages import EStopRequest
 from shared.queries import AbsentError
 from shared.topics import ESTOP, TRUTH

@@ -7,14 +7,14 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from experiments.address import Address
-from experiments.exploration import explore
-from experiments.rounds import Game
-from experiments.stack import ROBOT, Stack
-from services.launcher.supervisor import Launcher
+from services.launcher.client.address import Address
+from services.launcher.client.stack import ROBOT, Stack
+from services.launcher.evaluation.exploration import explore
+from services.launcher.evaluation.rounds import Game
+from services.launcher.processes.supervisor import Launcher
 from shared.bus import open_bus, wait_until
-from simulator.freespace import free_space
-from simulator.world_file import load_world
+from simulator.world.freespace import free_space
+from simulator.world.world_file import load_world
 from tests.e2e.near_node import hiding_place_near_a_node
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(600)]

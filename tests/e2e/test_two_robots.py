@@ -8,17 +8,17 @@ from dataclasses import dataclass
 
 import pytest
 
-from experiments.map_client import require_map
-from experiments.measures.components import components
-from experiments.measures.false_edges import check_edges
-from experiments.stack import StackChoice, open_stack
-from experiments.trail import collisions
-from experiments.truth_file import join_truth
+from services.launcher.client.map_client import require_map
+from services.launcher.client.stack import StackChoice, open_stack
+from services.launcher.evaluation.components import components
+from services.launcher.evaluation.false_edges import check_edges
+from services.launcher.evaluation.trail import collisions
+from services.launcher.evaluation.truth_file import join_truth
 from shared.bus import wait_until
 from shared.messages import MapReply, MissionRequest
 from shared.messages.simulation import Pose
-from simulator.freespace import free_space
-from simulator.world_file import load_world
+from simulator.world.freespace import free_space
+from simulator.world.world_file import load_world
 from tests.e2e.fleet import Robot, another_robot, taking_part
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(600)]

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from experiments.exploration import Exploration, explore
-from experiments.rounds import Game
-from experiments.stack import Stack, StackChoice, open_stack
-from simulator.freespace import FreeSpace, free_space
-from simulator.world_file import load_world
+from services.launcher.client.stack import Stack, StackChoice, open_stack
+from services.launcher.evaluation.exploration import Exploration, explore
+from services.launcher.evaluation.rounds import Game
+from simulator.world.freespace import FreeSpace, free_space
+from simulator.world.world_file import load_world
 from tests.integration.drive.conftest import neighbours as neighbours
 from tests.integration.drive.conftest import start as start_drive
 

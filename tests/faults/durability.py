@@ -14,8 +14,8 @@ from typing import Any
 
 import zenoh
 
-from services.launcher.free_ports import free_ports
-from shared.bus_config import router_config
+from services.launcher.processes.free_ports import free_ports
+from shared.transport.session_config import router_config
 from tests.faults.flips import figures, flips
 from tests.faults.kills import Report, kill_often
 

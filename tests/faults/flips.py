@@ -9,10 +9,10 @@ from typing import Any, Literal
 
 import numpy as np
 
-from services.map_store.check import Damage, check
 from services.map_store.errors import MapError
-from services.map_store.file_seal import TOLD
-from services.map_store.missions import MissionStore
+from services.map_store.integrity.check import Damage, check
+from services.map_store.integrity.file_seal import TOLD
+from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
 from shared.messages.maps import DeleteNode
 from tests.faults.lived_maps import ROBOT, live, opened, place, rows_of, told_of

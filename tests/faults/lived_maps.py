@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 from sqlalchemy import select
 
-from services.map_store import history, tables
-from services.map_store.database import Database
 from services.map_store.errors import MapError
-from services.map_store.graph import MAX_NODE_ID
-from services.map_store.missions import MissionStore
+from services.map_store.history import revisions as history
+from services.map_store.storage import tables
+from services.map_store.storage.database import Database
+from services.map_store.storage.graph import MAX_NODE_ID
+from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
 from shared.messages import Features
 from shared.messages.maps import AddNode, DeleteEdge, DeleteNode, Edge, Node, PutEdge, UpdateNode

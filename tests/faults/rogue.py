@@ -5,7 +5,7 @@ import time
 
 import zenoh
 
-from shared.bus_config import peer_config
+from shared.transport.session_config import peer_config
 
 JUNK = bytes(range(256)) * 200
 KEYS = ("heading", "ranges", "standing", "command", "frame", "features", "status", "event", "stopped")

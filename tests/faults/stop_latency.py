@@ -18,9 +18,9 @@ from typing import Any
 
 import numpy as np
 
-from experiments.hand import Hand
-from experiments.stack import Stack, StackChoice, open_stack
-from services.launcher.wait import LaunchError
+from services.launcher.client.experimenter import Hand
+from services.launcher.client.stack import Stack, StackChoice, open_stack
+from services.launcher.processes.wait import LaunchError
 from shared.bus import wait_until
 from shared.messages import MissionRequest
 from shared.queries import QueryError

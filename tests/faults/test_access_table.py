@@ -11,14 +11,14 @@ from contextlib import ExitStack
 import pytest
 import zenoh
 
-from services.launcher.free_ports import free_ports
-from shared.access_rules import QUESTIONS, STREAMS, Role
+from services.launcher.processes.free_ports import free_ports
+from shared.access.credentials import credentials_in
+from shared.access.rules import QUESTIONS, STREAMS, Role
 from shared.bus import wait_until
-from shared.bus_config import client_config
-from shared.bus_security import credentials_in
 from shared.certificates.issuing import make
 from shared.certificates.layout import Holder, another_robot
 from shared.topics import alive_key, robot_key
+from shared.transport.session_config import client_config
 from tests.faults.secured import SecuredBus
 
 pytestmark = [pytest.mark.timeout(600), pytest.mark.usefixtures("patient_sessions")]

@@ -9,8 +9,8 @@ from itertools import chain, repeat
 import httpx
 import pytest
 
-from services.launcher.runner import State
-from services.launcher.supervisor import Launcher
+from services.launcher.processes.runner import State
+from services.launcher.processes.supervisor import Launcher
 from shared.bus import wait_until
 
 STORM_S = 150.0

@@ -11,9 +11,9 @@ import pytest
 import zenoh
 
 from shared.bus import Bus, open_bus, wait_until
-from shared.bus_config import peer_config
 from shared.messages import Command, MapRequest
 from shared.topics import COMMAND, MAP, MAP_DELTA
+from shared.transport.session_config import peer_config
 from shared.wire import decode
 from tests.faults.lived_maps import place
 from tests.faults.proxy import Proxy

@@ -7,7 +7,7 @@ from contextlib import suppress
 
 import pytest
 
-from experiments.stack import Stack, StackChoice, open_stack
+from services.launcher.client.stack import Stack, StackChoice, open_stack
 from shared.bus import wait_until
 from shared.messages import Command, EStopRequest
 from shared.queries import RefusedError

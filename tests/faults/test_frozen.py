@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from experiments.stack import Stack, StackChoice, open_stack
+from services.launcher.client.stack import Stack, StackChoice, open_stack
 from shared.bus import wait_until
 from tests.faults.watching import TRIES, Watch, exploring
 

@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 import pytest
 
-from experiments.hand import Hand
-from experiments.map_client import delete_map, read_map
-from experiments.mission import MissionClient
-from experiments.stack import Stack, StackChoice, open_stack
+from services.launcher.client.experimenter import Hand
+from services.launcher.client.map_client import delete_map, read_map
+from services.launcher.client.mission import MissionClient
+from services.launcher.client.stack import Stack, StackChoice, open_stack
 from shared.messages import MapRequest, MissionRequest
 from shared.messages.maps import DeleteNode
 from shared.topics import MAP

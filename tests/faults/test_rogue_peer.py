@@ -11,14 +11,14 @@ import httpx
 import pytest
 import zenoh
 
-from experiments.map_access import store_client
-from services.launcher.free_ports import free_ports
+from services.launcher.client.map_access import store_client
+from services.launcher.processes.free_ports import free_ports
+from shared.access.credentials import credentials_in
 from shared.bus import wait_until
-from shared.bus_config import client_config
-from shared.bus_security import credentials_in
 from shared.messages import EStopRequest, Heading, MapDelta, MapRequest, Ranges
 from shared.queries import AbsentError, RefusedError
 from shared.topics import COMMAND, ESTOP, HEADING, MAP, MAP_DELTA, MAP_READ, RANGES, STOPPED
+from shared.transport.session_config import client_config
 from shared.wire import encode
 from tests.faults.secured import SecuredBus
 from tests.unit.services.map_store.conftest import add

@@ -10,13 +10,13 @@ import time
 import pytest
 import zenoh
 
-from services.launcher.free_ports import free_ports
+from services.launcher.processes.free_ports import free_ports
+from shared.access.credentials import FILES, Credentials, credentials_in
 from shared.bus import UnreachableError, open_bus
-from shared.bus_config import client_config, peer_config, secured_router_config
-from shared.bus_security import FILES, Credentials, credentials_in
 from shared.certificates.issuing import make
 from shared.certificates.layout import everyone
 from shared.topics import alive_key
+from shared.transport.session_config import client_config, peer_config, secured_router_config
 from tests.faults.secured import SecuredBus
 
 pytestmark = [pytest.mark.timeout(600)]

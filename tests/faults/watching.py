@@ -6,9 +6,9 @@ from contextlib import contextmanager
 from itertools import pairwise
 from typing import Any
 
-from experiments.background import Background
-from experiments.hand import Hand
-from experiments.stack import Stack
+from experiments.bench.background import Background
+from services.launcher.client.experimenter import Hand
+from services.launcher.client.stack import Stack
 from shared.bus import Bus, open_bus, wait_until
 from shared.messages import Command, Heading, MissionRequest, MissionStatus
 from shared.queries import QueryError

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from simulator.world_check import examine
-from simulator.world_file import load_world
-from simulator.world_reference import renewed
+from simulator.world.world_check import examine
+from simulator.world.world_file import load_world
+from simulator.world.world_reference import renewed
 
 PAGE = Path(__file__).parents[2] / "deploy" / "WORLDS.md"
 

@@ -8,8 +8,8 @@ import numpy.typing as npt
 
 from services.features.extractors.opencv_keypoints import describe_chosen, detections_from_keypoints
 from services.features.extractors.orb import create_orb
-from services.features.interfaces import Detections, Distance, Image, IndexArray
-from services.features.pipelines import Profile
+from services.features.pipeline.interfaces import Detections, Distance, Image, IndexArray
+from services.features.pipeline.named_pipelines import Profile
 
 ORB_SCALE = 1.0
 """Sampling window for ORB key points, from OpenCV's documentation of BEBLID."""

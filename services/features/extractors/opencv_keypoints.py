@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from services.features.interfaces import Detections, Image, IndexArray
+from services.features.pipeline.interfaces import Detections, Image, IndexArray
 
 
 def detections_from_keypoints(keypoints: Sequence[Any]) -> Detections:

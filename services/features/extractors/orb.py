@@ -7,8 +7,8 @@ import cv2
 import numpy.typing as npt
 
 from services.features.extractors.opencv_keypoints import describe_chosen, detections_from_keypoints
-from services.features.interfaces import Detections, Distance, Image, IndexArray
-from services.features.pipelines import Profile
+from services.features.pipeline.interfaces import Detections, Distance, Image, IndexArray
+from services.features.pipeline.named_pipelines import Profile
 
 CANDIDATES = 8
 """Corners looked for per keypoint kept, so that no level of the pyramid runs into its quota."""

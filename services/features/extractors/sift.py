@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from services.features.extractors.opencv_keypoints import describe_chosen, detections_from_keypoints
-from services.features.interfaces import Detections, Distance, Image, IndexArray
-from services.features.pipelines import Profile
+from services.features.pipeline.interfaces import Detections, Distance, Image, IndexArray
+from services.features.pipeline.named_pipelines import Profile
 
 CONTRAST = 0.02
 """Below OpenCV's 0.04, because plaster carries faint texture only; 56 apartment frames had 826 or more."""

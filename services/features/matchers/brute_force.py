@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from services.features.interfaces import Distance, FeatureSet, IndexArray
-from services.features.matching import find_neighbours
-from services.features.pipelines import Profile
+from services.features.matching.nearest_neighbours import find_neighbours
+from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray
+from services.features.pipeline.named_pipelines import Profile
 
 
 class BruteForce:

@@ -6,10 +6,10 @@ import kornia.feature as kf
 import numpy as np
 import torch
 
-from services.features.interfaces import Distance, FeatureSet, IndexArray
 from services.features.matchers.pixels import HEIGHT_PX, WIDTH_PX, pixels_of
 from services.features.networks.runtime import device_named, loading
-from services.features.pipelines import LIGHTGLUE, Profile
+from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray
+from services.features.pipeline.named_pipelines import LIGHTGLUE, Profile
 
 
 class LightGlue:

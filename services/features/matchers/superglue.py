@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 import torch
 
-from services.features.interfaces import Distance, FeatureSet, IndexArray
 from services.features.matchers.pixels import HEIGHT_PX, WIDTH_PX, pixels_of
 from services.features.networks.non_commercial import require_consent
 from services.features.networks.runtime import device_named, loading
-from services.features.pipelines import Profile
+from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray
+from services.features.pipeline.named_pipelines import Profile
 
 REPOSITORY = "magic-leap-community/superglue_{}"
 

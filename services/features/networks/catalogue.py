@@ -7,7 +7,7 @@ we have held the file in our hands; the others are checked by their libraries al
 from dataclasses import dataclass
 from typing import Literal
 
-from services.features.plugins import PATCH_NETWORKS
+from services.features.pipeline.plugins import PATCH_NETWORKS
 
 Source = Literal["kornia", "transformers"]
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy.typing as npt
 import torch
 
-from services.features.interfaces import Detections, Distance, Image, IndexArray
 from services.features.networks.runtime import batch_of, device_named, unit_descriptors
-from services.features.pipelines import Profile
+from services.features.pipeline.interfaces import Detections, Distance, Image, IndexArray
+from services.features.pipeline.named_pipelines import Profile
 
 CANDIDATES = 3
 """Keypoints asked of the network per keypoint kept: some lie beyond the seam or too near others."""

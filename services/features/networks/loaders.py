@@ -5,8 +5,8 @@ from collections.abc import Callable
 import kornia.feature as kf
 
 from services.features.networks.catalogue import TrainedModel
-from services.features.pipelines import Profile
-from services.features.registry import Runtime, create_extractor, create_matcher
+from services.features.pipeline.named_pipelines import Profile
+from services.features.pipeline.registry import Runtime, create_extractor, create_matcher
 
 LIGHTGLUE_EXTRACTORS = {
     "lightglue-aliked": "aliked-n16",

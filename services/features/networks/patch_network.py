@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 import torch
 
-from services.features.interfaces import Detections, Distance, Image, IndexArray
 from services.features.networks.runtime import batch_of, device_named, loading, unit_descriptors
-from services.features.pipelines import Profile
+from services.features.pipeline.interfaces import Detections, Distance, Image, IndexArray
+from services.features.pipeline.named_pipelines import Profile
 
 CANDIDATES = 3
 PATCH_PX = 32

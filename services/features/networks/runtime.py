@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import torch
 
-from services.features.interfaces import Image
+from services.features.pipeline.interfaces import Image
 
 
 class WeightsError(RuntimeError):

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from services.features.interfaces import BoolArray, FloatArray, Image, View
-from services.features.pipelines import Profile
+from services.features.pipeline.interfaces import BoolArray, FloatArray, Image, View
+from services.features.pipeline.named_pipelines import Profile
 from services.features.representations.strip import cropped_strip
 
 

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from services.features.interfaces import Image
+from services.features.pipeline.interfaces import Image
 from shared.geometry.sphere import EquirectGrid
 
 

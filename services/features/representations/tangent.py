@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from services.features.interfaces import BoolArray, FloatArray, Image, View
-from services.features.pipelines import Profile
+from services.features.pipeline.interfaces import BoolArray, FloatArray, Image, View
+from services.features.pipeline.named_pipelines import Profile
 from services.features.representations.strip import cropped_strip
 from shared.geometry.icosahedron import tangent_layout
 from shared.geometry.resampling import view_table

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from services.features.interfaces import Float32Array
+from services.features.pipeline.interfaces import Float32Array
 from services.features.retrieval.model import RetrievalModel, learn
 
 LEARN_FROM = 128

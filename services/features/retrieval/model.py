@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from services.features.interfaces import Float32Array
+from services.features.pipeline.interfaces import Float32Array
 from services.features.retrieval.vlad import unit, vlad
 from services.features.retrieval.vocabulary import learn_kinds
 

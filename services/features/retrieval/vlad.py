@@ -7,7 +7,7 @@ and Zisserman 2013). It knows nothing of where words lie, so turning the camera 
 import numpy as np
 import numpy.typing as npt
 
-from services.features.interfaces import Float32Array
+from services.features.pipeline.interfaces import Float32Array
 
 TINY = np.float32(1e-9)
 

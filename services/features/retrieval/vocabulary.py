@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import cv2
 import numpy as np
 
-from services.features.interfaces import Float32Array
+from services.features.pipeline.interfaces import Float32Array
 
 KINDS = 64
 SAMPLE = 20_000

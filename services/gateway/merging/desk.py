@@ -3,9 +3,9 @@
 import asyncio
 import logging
 
+from services.gateway.http.problems import ProblemError
 from services.gateway.merging.job import Merge, MergeAnswer
 from services.gateway.merging.reading import ReadMap
-from services.gateway.problems import ProblemError
 from services.gateway.state import Gateway
 
 log = logging.getLogger(__name__)

@@ -6,11 +6,11 @@ from typing import Literal
 
 from pydantic import BaseModel
 
+from services.gateway.http.problems import ProblemError
 from services.gateway.merging.core.candidates import MergeRefusedError
 from services.gateway.merging.core.choice import choose
 from services.gateway.merging.core.operations import check_size, merged
 from services.gateway.merging.reading import ReadMap, ask_store, read_features, with_thumbnail
-from services.gateway.problems import ProblemError
 from services.gateway.state import Gateway
 from shared.messages.features import Features
 from shared.messages.maps import MapRequest

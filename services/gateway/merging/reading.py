@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from services.gateway.http.map_store_proxy import fetch
+from services.gateway.http.problems import ProblemError
 from services.gateway.merging.core.candidates import MergeRefusedError
 from services.gateway.merging.core.places import Places
-from services.gateway.problems import ProblemError
 from services.gateway.state import Gateway
-from services.gateway.storage import fetch
 from shared.messages.features import Features
 from shared.messages.maps import MapReply, MapRequest
 from shared.topics import MAP

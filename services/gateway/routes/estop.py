@@ -5,10 +5,10 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
-from services.gateway.bodies import read_json
-from services.gateway.guard import person_of
-from services.gateway.live import estop_facts
-from services.gateway.problems import ProblemError
+from services.gateway.auth.guard import person_of
+from services.gateway.http.bodies import read_json
+from services.gateway.http.problems import ProblemError
+from services.gateway.live.hub import estop_facts
 from services.gateway.routes.robots import known
 from services.gateway.state import Gateway, GatewayDep, RobotPath
 from shared.messages import EStopRequest, EStopState

@@ -4,7 +4,7 @@ import asyncio
 
 from fastapi import APIRouter
 
-from services.gateway.problems import ProblemError
+from services.gateway.http.problems import ProblemError
 from services.gateway.routes.goals import NodeAnswer
 from services.gateway.routes.robots import newest_frame
 from services.gateway.state import Gateway, GatewayDep, MapPath, MapQuery, NodePath, NodeQuery, RobotPath

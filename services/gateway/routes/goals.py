@@ -5,8 +5,8 @@ from typing import Any, Literal
 from fastapi import APIRouter, Request
 from pydantic import BaseModel
 
-from services.gateway.goal import Goal, goal_of
 from services.gateway.state import GatewayDep, MapQuery, RobotPath
+from services.gateway.uploads.goal import Goal, goal_of
 from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
 from shared.topics import MATCH
 

@@ -4,8 +4,8 @@ from typing import Any
 
 from fastapi import APIRouter, Depends, Response
 
-from services.gateway.guard import guard
-from services.gateway.problems import ProblemError
+from services.gateway.auth.guard import guard
+from services.gateway.http.problems import ProblemError
 from services.gateway.state import GatewayDep
 
 router = APIRouter(tags=["health"])

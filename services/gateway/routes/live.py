@@ -5,11 +5,11 @@ import contextlib
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
-from services.gateway.access import Person
-from services.gateway.guard import admit_socket
-from services.gateway.limits import address_of
-from services.gateway.outbox import Outbox
-from services.gateway.problems import ProblemError, problem_response
+from services.gateway.auth.access import Person
+from services.gateway.auth.guard import admit_socket
+from services.gateway.http.limits import address_of
+from services.gateway.http.problems import ProblemError, problem_response
+from services.gateway.live.outbox import Outbox
 from services.gateway.state import Gateway, gateway_of
 from shared.topics import NAME
 

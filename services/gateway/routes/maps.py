@@ -5,9 +5,9 @@ from typing import Any
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
-from services.gateway.bodies import MAX_JSON_BYTES, read_body
+from services.gateway.http.bodies import MAX_JSON_BYTES, read_body
+from services.gateway.http.map_store_proxy import forward, forward_stream
 from services.gateway.state import Gateway, GatewayDep, MapPath
-from services.gateway.storage import forward, forward_stream
 
 router = APIRouter(tags=["maps"])
 

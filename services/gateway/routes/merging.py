@@ -6,13 +6,13 @@ from fastapi import APIRouter, Depends, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.requests import HTTPConnection
 
-from services.gateway.bodies import read_json
+from services.gateway.http.bodies import read_json
+from services.gateway.http.map_store_proxy import author_of
+from services.gateway.http.problems import ProblemError
 from services.gateway.merging.desk import MergeDesk
 from services.gateway.merging.job import MergeAnswer
 from services.gateway.merging.reading import ReadMap, read_map
-from services.gateway.problems import ProblemError
 from services.gateway.state import GatewayDep, MapPath
-from services.gateway.storage import author_of
 
 router = APIRouter(tags=["maps"])
 

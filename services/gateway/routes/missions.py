@@ -8,13 +8,13 @@ from typing import Annotated, Any, Literal, Self
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from services.gateway.bodies import read_json
-from services.gateway.goal import goal_of
-from services.gateway.live import RobotView
-from services.gateway.problems import ProblemError
+from services.gateway.http.bodies import read_json
+from services.gateway.http.problems import ProblemError
+from services.gateway.live.hub import RobotView
 from services.gateway.routes.goals import PICTURE_BODY
 from services.gateway.routes.robots import known
 from services.gateway.state import Gateway, GatewayDep, MapQuery, RobotPath
+from services.gateway.uploads.goal import goal_of
 from shared.messages.missions import MissionRequest, MissionStatus
 from shared.topics import MISSION
 

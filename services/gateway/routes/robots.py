@@ -6,11 +6,11 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel
 
-from services.gateway.live import RobotView, estop_facts, frame_facts
-from services.gateway.problems import ProblemError
-from services.gateway.snapshot import jpeg_of
+from services.gateway.http.problems import ProblemError
+from services.gateway.live.hub import RobotView, estop_facts, frame_facts
+from services.gateway.live.snapshot import jpeg_of
+from services.gateway.live.true_poses import Position
 from services.gateway.state import Gateway, GatewayDep, MapQuery, RobotPath
-from services.gateway.true_poses import Position
 from shared.messages.maps import MapRequest
 from shared.messages.sensors import Frame
 from shared.topics import MAP

@@ -5,7 +5,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from services.gateway.runs import Run, list_runs
+from services.gateway.live.runs import Run, list_runs
 from services.gateway.state import GatewayDep
 
 router = APIRouter(tags=["runs"])

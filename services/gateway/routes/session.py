@@ -5,10 +5,10 @@ import time
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel
 
-from services.gateway.guard import person_of
-from services.gateway.passes import LIFETIME_S
+from services.gateway.auth.guard import person_of
+from services.gateway.auth.passes import LIFETIME_S
 from services.gateway.state import Gateway, GatewayDep
-from shared.tokens.roles import Role
+from shared.access.roles import Role
 
 router = APIRouter(tags=["access"])
 

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from services.map_store.archive import INDEX, Archive, write_archive
-from services.map_store.blobs import checksum, pack_features
-from services.map_store.contents import Kind
 from services.map_store.errors import InvalidError
-from services.map_store.graph import AddPlace, Graph, Place, apply
+from services.map_store.storage.archive import INDEX, Archive, write_archive
+from services.map_store.storage.blobs import checksum, pack_features
+from services.map_store.storage.contents import Kind
+from services.map_store.storage.graph import AddPlace, Graph, Place, apply
 from shared.messages import Features
 from shared.messages.maps import Edge, Node, PutEdge
 from tests.fuzz.decoder import Decoder, Shape

@@ -6,10 +6,10 @@ from typing import Any
 
 import yaml
 
-from services.gateway.mission_log import read_missions
-from services.gateway.runs import list_runs
-from services.launcher.compose_file import COMPOSE_FILE, load_compose
-from services.launcher.stack_settings import profile_variables
+from services.gateway.live.mission_log import read_missions
+from services.gateway.live.runs import list_runs
+from services.launcher.processes.compose_file import COMPOSE_FILE, load_compose
+from services.launcher.processes.stack_settings import profile_variables
 from services.planner.profile_file import profile_of_file
 from shared.estop.latch import UNREADABLE, Latch
 from shared.messages import EStopState

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from services.features.decoding import BadPictureError, decode_picture
-from services.gateway.picture import PictureError, check_header, decode_bgr
-from services.gateway.picture_header import HeaderError, read_header
+from services.features.pipeline.decoding import BadPictureError, decode_picture
+from services.gateway.uploads.picture import PictureError, check_header, decode_bgr
+from services.gateway.uploads.picture_header import HeaderError, read_header
 from shared.messages.sensors import Frame
 from simulator.assets.model import AssetError
 from simulator.assets.picture_file import picture_from_bytes

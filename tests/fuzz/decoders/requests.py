@@ -11,14 +11,14 @@ from urllib.parse import unquote_to_bytes
 from pydantic import BaseModel
 from starlette.requests import Request
 
-from services.gateway.bodies import read_json, read_picture
-from services.gateway.picture import PictureError
-from services.gateway.problems import ProblemError
+from services.gateway.http.bodies import read_json, read_picture
+from services.gateway.http.problems import ProblemError
 from services.gateway.routes.estop import Clear
 from services.gateway.routes.merging import StartMerge
 from services.gateway.routes.missions import StartMission
-from services.map_store.api import create_app
-from services.map_store.database import Database
+from services.gateway.uploads.picture import PictureError
+from services.map_store.api.app import create_app
+from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
 from tests.fuzz.decoder import Decoder, Shape
 

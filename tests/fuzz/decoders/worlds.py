@@ -13,7 +13,7 @@ from PIL import Image
 
 from simulator.assets.folder import AssetFolder
 from simulator.assets.model import AssetError
-from simulator.world_file import WorldFileError, load_world
+from simulator.world.world_file import WorldFileError, load_world
 from tests.fuzz.decoder import Decoder, Shape
 from tests.unit.simulator.assets.conftest import gltf_box, obj_text
 

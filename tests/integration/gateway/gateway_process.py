@@ -9,7 +9,7 @@ from pathlib import Path
 
 import httpx
 
-from services.launcher.free_ports import free_ports
+from services.launcher.processes.free_ports import free_ports
 from shared.bus import wait_until
 from tests.integration.gateway.corpus import LIMIT_BYTES
 

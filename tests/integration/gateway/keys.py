@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from shared.tokens.roles import ROLES
-from shared.tokens.token import Token, digest_of
-from shared.tokens.token_file import write_tokens
+from shared.access.roles import ROLES
+from shared.access.token import Token, digest_of
+from shared.access.token_file import write_tokens
 
 SECRETS = {role: f"secret of the {role}" for role in ROLES}
 NAMES = {"viewer": "vera", "operator": "otto", "admin": "ada"}

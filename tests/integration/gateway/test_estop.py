@@ -10,8 +10,8 @@ import httpx
 import pytest
 from websockets.sync.client import connect
 
-from services.gateway.bridge import Bridge
-from services.gateway.limits import Limits
+from services.gateway.http.limits import Limits
+from services.gateway.live.bridge import Bridge
 from shared.bus import Bus, wait_until
 from shared.estop.sides import StopDesk
 from tests.integration.gateway.gateway_process import WAIT_S, sees

@@ -6,8 +6,8 @@ from pathlib import Path
 import httpx
 import pytest
 
-from services.map_store.api import create_app
-from services.map_store.database import Database
+from services.map_store.api.app import create_app
+from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
 from shared.messages.maps import Edge, PutEdge
 from tests.integration.gateway.conftest import serve_gateway

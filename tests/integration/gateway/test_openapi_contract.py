@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from services.launcher.supervisor import Launcher
+from services.launcher.processes.supervisor import Launcher
 from tests.integration.gateway.conftest import UNHURRIED
 
 CHECKS = "not_a_server_error,status_code_conformance,content_type_conformance,response_schema_conformance"

@@ -7,7 +7,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from services.gateway.mission_log import FILE
+from services.gateway.live.mission_log import FILE
 from shared.bus import wait_until
 from shared.runs import CommandRun
 from tests.integration.gateway.conftest import serve_gateway

@@ -2,7 +2,7 @@
 
 import time
 
-from services.launcher.supervisor import Launcher
+from services.launcher.processes.supervisor import Launcher
 
 BACK_WITHIN_S = 5.0
 PATIENCE_S = 60.0

@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from services.launcher.supervisor import Launcher
+from services.launcher.processes.supervisor import Launcher
 from shared.bus import open_bus, wait_until
 
 SOON_S, RUN_S = 60.0, 120.0

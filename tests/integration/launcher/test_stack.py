@@ -2,7 +2,7 @@
 
 import pytest
 
-from services.launcher.supervisor import Launcher
+from services.launcher.processes.supervisor import Launcher
 from tests.integration.launcher.returning import PATIENCE_S, kills_until_it_is_back_in_time
 
 

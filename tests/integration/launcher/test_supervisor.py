@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from services.launcher.restart import RestartPolicy
-from services.launcher.runner import State
-from services.launcher.state import AlreadyRunningError, StateFolder
-from services.launcher.supervisor import Launcher, LaunchError
+from services.launcher.processes.restart import RestartPolicy
+from services.launcher.processes.runner import State
+from services.launcher.processes.state import AlreadyRunningError, StateFolder
+from services.launcher.processes.supervisor import Launcher, LaunchError
 from shared.bus import wait_until
 from tests.integration.launcher.returning import kills_until_it_is_back_in_time
 

@@ -10,12 +10,12 @@ import httpx
 import pytest
 from typer.testing import CliRunner, Result
 
-from experiments.failure import ExperimentError
-from experiments.maps import app
-from services.launcher.state import AlreadyRunningError
-from services.launcher.supervisor import Launcher
-from services.map_store import file_seal
-from services.map_store.database import Database
+from services.launcher.client.failure import ExperimentError
+from services.launcher.commands.map import app
+from services.launcher.processes.state import AlreadyRunningError
+from services.launcher.processes.supervisor import Launcher
+from services.map_store.integrity import file_seal
+from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
 from shared.bus import wait_until
 from tests.faults.lived_maps import link, place

@@ -10,18 +10,18 @@ import pytest
 import zenoh
 from sqlalchemy.exc import DBAPIError
 
-from services.map_store import engines
-from services.map_store.backup import file_of
-from services.map_store.database import Database
 from services.map_store.errors import ConflictError, InvalidError, UnavailableError
-from services.map_store.missions import MissionStore
+from services.map_store.integrity.backup import file_of
+from services.map_store.storage import engines
+from services.map_store.storage.database import Database
+from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
 from shared.bus import Bus, open_bus, wait_until
-from shared.bus_config import router_config
 from shared.messages import MapDelta, MapReply, MapRequest
 from shared.messages.maps import AddNode
 from shared.queries import QueryError, RefusedError
 from shared.topics import MAP, MAP_DELTA, MAP_READ
+from shared.transport.session_config import router_config
 from tests.integration.map_store.conftest import START_S, Process
 from tests.postgres import PostgresServer
 from tests.unit.services.map_store.conftest import add

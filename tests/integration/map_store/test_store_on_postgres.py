@@ -4,18 +4,13 @@ from collections.abc import Iterator
 
 import pytest
 
-from services.map_store.database import Database
+from services.map_store.storage.database import Database
 from tests.postgres import PostgresServer
-from tests.unit.services.map_store import (
-    conftest,
-    test_answers,
-    test_damage,
-    test_history_api,
-    test_missions,
-    test_past,
-    test_repair,
-    test_store,
-)
+from tests.unit.services.map_store import conftest, test_damage, test_store
+from tests.unit.services.map_store.api import test_history_api
+from tests.unit.services.map_store.history import test_past
+from tests.unit.services.map_store.integrity import test_repair
+from tests.unit.services.map_store.storage import test_answers, test_missions
 
 BORROWED = {
     conftest: ("told", "database", "store", "client"),

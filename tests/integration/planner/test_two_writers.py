@@ -7,7 +7,7 @@ from itertools import pairwise
 import pytest
 
 from services.planner.frontiers import sector_rad
-from services.planner.mapping import Edges, add_place
+from services.planner.mapping.places import Edges, add_place
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT
 from services.planner.remote import RemoteMap

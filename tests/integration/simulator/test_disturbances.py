@@ -6,7 +6,7 @@ import pytest
 from simulator.disturbances.levels import Disturbances
 from simulator.settings import CameraSettings, SimulationSettings
 from simulator.simulation import Simulation
-from simulator.world_file import WorldFile
+from simulator.world.world_file import WorldFile
 
 pytestmark = pytest.mark.render
 WIDTH = 256

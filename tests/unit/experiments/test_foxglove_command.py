@@ -8,8 +8,8 @@ import pytest
 from mcap.reader import make_reader
 from typer.testing import CliRunner
 
-from experiments.recordings.foxglove import app
 from services.launcher import cli
+from services.launcher.commands.foxglove import app
 from services.recorder.backlog import Sample
 from services.recorder.recording import RecordingWriter
 from shared.messages import MissionStatus, Truth

@@ -12,11 +12,11 @@ import pytest
 import zenoh
 
 from shared.bus import Bus, open_bus, wait_until
-from shared.bus_config import router_config
 from shared.inbox import Inbox
 from shared.messages import Command, Event, MapDelta, MapReply, MapRequest, MissionStatus
 from shared.queries import AbsentError, RefusedError, Requests, TimedOutError
 from shared.topics import COMMAND, EVENT, MAP, MAP_DELTA, STATUS
+from shared.transport.session_config import router_config
 from shared.wire import WireError
 
 SOON_S = 30.0

@@ -6,7 +6,7 @@ import pytest
 
 from simulator.settings import RangeSettings, SimulationSettings
 from simulator.simulation import Simulation
-from simulator.world_file import WorldFile
+from simulator.world.world_file import WorldFile
 
 PAINT = {"texture": "lacquer", "colour": [200, 200, 200]}
 

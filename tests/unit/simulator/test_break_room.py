@@ -2,8 +2,8 @@
 
 import math
 
-from simulator.freespace import free_space
-from simulator.world_file import load_world
+from simulator.world.freespace import free_space
+from simulator.world.world_file import load_world
 
 
 def test_the_break_room_and_its_corridor_are_one_floor():

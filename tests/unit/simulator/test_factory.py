@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from simulator.freespace import free_space
-from simulator.grounds import ground_parts
-from simulator.parts import solids_between
-from simulator.world_file import WorldFile, load_world
+from simulator.scene.parts import solids_between
+from simulator.world.freespace import free_space
+from simulator.world.grounds import ground_parts
+from simulator.world.world_file import WorldFile, load_world
 
 HALL, YARD = (9.0, 7.0), (25.0, 7.0)
 

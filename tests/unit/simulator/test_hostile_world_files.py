@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from simulator.furniture.catalogue import FURNITURE
-from simulator.world_file import WorldFileError, load_world
+from simulator.world.world_file import WorldFileError, load_world
 from tests.yaml_bomb import BOMB
 
 LEAVES = st.one_of(

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from services.gateway.merging.core.places import Places
-from shared.geometry.triangle import Sight
+from shared.mapgraph.triangle import Sight
 from shared.messages.maps import Node
 from shared.messages.matching import NodeMatch
 

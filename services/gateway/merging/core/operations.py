@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from services.gateway.merging.core.candidates import INLIERS_MIN, Candidate, MergeRefusedError
 from services.gateway.merging.core.places import Places
-from shared.geometry.edge_ends import edge_between
+from shared.mapgraph.edge_ends import edge_between
 from shared.messages.features import Features
 from shared.messages.maps import AddNode, Edge, Operation, PutEdge
 

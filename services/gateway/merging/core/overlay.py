@@ -12,7 +12,7 @@ from collections.abc import Sequence, Set
 from services.gateway.merging.core.candidates import Candidate, MergeRefusedError
 from services.gateway.merging.core.places import Places
 from services.gateway.merging.core.witnesses import Votes, turn_error_rad
-from shared.geometry.triangle import apart_rad
+from shared.mapgraph.triangle import apart_rad
 
 WINDOW_HOPS = 3
 """Connections by which two chains between the same places may differ, beside one being twice as long."""

@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from shared.geometry.triangle import Sight
+from shared.mapgraph.triangle import Sight
 from shared.messages.maps import Edge, Node
 
 

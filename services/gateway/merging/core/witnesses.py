@@ -17,7 +17,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from services.gateway.merging.core.candidates import Candidate
 from services.gateway.merging.core.places import Places
-from shared.geometry.triangle import DIRECTION_RAD, YAW_RAD, Sight, apart_rad, triangle_closes
+from shared.mapgraph.triangle import DIRECTION_RAD, YAW_RAD, Sight, apart_rad, triangle_closes
 
 Votes = Mapping[Candidate, Mapping[Candidate, bool]]
 """For each candidate those that can judge it, and whether they agree."""

@@ -16,7 +16,7 @@ from experiments.matching.placing import (
 from experiments.matching.plan import profile_of
 from experiments.matching.precision import curve_of
 from experiments.matching.study import measured, tangent_wins
-from services.features.pipeline import Pipeline
+from services.features.pipeline.pipeline import Pipeline
 from shared.geometry.sphere import EquirectGrid
 
 SIDE = 128

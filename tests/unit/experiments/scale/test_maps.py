@@ -3,7 +3,7 @@
 import numpy as np
 
 from experiments.scale.maps import places_of, put_together
-from services.features.interfaces import FeatureSet
+from services.features.pipeline.interfaces import FeatureSet
 
 WORDS = 60
 

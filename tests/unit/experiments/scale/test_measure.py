@@ -5,9 +5,9 @@ import pytest
 
 from experiments.scale.frames import Seen
 from experiments.scale.measure import exhaustive, load, localise, track
-from services.features.interfaces import FeatureSet
-from services.features.pipeline import Pipeline
-from services.features.pipelines import find_profile
+from services.features.pipeline.interfaces import FeatureSet
+from services.features.pipeline.named_pipelines import find_profile
+from services.features.pipeline.pipeline import Pipeline
 from shared.messages.simulation import Pose
 
 PLACES, WORDS = 140, 300

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from experiments.scale.packing_loss import loss
-from services.features.interfaces import FeatureSet
-from services.features.pipeline import Pipeline
-from services.features.pipelines import find_profile
+from services.features.pipeline.interfaces import FeatureSet
+from services.features.pipeline.named_pipelines import find_profile
+from services.features.pipeline.pipeline import Pipeline
 
 WORDS = 200
 
@@ -39,5 +39,5 @@ def test_words_like_real_ones_lose_next_to_nothing(pipeline):
 
 
 def test_a_packing_that_keeps_too_little_shows(pipeline, monkeypatch):
-    monkeypatch.setattr("services.features.packing.LEVELS", 1)
+    monkeypatch.setattr("services.features.places.packing.LEVELS", 1)
     assert loss(pipeline, [pictures(120)])["lost"] > 0.02

@@ -7,8 +7,8 @@ import pytest
 
 from experiments.scale.poses import NEAR, place_poses, query_poses
 from shared.messages.simulation import Pose
-from simulator.freespace import FreeSpace, free_space
-from simulator.world_file import load_world
+from simulator.world.freespace import FreeSpace, free_space
+from simulator.world.world_file import load_world
 
 SPACING_M = 0.6
 

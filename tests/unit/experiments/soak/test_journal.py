@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from experiments.failure import ExperimentError
 from experiments.soak.growth import Sample
 from experiments.soak.journal import Journal
+from services.launcher.client.failure import ExperimentError
 
 SETUP = {"world": "apartment", "seed": 1}
 

@@ -4,11 +4,11 @@ import json
 
 import pytest
 
-from experiments.failure import ExperimentError
 from experiments.plots.curves import draw_curves
 from experiments.studies import disturbance
 from experiments.studies.disturbance_results import CLEAN, settings_to_run, summary
 from experiments.studies.results_file import ResultsFile
+from services.launcher.client.failure import ExperimentError
 
 SETUP = {"world": "plain", "seed": 1}
 

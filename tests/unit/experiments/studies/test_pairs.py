@@ -7,8 +7,8 @@ import pytest
 
 from experiments.studies.pairs import APART_M, PosePair, draw_pairs
 from shared.messages.simulation import Pose
-from simulator.freespace import free_space
-from simulator.world_file import load_world
+from simulator.world.freespace import free_space
+from simulator.world.world_file import load_world
 
 
 def test_pairs_are_near_enough_and_see_each_other():

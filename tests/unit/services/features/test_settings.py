@@ -6,10 +6,10 @@ import sys
 
 import pytest
 
-from services.features.pipeline import Pipeline
-from services.features.pipelines import PROFILES, find_profile
-from services.features.plugins import PLUGINS
-from services.features.registry import create
+from services.features.pipeline.named_pipelines import PROFILES, find_profile
+from services.features.pipeline.pipeline import Pipeline
+from services.features.pipeline.plugins import PLUGINS
+from services.features.pipeline.registry import create
 from services.features.settings import FeaturesSettings
 from shared.certificates.issuing import make
 from shared.certificates.layout import everyone

@@ -11,7 +11,7 @@ from services.gateway.merging.core.choice import choose
 from services.gateway.merging.core.operations import OPERATIONS_MAX, check_size, merged
 from services.gateway.merging.core.places import Places
 from services.gateway.merging.core.witnesses import borne_out, loop_closes, votes_among
-from shared.geometry.triangle import Sight
+from shared.mapgraph.triangle import Sight
 from shared.messages.maps import AddNode, Edge, Node, PutEdge
 from tests.merge_world import apart_m, edges_of, features_of, map_of, match, matches_of, row, seen, together
 

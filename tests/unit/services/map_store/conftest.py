@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from services.map_store.api import create_app
-from services.map_store.database import Database
+from services.map_store.api.app import create_app
+from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
 from shared.messages import Features, MapDelta
 from shared.messages.maps import AddNode, Edge, Node, PutEdge

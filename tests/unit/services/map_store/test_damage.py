@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 from sqlalchemy import text
 
-from services.map_store.check import check
-from services.map_store.database import Database
 from services.map_store.errors import CorruptError, MissingError
-from services.map_store.missions import MissionStore
+from services.map_store.integrity.check import check
 from services.map_store.service import answer_map
+from services.map_store.storage.database import Database
+from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
 from shared.messages import MapRequest
 from shared.messages.maps import DeleteNode

@@ -5,8 +5,6 @@ from threading import Thread
 import pytest
 from sqlalchemy import func, select, update
 
-from services.map_store import tables
-from services.map_store.database import Database
 from services.map_store.errors import (
     ConflictError,
     CorruptError,
@@ -15,6 +13,8 @@ from services.map_store.errors import (
     StorageFullError,
     UnavailableError,
 )
+from services.map_store.storage import tables
+from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
 from shared.messages.maps import DeleteEdge, DeleteNode, Edge, Node, PutEdge, UpdateNode
 from shared.wire import encode

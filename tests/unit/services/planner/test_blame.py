@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from services.planner.goto import Goto
 from services.planner.graph import MapGraph, edge_between
+from services.planner.missions.goto import Goto
 from services.planner.ports import GOAL, Observation
 from services.planner.profiles import DEFAULT
 from shared.messages.maps import Edge, Node

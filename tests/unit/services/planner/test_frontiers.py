@@ -6,8 +6,8 @@ import numpy as np
 
 from services.planner.frontiers import best_sector, frontier_sectors, mark_explored, with_explored
 from services.planner.graph import MapGraph
+from services.planner.mapping.surroundings import openings
 from services.planner.profiles import DEFAULT
-from services.planner.surroundings import openings
 from shared.messages.maps import Edge, Node
 from shared.messages.sensors import Ranges
 

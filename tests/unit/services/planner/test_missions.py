@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from services.drive.core import DriveLimits
-from services.planner.explore import FrontierExploration
-from services.planner.goto import Goto
+from services.planner.missions.explore import FrontierExploration
+from services.planner.missions.goto import Goto
+from services.planner.missions.strategies import ThesisExploration
 from services.planner.profiles import DEFAULT, THESIS
-from services.planner.strategies import ThesisExploration
 from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, picture, run
 
 START = (2.6, 1.3, 0.0)

@@ -5,7 +5,7 @@ import json
 import pytest
 from pydantic import ValidationError
 
-from services.launcher.stack_settings import profile_variables
+from services.launcher.processes.stack_settings import profile_variables
 from services.planner.profiles import OUTDOOR
 from services.planner.settings import PlannerSettings
 

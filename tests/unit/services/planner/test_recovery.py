@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from services.drive.core import DriveLimits
-from services.planner.explore import FrontierExploration
-from services.planner.goto import Goto
+from services.planner.missions.explore import FrontierExploration
+from services.planner.missions.goto import Goto
 from services.planner.profiles import DEFAULT
 from shared.messages.matching import NodeMatch
-from simulator.parts import Material, box
+from simulator.scene.parts import Material, box
 from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, Walker, picture, run
 
 START = (2.6, 1.3, 0.0)

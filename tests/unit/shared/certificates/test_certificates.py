@@ -9,8 +9,8 @@ import pytest
 from cryptography import x509
 from typer.testing import CliRunner
 
-from services.launcher.certs import app
-from shared.access_rules import Role
+from services.launcher.commands.certs import app
+from shared.access.rules import Role
 from shared.certificates.authority import CERTIFICATE_DAYS, CertificatesError
 from shared.certificates.checking import check
 from shared.certificates.issuing import make, renew

@@ -9,7 +9,7 @@ import pytest
 import yaml
 from PIL import Image
 
-from simulator.world_file import load_world
+from simulator.world.world_file import load_world
 
 BOX = np.array([(x, y, z) for x in (0.0, 2.0) for y in (0.0, 1.0) for z in (0.0, 4.0)])
 QUADS = np.array([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from simulator.mesh_shapes import mesh_of
-from simulator.scene_parts import expand
-from simulator.world_file import WorldFile, WorldFileError
+from simulator.scene.mesh_shapes import mesh_of
+from simulator.world.scene_parts import expand
+from simulator.world.world_file import WorldFile, WorldFileError
 from tests.unit.simulator.assets.conftest import BOX, QUADS, gltf_box, obj_text
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from simulator.disturbances.illumination import body_brightness, daylight, illuminated
-from simulator.parts import Light, Material, Part
+from simulator.scene.parts import Light, Material, Part
 
 LAMP = Light((0.0, 0.0, 2.0), (0.1, 0.1, 0.1), (1.0, 1.0, 1.0))
 PANEL = replace(LAMP, facing=(0.0, 0.0, -1.0))

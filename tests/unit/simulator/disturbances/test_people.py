@@ -7,11 +7,11 @@ import pytest
 
 from simulator.disturbances.levels import Disturbances
 from simulator.disturbances.walking import GAP_M, crowd_of
-from simulator.footprints import clearance_m, footprints
-from simulator.freespace import BODY_BAND_M, free_space
 from simulator.settings import RangeSettings, SimulationSettings
 from simulator.simulation import Simulation
-from simulator.world_file import WorldFile
+from simulator.world.footprints import clearance_m, footprints
+from simulator.world.freespace import BODY_BAND_M, free_space
+from simulator.world.world_file import WorldFile
 
 FAR = (1e3, 1e3)
 DT_S = 0.05
@@ -47,7 +47,7 @@ def test_level_zero_has_nobody_and_more_level_has_more(space):
 
 
 def test_nobody_ever_touches_furniture_or_each_other(hall, crowd):
-    from simulator.scene_parts import expand
+    from simulator.world.scene_parts import expand
 
     standing = footprints(expand(hall)[0], *BODY_BAND_M)
     nearest = math.inf

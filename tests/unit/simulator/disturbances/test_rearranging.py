@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from simulator.changes import changed_world
 from simulator.disturbances.rearranging import KEPT_FLOOR, is_movable, rearranged
-from simulator.freespace import free_space
-from simulator.world_file import Item, WorldFile
+from simulator.world.changes import changed_world
+from simulator.world.freespace import free_space
+from simulator.world.world_file import Item, WorldFile
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,86 @@
+"""Rounds of hide and seek one after the other, each drawn and told."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+
+from services.launcher.client.map_client import require_map
+from services.launcher.client.stack import Stack
+from services.launcher.evaluation.drawings import draw_round
+from services.launcher.evaluation.environments import environment_of
+from services.launcher.evaluation.rounds import Game, Round, hiding_place
+from services.launcher.evaluation.truth_file import MapTruth
+from services.launcher.terminal.progress import mission_progress
+from services.launcher.terminal.tables import wide_console
+from shared.messages.simulation import Pose
+from simulator.world.freespace import free_space
+from simulator.world.world_file import WorldFile
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Where the rounds take place; `truth` is for the drawings only."""
+
+    world: WorldFile
+    map_name: str
+    truth: MapTruth | None
+
+
+def play_rounds(
+    stack: Stack,
+    scene: Scene,
+    rounds: int,
+    seed: int,
+    max_steps: int,
+    folder: Path | None,
+    before: Sequence[dict[str, Any]] = (),
+    *,
+    quiet: bool = False,
+) -> Iterator[dict[str, Any]]:
+    """Play one round after the other; the seeker stays where the last one ended.
+
+    Args:
+        stack: services that know the map.
+        scene: world and map.
+        rounds: how many there are in all.
+        seed: of hiding places and missions.
+        max_steps: bound of a round.
+        folder: for the drawings, or None.
+        before: figures of the rounds already played; only the others are.
+        quiet: print nothing.
+
+    Yields:
+        Figures of each round.
+    """
+    console = Console(quiet=True) if quiet else wide_console(stderr=True)
+    require_map(stack, scene.map_name)
+    place, space = environment_of(scene.world), free_space(scene.world)
+    rng = np.random.default_rng(seed)
+    game = Game(stack, space, scene.map_name, rng, place.arrived_m)
+    game.begin(seed)
+    done = [dict(one) for one in before]  # the caller may append what this yields
+    for one in done:
+        hiding_place(space, Pose.model_validate(one["start"]), rng)
+    if done:
+        game.hand.place_robot(Pose.model_validate(done[-1]["final"]))
+    poses = scene.truth.poses if scene.truth is not None else {}
+    for number in range(len(done) + 1, rounds + 1):
+        with mission_progress(console, f"{scene.world.name} round {number}/{rounds}") as watch:
+            played = game.play(seed + number, max_steps, watch)
+        console.print(_line(scene.world.name, number, played), highlight=False)
+        if folder is not None:
+            edges = require_map(stack, scene.map_name).edges
+            draw_round(folder / f"round-{number:02d}", scene.world, played, poses, edges, game)
+        yield played.figures()
+
+
+def _line(world: str, number: int, played: Round) -> str:
+    verdict = "found" if played.success else "NOT found"
+    return (
+        f"{world} round {number}: {verdict}, {played.distance_m:.2f} m left, SPL {played.spl:.2f}, "
+        f"{played.run.status.step} steps, {played.run.steps_per_s:.1f} steps/s: {played.run.status.reason}"
+    )

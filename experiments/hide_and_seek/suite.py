@@ -1,0 +1,120 @@
+"""`topnav hide-and-seek --suite`: explore what is not yet mapped, play all runs, tell the result."""
+
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor, Future, wait
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from experiments.hide_and_seek.bundle import MapBundle
+from experiments.hide_and_seek.jobs import make_map, play_run
+from experiments.hide_and_seek.markdown import run_row, suite_markdown
+from experiments.hide_and_seek.plan import RunPlan
+from experiments.studies.workers import workers
+from services.launcher.evaluation.report import combined
+from services.launcher.terminal.output import write_json
+from services.launcher.terminal.tables import print_rows, wide_console
+
+POLL_S = 1.0
+SHOWN = ("world", "profile", "found", "final_distance_median_m", "spl_mean", "collisions", "steps_per_s")
+
+
+@dataclass(frozen=True)
+class SuiteChoice:
+    """What a suite is asked for.
+
+    Attributes:
+        plans: all runs.
+        folder: keeps maps, finished rounds and drawings; a suite that was cut off goes on from there.
+        jobs: runs at a time on this machine.
+        cluster: address of a Dask scheduler, or None.
+    """
+
+    suite: str
+    plans: Sequence[RunPlan]
+    folder: Path
+    jobs: int = 1
+    cluster: str | None = None
+
+
+def run_suite(choice: SuiteChoice, json_file: Path | None) -> dict[str, Any]:
+    """Run a suite; writes suite.json and summary.md into its folder.
+
+    Returns:
+        {"suite", "runs", "summary", "maps"}.
+
+    Raises:
+        ExperimentError: a world could not be explored, or a stack failed.
+    """
+    console = wide_console(stderr=True)
+    folder = choice.folder.resolve()
+    with workers(choice.jobs, choice.cluster) as pool:
+        maps = _maps(console, pool, choice, folder / "maps")
+        runs = _runs(console, pool, choice, maps, folder / choice.suite)
+    explored = [bundle.figures for bundle in maps.values()]
+    result = {
+        "suite": choice.suite,
+        "runs": runs,
+        "summary": combined(runs),
+        "maps": explored,
+    }
+    seed = choice.plans[0].seed
+    write_json(folder / f"{choice.suite}-{seed}.json", result)
+    if json_file is not None:
+        write_json(json_file, result)
+    text = suite_markdown(f"{choice.suite}, seed {seed}", explored, runs)
+    summary = folder / f"{choice.suite}-{seed}.md"
+    summary.write_text(text, encoding="utf-8")
+    rows = [{name: run_row(run)[name] for name in SHOWN} for run in runs]
+    print_rows(f"suite {choice.suite}, seed {seed}: {summary}", rows)
+    return result
+
+
+def _maps(console: Console, pool: Executor, choice: SuiteChoice, folder: Path) -> dict[str, MapBundle]:
+    worlds = list(dict.fromkeys(plan.world for plan in choice.plans))
+    jobs = {world: pool.submit(make_map, world, str(folder)) for world in worlds}
+    _follow(
+        console, "worlds mapped", list(jobs.values()), len(jobs), lambda: sum(f.done() for f in jobs.values())
+    )
+    return {world: job.result() for world, job in jobs.items()}
+
+
+def _runs(
+    console: Console, pool: Executor, choice: SuiteChoice, maps: dict[str, MapBundle], folder: Path
+) -> list[dict[str, Any]]:
+    jobs = [pool.submit(play_run, plan, maps[plan.world], str(folder)) for plan in choice.plans]
+    total = sum(plan.rounds for plan in choice.plans)
+    places = [folder / plan.name / "rounds.json" for plan in choice.plans]
+    _follow(console, "rounds played", jobs, total, lambda: sum(_on_record(place) for place in places))
+    return [job.result() for job in jobs]
+
+
+def _on_record(record: Path) -> int:
+    """Rounds on record here; workers of a cluster keep their own until they are done."""
+    return record.read_text(encoding="utf-8").count('"success":') if record.exists() else 0
+
+
+def _follow(
+    console: Console, title: str, jobs: Sequence[Future[Any]], total: int, done: Callable[[], int]
+) -> None:
+    """Show how far the work is until all of it has ended; one failed job ends the others' wait."""
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
+        task = progress.add_task(title, total=total)
+        last = -1
+        while True:
+            pending = wait(jobs, timeout=POLL_S).not_done
+            count = done()
+            progress.update(task, completed=count)
+            if count != last and not console.is_terminal:
+                console.print(f"{time.strftime('%H:%M:%S')} {title}: {count}/{total}", highlight=False)
+            last = count
+            for job in jobs:
+                if job.done():
+                    job.result()
+            if not pending:
+                return

@@ -1,0 +1,81 @@
+"""Nearest neighbours of one frame's descriptors in many others, by one matrix product per batch. Pure.
+
+    |a - b|^2 = |a|^2 + |b|^2 - 2 a . b
+
+Bits count as +1 and -1, which makes this four times the Hamming distance. Descriptors of bytes or bits give
+whole numbers that float32 holds exactly, so the result does not depend on the number of threads.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from services.features.pipeline.interfaces import BoolArray, Distance, Float32Array, IndexArray
+
+BATCH = 4
+"""Frames per matrix product: 4 x 300 columns of distances stay in the processor's cache (measured: 26 ms per
+100 frames of 300 x 128; 34 ms one by one, 39 ms all at once)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Neighbours:
+    """For each of Q query descriptors, within one other frame.
+
+    Attributes:
+        nearest: (Q,) index of the nearest descriptor.
+        first: (Q,) squared distance to it.
+        second: (Q,) squared distance to the second nearest; infinite where there is only one.
+        mutual: (Q,) the nearest descriptor's nearest is this one.
+    """
+
+    nearest: IndexArray
+    first: Float32Array
+    second: Float32Array
+    mutual: BoolArray
+
+
+def as_vectors(descriptors: npt.NDArray[Any], distance: Distance) -> Float32Array:
+    """(N, D) descriptors as float32 vectors whose Euclidean distance is the wanted one."""
+    if distance == "hamming":
+        bits = np.unpackbits(np.ascontiguousarray(descriptors, dtype=np.uint8), axis=1)
+        return bits.astype(np.float32) * np.float32(2.0) - np.float32(1.0)
+    return descriptors.astype(np.float32)
+
+
+def find_neighbours(
+    query: npt.NDArray[Any], others: Sequence[npt.NDArray[Any]], distance: Distance
+) -> Iterator[Neighbours | None]:
+    """Neighbours of `query` (Q, D) in each of `others` (N_i, D); None where either side is empty."""
+    vectors = as_vectors(query, distance)
+    own = np.einsum("ij,ij->i", vectors, vectors)[:, None]
+    for start in range(0, len(others), BATCH):
+        batch = others[start : start + BATCH]
+        flat = as_vectors(np.concatenate(batch), distance)
+        squared = vectors @ flat.T
+        squared *= np.float32(-2.0)
+        squared += np.einsum("ij,ij->i", flat, flat)
+        squared += own
+        column = 0
+        for other in batch:
+            block = squared[:, column : column + len(other)]
+            column += len(other)
+            yield _neighbours(block) if block.size else None
+
+
+def _neighbours(block: Float32Array) -> Neighbours:
+    """Nearest and second nearest per row of (Q, N) squared distances; overwrites the block."""
+    rows = np.arange(len(block))
+    nearest = block.argmin(axis=1)
+    first = block[rows, nearest]
+    closest = block.min(axis=0)  # argmin along this axis takes thirty times as long
+    block[rows, nearest] = np.inf
+    second = block.min(axis=1)
+    mutual = first == closest[nearest]
+    # Equal descriptors tie: the first row keeps the column.
+    tied = np.flatnonzero(mutual)
+    _, keepers = np.unique(nearest[tied], return_index=True)
+    mutual[np.delete(tied, keepers)] = False
+    return Neighbours(nearest, np.maximum(first, 0.0), np.maximum(second, 0.0), mutual)

@@ -1,0 +1,110 @@
+"""Words of a place in half the room: four bits per number of a descriptor. Pure.
+
+    d ~ base + step * code, code in 0..15, base and step for each descriptor
+
+The words that are looked for stay exact, only the places are packed. Root SIFT loses 0.2 % of its verified
+matches by this, TFeat 0.1, MKD 0.8, ALIKED 0.4 (`topnav study scale`), for 72 instead of 136 bytes a word of
+root SIFT. Bits are kept as they are.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from services.features.pipeline.interfaces import Distance, FeatureSet
+
+LEVELS = 15
+TURN = 2.0**15 / np.pi
+"""Steps of 16 bits per radian: 0.0055 degrees each."""
+
+Record = npt.NDArray[np.void]
+
+
+@dataclass(frozen=True)
+class Packing:
+    """How the places of one pipeline are kept.
+
+    Attributes:
+        keypoints: most words of a place.
+        width: numbers per descriptor, bytes where they are bits.
+        dtype: of the descriptors as they come.
+        distance: of the descriptors.
+    """
+
+    keypoints: int
+    width: int
+    dtype: str
+    distance: Distance
+
+    @classmethod
+    def of(cls, words: FeatureSet, keypoints: int, distance: Distance) -> Self:
+        """For places with words like these, at most `keypoints` of them."""
+        return cls(keypoints, words.descriptors.shape[1], words.descriptors.dtype.name, distance)
+
+    @cached_property
+    def record(self) -> np.dtype[np.void]:
+        """Layout of one place."""
+        scale, bits = ("u1" if self.dtype == "uint8" else "<f2"), self.distance == "hamming"
+        fields: list[Any] = [
+            ("count", "<u2"),
+            ("lonlat", "<i2", (self.keypoints, 2)),
+            ("scores", "<f2", (self.keypoints,)),
+            ("codes", "u1", (self.keypoints, self.width if bits else (self.width + 1) // 2)),
+        ]
+        if not bits:
+            fields += [("base", scale, (self.keypoints,)), ("step", scale, (self.keypoints,))]
+        return np.dtype(fields)
+
+    def pack(self, words: FeatureSet) -> Record:
+        """One record, zero beyond the words.
+
+        Raises:
+            ValueError: more words than a record holds, or descriptors of another kind.
+        """
+        kind = (words.descriptors.shape[1], words.descriptors.dtype.name)
+        if kind != (self.width, self.dtype) or len(words) > self.keypoints:
+            raise ValueError(
+                f"at most {self.keypoints} descriptors of {self.width} x {self.dtype} expected, "
+                f"got {len(words)} of {kind[0]} x {kind[1]}"
+            )
+        record = np.zeros((), self.record)
+        here = slice(0, len(words))
+        record["count"] = len(words)
+        # A full turn wraps around to where it began, as 16 bits do.
+        record["lonlat"][here] = np.rint(words.lonlat_rad.astype(np.float64) * TURN).astype(np.int32)
+        record["scores"][here] = words.scores
+        if self.distance == "hamming":
+            record["codes"][here] = words.descriptors
+        elif len(words):
+            self._pack_numbers(record, words.descriptors, here)
+        return record
+
+    def _pack_numbers(self, record: Record, descriptors: npt.NDArray[Any], here: slice) -> None:
+        numbers = descriptors.astype(np.float32)
+        low, high = numbers.min(axis=1), numbers.max(axis=1)
+        steps = np.maximum((high - low) / LEVELS, np.float32(1e-6))
+        record["base"][here] = low
+        record["step"][here] = np.ceil(steps) if self.dtype == "uint8" else steps
+        base, step = (record[name][here].astype(np.float32)[:, None] for name in ("base", "step"))
+        codes = np.clip(np.rint((numbers - base) / np.maximum(step, 1e-6)), 0, LEVELS).astype(np.uint8)
+        even, odd = codes[:, 0::2], codes[:, 1::2]
+        record["codes"][here] = even << 4
+        record["codes"][here, : odd.shape[1]] |= odd
+
+    def unpack(self, record: Record) -> FeatureSet:
+        """Words of a record; numbers come as float32."""
+        count = int(record["count"])
+        lonlat = record["lonlat"][:count].astype(np.float32) / np.float32(TURN)
+        codes = record["codes"][:count]
+        scores = record["scores"][:count].astype(np.float32)
+        if self.distance == "hamming":
+            return FeatureSet(lonlat, scores, np.array(codes))
+        numbers = np.empty((count, 2 * codes.shape[1]), np.float32)
+        numbers[:, 0::2] = codes >> 4
+        numbers[:, 1::2] = codes & LEVELS
+        numbers *= record["step"][:count].astype(np.float32)[:, None]
+        numbers += record["base"][:count].astype(np.float32)[:, None]
+        return FeatureSet(lonlat, scores, numbers[:, : self.width])

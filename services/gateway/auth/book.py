@@ -1,0 +1,84 @@
+"""Which tokens this gateway takes: GATEWAY_TOKEN and a file that is read again when it changes."""
+
+import logging
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from services.gateway.settings import GatewaySettings
+from shared.access.token import Token, digest_of, find
+from shared.access.token_file import read_tokens
+
+log = logging.getLogger(__name__)
+
+LOOK_S = 1.0
+"""So often at most the file is looked at."""
+
+
+class TokenBook:
+    """The tokens. Lives in the asyncio thread.
+
+    Args:
+        secret: of the one unnamed admin token, empty for none.
+        path: token file, None for none.
+        clock: monotonic seconds.
+    """
+
+    def __init__(self, secret: str, path: Path | None, clock: Callable[[], float] = time.monotonic) -> None:
+        self._single = (Token(role="admin", sha256=digest_of(secret)),) if secret else ()
+        self._path, self._clock = path, clock
+        self._tokens: tuple[Token, ...] = self._single
+        self._seen: tuple[int, int, int] | None = None
+        self._looked_s = float("-inf")
+
+    @property
+    def guards(self) -> bool:
+        """Whether tokens are asked for: one was set, or a file was named, be it empty by now."""
+        return bool(self._single) or self._path is not None
+
+    def find(self, secret: str) -> Token | None:
+        """The token of a secret."""
+        return find(self._now(), secret)
+
+    def named(self, name: str) -> Token | None:
+        """The token of a name; "" is that of GATEWAY_TOKEN."""
+        return next((token for token in self._now() if token.name == name), None)
+
+    def holds(self, token: Token) -> bool:
+        """Whether a token that was found is still valid."""
+        return token in self._now()
+
+    def _now(self) -> tuple[Token, ...]:
+        if self._path is not None and self._clock() - self._looked_s >= LOOK_S:
+            self._looked_s = self._clock()
+            self._look(self._path)
+        return self._tokens
+
+    def _look(self, path: Path) -> None:
+        """Read the file if it changed. One that cannot be read opens nothing: who was removed stays out."""
+        try:
+            stat = path.stat()
+            seen = (stat.st_mtime_ns, stat.st_size, stat.st_ino)
+            if seen == self._seen:
+                return
+            self._tokens, self._seen = (*self._single, *read_tokens(path)), seen
+            log.info("token file read: %d tokens", len(self._tokens) - len(self._single))
+        except (OSError, ValueError) as error:
+            if self._tokens != self._single or self._seen is None:
+                log.error("no token of the file is taken any more: %s", error)
+            self._tokens, self._seen = self._single, (0, 0, 0)
+
+
+def open_book(settings: GatewaySettings) -> TokenBook:
+    """The tokens of these settings.
+
+    Raises:
+        ValueError: the file named cannot be read, or nobody could come in.
+    """
+    secret, path = settings.token.get_secret_value(), settings.tokens_file
+    if path is not None and not read_tokens(path) and not secret:
+        raise ValueError(
+            f"GATEWAY_TOKENS_FILE {path} holds no token: make one with "
+            f"'topnav token add NAME --role admin {path}'"
+        )
+    return TokenBook(secret, path)

@@ -1,0 +1,45 @@
+"""Which role a request needs. Pure. Unless listed here, reading is for viewers and writing for admins."""
+
+from shared.access.roles import Role
+
+READS = frozenset({"GET", "HEAD", "OPTIONS"})
+
+ANYBODY = frozenset({("POST", "/api/robots/{robot}/estop")})
+"""A stop that asks for a secret is none: a false one costs minutes, a refused one may cost a person."""
+
+VIEWER = frozenset({("POST", "/api/session"), ("DELETE", "/api/session")})
+OPERATOR = frozenset(
+    {
+        ("DELETE", "/api/robots/{robot}/estop"),
+        ("POST", "/api/maps"),
+        ("POST", "/api/robots/{robot}/goal-check"),
+        ("POST", "/api/robots/{robot}/missions"),
+        ("POST", "/api/robots/{robot}/missions/goto"),
+        ("POST", "/api/robots/{robot}/missions/{action}"),
+    }
+)
+UPLOADS = frozenset(
+    {
+        ("POST", "/api/maps/import"),
+        ("POST", "/api/robots/{robot}/goal-check"),
+        ("POST", "/api/robots/{robot}/missions/goto"),
+    }
+)
+"""What takes long bodies and costs computing time: limited more tightly than other writes."""
+
+
+def role_for(method: str, path: str) -> Role | None:
+    """The least role that may send this.
+
+    Args:
+        method: of the request.
+        path: of its route, with names in braces.
+
+    Returns:
+        None: nobody is asked for a token.
+    """
+    if (method, path) in ANYBODY:
+        return None
+    if method in READS or (method, path) in VIEWER:
+        return "viewer"
+    return "operator" if (method, path) in OPERATOR else "admin"

@@ -1,0 +1,165 @@
+"""Bodies of requests: read with a length and a time limit, JSON strictly, pictures from either form."""
+
+import asyncio
+import json
+from typing import Any, NoReturn, TypeVar
+
+from fastapi import Request
+from pydantic import BaseModel, ValidationError
+from starlette.datastructures import UploadFile
+from starlette.formparsers import MultiPartException, MultiPartParser
+from starlette.requests import ClientDisconnect
+
+from services.gateway.http.problems import ProblemError, invalid
+from services.gateway.uploads.picture import PictureError
+
+B = TypeVar("B", bound=BaseModel)
+
+MAX_JSON_BYTES = 64_000
+MULTIPART_EXTRA_BYTES = 16_000
+"""Room for boundaries and part headers around a picture."""
+DRAIN_BYTES = 64_000_000
+"""How much of a refused body is still read, so that the sender sees the answer and not a broken pipe."""
+PICTURE_TYPES = ("image/png", "image/jpeg", "image/webp")
+
+
+async def read_body(request: Request, limit_bytes: int, timeout_s: float) -> bytes:
+    """Read at most `limit_bytes`.
+
+    Raises:
+        ProblemError: 413 longer, 408 slower than `timeout_s`, 400 sender gone.
+    """
+    body, length = bytearray(), 0
+    try:
+        async with asyncio.timeout(timeout_s):
+            async for chunk in request.stream():
+                length += len(chunk)
+                if length <= limit_bytes:
+                    body += chunk
+                elif length > limit_bytes + DRAIN_BYTES:
+                    break
+    except TimeoutError:
+        raise ProblemError(
+            408,
+            "body_too_slow",
+            expected=f"the whole body within {timeout_s:g} s",
+            got=f"{length} bytes",
+            next_step="send it faster or smaller",
+        ) from None
+    except ClientDisconnect:
+        raise ProblemError(
+            400, "disconnected", expected="a whole body", got=f"{length} bytes", next_step="send it again"
+        ) from None
+    if length > limit_bytes:
+        raise ProblemError(
+            413,
+            "body_too_large",
+            expected=f"at most {limit_bytes} bytes",
+            got=f"at least {length} bytes",
+            next_step="send less, for example a smaller picture",
+        )
+    return bytes(body)
+
+
+async def read_json(request: Request, kind: type[B], timeout_s: float) -> B:
+    """Read a JSON body as `kind`; NaN, infinities and duplicate keys are not JSON.
+
+    Raises:
+        ProblemError: 415 not announced as JSON, 422 not JSON or not of that kind.
+    """
+    media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if media_type != "application/json":
+        raise ProblemError(
+            415,
+            "not_json",
+            expected="content type application/json",
+            got=media_type[:80] or "none",
+            next_step="send the fields as a JSON object",
+        )
+    body = await read_body(request, MAX_JSON_BYTES, timeout_s)
+    try:
+        content = json.loads(body, parse_constant=_no_constant, object_pairs_hook=_no_duplicates)
+    except (ValueError, RecursionError) as error:
+        raise ProblemError(
+            422,
+            "invalid_json",
+            expected="a JSON object",
+            got=str(error)[:200] or type(error).__name__,
+            next_step="check the body with a JSON linter",
+        ) from None
+    try:
+        return kind.model_validate(content, strict=True)
+    except ValidationError as error:
+        raise invalid(
+            list(error.errors(include_url=False, include_input=False, include_context=False))
+        ) from None
+
+
+async def read_picture(request: Request, limit_bytes: int, timeout_s: float) -> tuple[bytes, str]:
+    """Read the one picture of a request, sent as the body or as the one part of a form.
+
+    Returns:
+        The file's bytes and the content type it was sent with.
+
+    Raises:
+        PictureError, ProblemError: no picture, several, or another type.
+    """
+    media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if media_type in PICTURE_TYPES:
+        return await read_body(request, limit_bytes, timeout_s), media_type
+    if media_type != "multipart/form-data":
+        raise PictureError(
+            415,
+            "unsupported_type",
+            f"one of {', '.join(PICTURE_TYPES)} or multipart/form-data",
+            media_type[:80] or "no content type",
+            "send the picture as the body, or as a form with one file",
+        )
+    body = await read_body(request, limit_bytes + MULTIPART_EXTRA_BYTES, timeout_s)
+    return await _only_part(request, body, limit_bytes)
+
+
+class _MemoryParser(MultiPartParser):
+    spool_max_size = 2**30  # the body is in memory and bounded already: parts never go to a file
+
+
+async def _only_part(request: Request, body: bytes, limit_bytes: int) -> tuple[bytes, str]:
+    async def whole() -> Any:
+        yield body
+
+    parser = _MemoryParser(request.headers, whole(), max_files=1, max_fields=0)
+    try:
+        form = await parser.parse()
+    except (MultiPartException, ValueError, LookupError) as error:
+        raise PictureError(
+            422,
+            "bad_form",
+            "multipart/form-data with one file",
+            str(error)[:200],
+            "send one file and no fields",
+        ) from None
+    try:
+        parts = [value for _, value in form.multi_items() if isinstance(value, UploadFile)]
+        if len(parts) != 1:
+            raise PictureError(
+                422, "bad_form", "one file in the form", f"{len(parts)} files", "send one file"
+            )
+        data = await parts[0].read()
+    finally:
+        await form.close()
+    if len(data) > limit_bytes:
+        raise PictureError(
+            413, "too_large", f"at most {limit_bytes} bytes", f"{len(data)} bytes", "send it smaller"
+        )
+    return data, (parts[0].content_type or "").partition(";")[0].strip().lower()
+
+
+def _no_constant(name: str) -> NoReturn:
+    raise ValueError(f"{name} is not JSON")
+
+
+def _no_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    content = dict(pairs)
+    if len(content) != len(pairs):
+        raise ValueError("a key stands twice in one object")
+    return content

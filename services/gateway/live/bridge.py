@@ -1,0 +1,125 @@
+"""From the bus's threads to asyncio: one thread waits on the bus and hands batches to the hub."""
+
+import asyncio
+import logging
+import threading
+from collections import Counter
+from collections.abc import Callable, Sequence
+
+from services.gateway.live.hub import Hub
+from shared.bus import Bus
+from shared.messages.base import Message
+from shared.topics import COMMAND, EVENT, FRAME, HEADING, NAME, RANGES, STATUS, STOPPED, TRUTH
+
+log = logging.getLogger(__name__)
+
+PERIOD_S = 0.25
+DELIVERY_S = 5.0
+BEAT_S = 2.0
+
+Follow = Callable[[], Sequence[Message]]
+"""Takes all that waits in one inbox."""
+
+
+class Alive:
+    """Which processes live; written on Zenoh's threads."""
+
+    def __init__(self, wake: threading.Event) -> None:
+        self._lock, self._wake = threading.Lock(), wake
+        self._instances: set[tuple[str, str]] = set()
+
+    def change(self, service: str, instance: str, alive: bool) -> None:
+        """Note one process that came or went."""
+        with self._lock:
+            (self._instances.add if alive else self._instances.discard)((service, instance))
+        self._wake.set()
+
+    def counts(self) -> dict[str, int]:
+        """Living processes per service."""
+        with self._lock:
+            return dict(sorted(Counter(service for service, _ in self._instances).items()))
+
+
+class Bridge:
+    """Follows the given robot from the start and others as soon as they say something."""
+
+    def __init__(
+        self, bus: Bus, hub: Hub, loop: asyncio.AbstractEventLoop, robot: str, max_robots: int
+    ) -> None:
+        self._bus, self._hub, self._loop = bus, hub, loop
+        self._max_robots = max_robots
+        self._stop = threading.Event()
+        self._alive = Alive(bus.wake)
+        self._followed: dict[str, tuple[Follow, ...]] = {}
+        self._everyone: tuple[Follow, ...] = (
+            bus.subscribe(STATUS, robot="*").take_all,
+            bus.subscribe(EVENT, robot="*").take_all,
+            bus.subscribe(TRUTH, robot="*").take_all,
+        )
+        self._sensing, self._stopping = bus.subscribe(RANGES, robot="*"), bus.subscribe(STOPPED, robot="*")
+        self._follow(robot)
+        bus.watch_alive(self._alive.change)
+        self._thread = threading.Thread(target=self._run, name="bridge", daemon=True)
+
+    def start(self) -> None:
+        """Start the thread."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Ask the thread to end without waiting: it may itself wait for the asyncio thread."""
+        self._stop.set()
+        self._bus.wake.set()
+
+    def _run(self) -> None:
+        services: dict[str, int] = {}
+        while not self._stop.is_set():
+            self._bus.wait(PERIOD_S)
+            counts = self._alive.counts()
+            messages = self._collect()
+            if counts != services and self._deliver(messages, counts):
+                services = counts
+            elif messages:
+                self._deliver(messages, None)
+
+    def _collect(self) -> list[Message]:
+        for ranges in self._sensing.take_all():
+            self._follow(ranges.robot)
+        for stopped in self._stopping.take_all():
+            self._follow(stopped.robot)
+        messages = [message for take in self._everyone for message in take()]
+        for message in messages:
+            self._follow(str(getattr(message, "robot", "")))
+        for streams in self._followed.values():
+            messages += [message for take in streams for message in take()]
+        return messages
+
+    def _follow(self, robot: str) -> None:
+        """Subscribe to what keeps the newest only: under '*' robots would displace each other."""
+        if robot in self._followed or len(self._followed) >= self._max_robots or not NAME.match(robot):
+            return
+        self._followed[robot] = (
+            self._bus.subscribe(FRAME, robot=robot).take_all,
+            self._bus.subscribe(RANGES, robot=robot).take_all,
+            self._bus.subscribe(HEADING, robot=robot).take_all,
+            self._bus.subscribe(COMMAND, robot=robot).take_all,
+            self._bus.subscribe(STOPPED, robot=robot).take_all,
+        )
+
+    def _deliver(self, messages: list[Message], services: dict[str, int] | None) -> bool:
+        """Hand over and wait until taken: under load the bounded inboxes fill, not asyncio's queue."""
+        taken = threading.Event()
+
+        def hand_over() -> None:
+            try:
+                self._hub.take(messages)
+                if services is not None:
+                    self._hub.take_services(services)
+            finally:
+                taken.set()
+
+        try:
+            self._loop.call_soon_threadsafe(hand_over)
+        except RuntimeError:  # the loop closed: the gateway is stopping
+            self._stop.set()
+            return False
+        return taken.wait(DELIVERY_S)

@@ -1,0 +1,186 @@
+"""A goal picture: bytes of PNG, JPEG or WebP -> an equirectangular bgr8 frame. Pure.
+
+The one conversion, whatever the file holds:
+    size        the stored raster decides; EXIF rotation is ignored, like everywhere in this project.
+    grey        repeated in all three channels; 16-bit samples keep their high byte (scaled, not clipped).
+    palette     looked up. Transparency: composed over black.
+    CMYK        converted without a colour profile. Colour profiles are ignored.
+    animation   refused: which picture is the goal would be a guess.
+    large       shrunk by area averaging to 2048 x 1024; small ones stay.
+"""
+
+import io
+import math
+import warnings
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image, UnidentifiedImageError
+
+from services.gateway.uploads.picture_header import HeaderError, PictureHeader, read_header
+
+MAX_PIXELS: Final = {"jpeg": 64_000_000, "png": 34_000_000, "webp": 20_000_000}
+"""A JPEG is shrunk while it is decoded; PNG is decoded whole, at 4 bytes a pixel, and WebP at 16."""
+MAX_SCANS: Final = 100
+"""Of a JPEG. Progressive ones have ten or so; each is a pass over the picture, an empty one a dozen bytes."""
+BAND_ROWS: Final = 64
+"""Rows of the result converted at a time: a large picture shall not be there in several modes at once."""
+MIN_WIDTH_PX: Final = 128
+MAX_WIDTH_PX: Final = 2048
+PILLOW_FORMATS: Final = {"png": ("PNG",), "jpeg": ("JPEG",), "webp": ("WEBP",)}
+
+Bgr = npt.NDArray[np.uint8]
+
+
+class PictureError(ValueError):
+    """A picture that cannot be a goal.
+
+    Attributes:
+        status: fitting HTTP status.
+        reason: short name, for the metrics.
+        expected, got, next_step: what the sender needs to know.
+    """
+
+    def __init__(self, status: int, reason: str, expected: str, got: str, next_step: str) -> None:
+        super().__init__(f"{reason}: expected {expected}, got {got}")
+        self.status, self.reason = status, reason
+        self.expected, self.got, self.next_step = expected, got, next_step
+
+
+def check_header(data: bytes, declared_type: str) -> PictureHeader:
+    """Check format and size from the first bytes.
+
+    Args:
+        data: the whole file.
+        declared_type: content type it was sent with.
+
+    Raises:
+        PictureError: empty, another format, not the declared one, or a size a panorama cannot have.
+    """
+    if not data:
+        raise PictureError(422, "empty", "a picture", "0 bytes", "send the file's content")
+    try:
+        header = read_header(data)
+    except HeaderError as error:
+        raise PictureError(
+            415, "not_a_picture", "a PNG, JPEG or WebP picture", str(error), "convert it to one of the three"
+        ) from None
+    if declared_type != f"image/{header.format}":
+        raise PictureError(
+            415,
+            "type_mismatch",
+            f"content type image/{header.format} for these bytes",
+            declared_type[:80] or "no content type",
+            "send the content type that fits the file",
+        )
+    _check_size(header)
+    if header.format == "jpeg" and (scans := data.count(b"\xff\xda")) > MAX_SCANS:
+        raise PictureError(
+            422,
+            "too_many_scans",
+            f"a JPEG of at most {MAX_SCANS} scans",
+            f"{scans}",
+            "save it as a baseline JPEG",
+        )
+    return header
+
+
+def decode_bgr(data: bytes, header: PictureHeader) -> Bgr:
+    """Decode a checked picture.
+
+    Returns:
+        (H, W, 3) uint8, blue first, W = 2 H, W <= 2048.
+
+    Raises:
+        PictureError: damaged, animated, or not of the size its header claims.
+    """
+    image = _open(data, header)
+    if getattr(image, "n_frames", 1) > 1 and image.format != "MPO":  # MPO: the first picture is the main one
+        raise PictureError(
+            422,
+            "animated",
+            "one still picture",
+            f"{getattr(image, 'n_frames', 1)} pictures",
+            "send one of them",
+        )
+    target = (min(header.width_px, MAX_WIDTH_PX), min(header.height_px, MAX_WIDTH_PX // 2))
+    try:
+        image.draft("RGB", target)  # JPEG only: decodes at 1/2, 1/4 or 1/8 of the size
+        image.load()
+    except (OSError, ValueError, SyntaxError, EOFError, IndexError, KeyError, MemoryError) as error:
+        raise _damaged(error) from None
+    return np.concatenate([_band(image, target, row) for row in range(0, target[1], BAND_ROWS)])
+
+
+def _check_size(header: PictureHeader) -> None:
+    width_px, height_px = header.width_px, header.height_px
+    got = f"{width_px} x {height_px} px"
+    most = MAX_PIXELS[header.format]
+    if width_px * height_px > most:
+        raise PictureError(
+            413,
+            "too_many_pixels",
+            f"at most {most // 1_000_000} megapixels as {header.format.upper()}",
+            got,
+            "send a smaller picture or, up to 64 megapixels, a JPEG",
+        )
+    if width_px != 2 * height_px:
+        raise PictureError(
+            422,
+            "not_two_to_one",
+            "an equirectangular panorama, exactly twice as wide as high",
+            got,
+            "export the whole sphere (360 x 180 degrees)",
+        )
+    if width_px < MIN_WIDTH_PX:
+        raise PictureError(
+            422,
+            "too_small",
+            f"at least {MIN_WIDTH_PX} x {MIN_WIDTH_PX // 2} px",
+            got,
+            "send a larger picture",
+        )
+
+
+def _open(data: bytes, header: PictureHeader) -> Image.Image:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # oddities in metadata that do not matter to the pixels
+            image = Image.open(io.BytesIO(data), formats=PILLOW_FORMATS[header.format])
+    except (UnidentifiedImageError, OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+        raise _damaged(error) from None
+    if image.size != (header.width_px, header.height_px):
+        raise _damaged(ValueError(f"header says {header[1:]}, decoder says {image.size}"))
+    return image
+
+
+def _band(image: Image.Image, target: tuple[int, int], row: int) -> Bgr:
+    """Rows `row` to `row + BAND_ROWS` of the result, averaged over the rows of `image` that they cover."""
+    width, height = target
+    rows = min(BAND_ROWS, height - row)
+    top, bottom = row * image.height / height, (row + rows) * image.height / height
+    first = math.floor(top)
+    rgb = _as_rgb(image.crop((0, first, image.width, min(image.height, math.ceil(bottom)))))
+    if image.size != target:
+        box = (0.0, top - first, float(image.width), min(bottom - first, float(rgb.height)))
+        rgb = rgb.resize((width, rows), Image.Resampling.BOX, box)
+    return np.ascontiguousarray(np.asarray(rgb, dtype=np.uint8)[:, :, ::-1])
+
+
+def _as_rgb(image: Image.Image) -> Image.Image:
+    if image.mode.startswith("I"):  # 16-bit grey: Pillow's own conversion clips at 255
+        high = np.asarray(image).astype(np.uint32) >> 8
+        image = Image.fromarray(high.clip(0, 255).astype(np.uint8))
+    if "transparency" in image.info or image.mode in ("LA", "PA", "RGBA", "La", "RGBa"):
+        rgba = image.convert("RGBA")
+        black = Image.new("RGBA", rgba.size, (0, 0, 0, 255))
+        image = Image.alpha_composite(black, rgba)
+    return image.convert("RGB")
+
+
+def _damaged(error: Exception) -> PictureError:
+    got = f"a damaged file ({str(error)[:120]})"
+    return PictureError(
+        422, "damaged", "a picture that decodes to its end", got, "send the file again or re-save it"
+    )

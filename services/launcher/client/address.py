@@ -1,0 +1,35 @@
+"""Where a command finds the bus of a running stack, and who it is there."""
+
+import os
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+
+from services.launcher.processes.state import StateFolder
+from shared.bus import Bus, open_bus
+
+
+@dataclass(frozen=True)
+class Address:
+    """A router, and the folder of the certificate to show it; None on an open bus."""
+
+    endpoint: str
+    certs: Path | None = None
+
+    def open(self) -> AbstractContextManager[Bus]:
+        """Join the bus; raises the errors of `open_bus`."""
+        return open_bus(self.endpoint, certs=self.certs)
+
+
+def find_address(endpoint: str | None, data_dir: Path) -> Address | None:
+    """The stack at `endpoint`, else the one that runs in `data_dir`; None when none runs there.
+
+    A stack elsewhere is joined with the certificate in TOPNAV_CERTS, if that is set.
+    """
+    running = StateFolder(data_dir.resolve()).read()
+    if running is not None and endpoint in (None, running.endpoint):
+        return Address(running.endpoint, running.operator_certs)
+    if endpoint is None:
+        return None
+    own = os.environ.get("TOPNAV_CERTS")
+    return Address(endpoint, Path(own) if own else None)

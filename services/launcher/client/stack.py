@@ -1,0 +1,133 @@
+"""The stack a command works with: one that runs already, or one of its own."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from services.launcher.client.address import Address, find_address
+from services.launcher.client.failure import ExperimentError
+from services.launcher.evaluation.environments import environment_of
+from services.launcher.processes.stack_settings import Ports
+from services.launcher.processes.state import StateFolder
+from services.launcher.processes.supervisor import Launcher
+from shared.bus import Bus, wait_until
+from shared.messages import MissionRequest
+from shared.topics import MISSION
+
+ROBOT = "r1"
+JOIN_TIMEOUT_S = 15.0
+ASK_TIMEOUT_S = 10.0
+NEEDED = frozenset({"planner", "drive", "features", "map_store", "simulator"})
+
+
+@dataclass(frozen=True)
+class StackChoice:
+    """What a command asks of its stack.
+
+    Attributes:
+        world, seed, profile, pipeline: None leaves the default; a running stack keeps its own.
+        lockstep: None is lockstep for a stack of its own and whatever a running one has.
+        endpoint: join the stack there; None joins the one that runs in data_dir, or starts one.
+        ports: of a stack of its own; None takes free ones.
+        secure: certificates and access rules for a stack of its own.
+    """
+
+    data_dir: Path
+    world: str | None = None
+    seed: int | None = None
+    lockstep: bool | None = None
+    profile: str | None = None
+    pipeline: str | None = None
+    endpoint: str | None = None
+    ports: Ports | None = None
+    environment: dict[str, str] = field(default_factory=dict)
+    secure: bool = False
+
+
+@dataclass(frozen=True)
+class Stack:
+    """A stack in use. `launcher` is None when somebody else runs it."""
+
+    bus: Bus
+    address: Address
+    gateway_url: str | None
+    launcher: Launcher | None
+    robot: str = ROBOT
+
+    @property
+    def endpoint(self) -> str:
+        """Zenoh endpoint of the router."""
+        return self.address.endpoint
+
+    @contextmanager
+    def session(self) -> Iterator["Stack"]:
+        """The same stack over a bus session of its own, which ends with everything it listens to."""
+        with self.address.open() as bus:
+            _require_services(bus, self.endpoint)
+            yield replace(self, bus=bus)
+
+
+@contextmanager
+def open_stack(choice: StackChoice) -> Iterator[Stack]:
+    """Join or start a stack and close what was opened.
+
+    Raises:
+        ExperimentError: the running stack lacks a service or cannot be what was asked for.
+        LaunchError: the own one does not come up.
+    """
+    running = StateFolder(choice.data_dir.resolve()).read()
+    address = find_address(choice.endpoint, choice.data_dir)
+    if address is not None:
+        _refuse_settings(choice)
+        url = running.gateway_url if running and address.endpoint == running.endpoint else None
+        with address.open() as bus:
+            _require_services(bus, address.endpoint)
+            yield Stack(bus, address, url, None)
+        return
+    with _launcher(choice) as launcher:
+        own = Address(launcher.endpoint, launcher.certs)
+        with own.open() as bus:
+            _require_services(bus, own.endpoint)
+            _end_left_mission(bus)
+            yield Stack(bus, own, launcher.gateway_url, launcher)
+
+
+def _launcher(choice: StackChoice) -> Launcher:
+    place = environment_of(choice.world)
+    environment = {**place.variables, **choice.environment}
+    pipeline = choice.pipeline or place.pipeline
+    if pipeline is not None:
+        environment.setdefault("FEATURES_PIPELINE", pipeline)
+    return Launcher(
+        data_dir=choice.data_dir,
+        world=choice.world,
+        lockstep=True if choice.lockstep is None else choice.lockstep,
+        seed=choice.seed,
+        profile=place.profile(choice.profile),
+        ports=choice.ports,
+        environment=environment,
+        secure=choice.secure,
+    )
+
+
+def _refuse_settings(choice: StackChoice) -> None:
+    given = [name for name in ("profile", "pipeline") if getattr(choice, name) is not None]
+    if given:
+        raise ExperimentError(
+            f"--{given[0]} cannot change a stack that runs: stop it ('topnav down'), or start it with that "
+            f"{given[0]} and leave the option out"
+        )
+
+
+def _end_left_mission(bus: Bus) -> None:
+    """End the mission of a command that was killed: the planner takes it up again when it starts."""
+    status = bus.ask(MISSION, MissionRequest(action="status"), ASK_TIMEOUT_S, robot=ROBOT)
+    if status.state in ("running", "paused"):
+        bus.ask(MISSION, MissionRequest(action="cancel"), ASK_TIMEOUT_S, robot=ROBOT)
+
+
+def _require_services(bus: Bus, endpoint: str) -> None:
+    if not wait_until(lambda: set(bus.alive()) >= NEEDED, JOIN_TIMEOUT_S, period_s=0.1):
+        missing = sorted(NEEDED - set(bus.alive()))
+        raise ExperimentError(f"no living {', '.join(missing)} at {endpoint}: see 'topnav status'")

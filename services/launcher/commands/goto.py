@@ -1,0 +1,67 @@
+"""`topnav goto`: drive to where a picture was taken."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from services.launcher.client.failure import ExperimentError, one_line_errors
+from services.launcher.client.map_client import require_map
+from services.launcher.client.mission import MissionClient
+from services.launcher.client.stack import StackChoice, open_stack
+from services.launcher.drawing.pictures import frame_from_file
+from services.launcher.evaluation.trail import driven_m
+from services.launcher.terminal import options
+from services.launcher.terminal.output import rounded, write_json
+from services.launcher.terminal.progress import mission_progress
+from services.launcher.terminal.tables import print_figures, wide_console
+from shared.messages import ExtractRequest, MissionRequest
+from shared.topics import EXTRACT
+
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+
+EXTRACT_TIMEOUT_S = 30.0
+
+
+@app.command()
+def main(
+    image: Annotated[Path, typer.Option(help="An equirectangular picture, twice as wide as high.")],
+    map_name: options.MapName = "flat",
+    world: options.World = "apartment",
+    seed: options.Seed = 1,
+    lockstep: options.Lockstep = None,
+    json_file: options.JsonFile = None,
+    profile: options.ProfileName = None,
+    pipeline: options.PipelineName = None,
+    max_steps: options.MaxSteps = 1500,
+    data_dir: options.DataDir = options.DATA_DIR,
+    endpoint: options.Endpoint = None,
+) -> None:
+    """Drive to where a picture was taken."""
+    choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
+    with one_line_errors(), open_stack(choice) as stack:
+        require_map(stack, map_name)
+        client = MissionClient(stack.bus, stack.robot)
+        frame = frame_from_file(image, stack.robot)
+        goal = stack.bus.ask(EXTRACT, ExtractRequest(frame=frame), EXTRACT_TIMEOUT_S)
+        request = MissionRequest(action="goto", map=map_name, goal=goal, seed=seed, max_steps=max_steps)
+        with mission_progress(wide_console(stderr=True), f"going to {image.name}") as watch:
+            run = client.run(request, watch)
+    report = {
+        "map": map_name,
+        "image": str(image),
+        "success": run.succeeded,
+        "failure": run.status.failure,
+        "reason": run.status.reason,
+        "steps": run.status.step,
+        "driven_m": rounded(driven_m(run.truths), 3),
+        "wall_s": rounded(run.wall_s, 2),
+        "steps_per_s": rounded(run.steps_per_s, 2),
+    }
+    if json_file is not None:
+        write_json(json_file, report)
+    print_figures(f"goto {image.name}", report)
+    if not run.succeeded:
+        raise ExperimentError(
+            f"did not arrive, {run.status.failure or run.status.state}: {run.status.reason}"
+        )

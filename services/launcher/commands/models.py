@@ -1,0 +1,89 @@
+"""`topnav models`: trained weights of the learned pipelines."""
+
+import os
+from typing import Annotated
+
+import typer
+
+from services.features.networks.cache import place_of, state_of
+from services.features.networks.catalogue import MODELS, TrainedModel, find_model
+from services.launcher.client.failure import ExperimentError
+from services.launcher.terminal.tables import print_rows, wide_console
+
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, no_args_is_help=True)
+Names = Annotated[list[str] | None, typer.Argument(help="Models; none: all that are there.")]
+
+
+@app.callback()
+def choose() -> None:
+    """Trained weights of the learned pipelines."""
+
+
+@app.command("list")
+def list_models() -> None:
+    """Every model: what needs it, its licence, its size, and whether it is here."""
+    rows = [
+        {
+            "model": model.name,
+            "used by": ", ".join(model.pipelines),
+            "licence": model.licence,
+            "MB": f"{model.size_bytes / 1e6:.1f}" if model.size_bytes else "?",
+            "here": state_of(model),
+            "origin": model.origin,
+        }
+        for model in MODELS
+    ]
+    print_rows("trained models", rows)
+    wide_console().print(f"files of kornia: {place_of(MODELS[0]).parent}")
+
+
+@app.command()
+def pull(
+    names: Annotated[list[str], typer.Argument(help="Models to load.")],
+    non_commercial: Annotated[
+        bool, typer.Option("--non-commercial", help="My use is non-commercial research.")
+    ] = False,
+) -> None:
+    """Download models through the libraries that own them, and check them."""
+    for model in _named(names):
+        if not model.commercial and not non_commercial:
+            raise ExperimentError(f"{model.name}: {model.licence}: give --non-commercial if that is your use")
+        _load(model)
+        _print_state(model)
+
+
+@app.command()
+def verify(names: Names = None) -> None:
+    """Compare what is here with its checksums; ends with 1 where a file is broken."""
+    here = [model for model in _named(names or []) or MODELS if names or state_of(model) != "absent"]
+    if not here:
+        raise ExperimentError("no model is here: 'topnav models pull NAME' brings one")
+    broken = [model.name for model in here if _print_state(model) == "broken"]
+    if broken:
+        raise ExperimentError(f"broken: {', '.join(broken)}; delete the files and pull them again")
+
+
+def _named(names: list[str]) -> list[TrainedModel]:
+    try:
+        return [find_model(name) for name in names]
+    except ValueError as error:
+        raise ExperimentError(str(error)) from None
+
+
+def _load(model: TrainedModel) -> None:
+    from services.features.networks.loaders import load
+    from services.features.networks.non_commercial import VARIABLE
+    from services.features.networks.runtime import WeightsError
+
+    if not model.commercial:
+        os.environ[VARIABLE] = "1"
+    try:
+        load(model)
+    except (WeightsError, ImportError) as error:
+        raise ExperimentError(str(error)) from error
+
+
+def _print_state(model: TrainedModel) -> str:
+    state = state_of(model)
+    wide_console().print(f"{model.name}: {state}, {place_of(model)}")
+    return state

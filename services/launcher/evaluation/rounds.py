@@ -1,0 +1,173 @@
+"""One round of hide and seek: a robot hides, the other gets its picture and looks for it."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from services.launcher.client.experimenter import Hand
+from services.launcher.client.failure import ExperimentError
+from services.launcher.client.map_client import read_map
+from services.launcher.client.mission import MissionClient, MissionRun, Watch
+from services.launcher.client.stack import Stack
+from services.launcher.evaluation.spl import spl
+from services.launcher.evaluation.trail import collisions, driven_m, manual_moves
+from services.launcher.terminal.output import rounded
+from shared.messages import ExtractRequest, MissionRequest
+from shared.messages.sensors import Frame
+from shared.messages.simulation import Pose, Truth
+from shared.topics import EXTRACT, FRAME
+from simulator.world.freespace import FreeSpace
+
+ARRIVED_M = 0.5
+MIN_APART_M = 1.5
+MARGIN_M = 0.05
+MAX_DRAWS = 1000
+EXTRACT_TIMEOUT_S = 30.0
+FRAME_TIMEOUT_S = 10.0
+
+
+@dataclass(frozen=True)
+class Round:
+    """A finished round.
+
+    Attributes:
+        start, hider: where the two robots stood when it began.
+        final: where the seeker really ended.
+        goal: the picture it was given.
+        shortest_m: length of the shortest collision-free way.
+        arrived_m: how near the hider counts as found.
+        edges_suspended: edges of the map that experience of this round put aside.
+    """
+
+    start: Pose
+    hider: Pose
+    final: Pose
+    goal: Frame
+    run: MissionRun
+    shortest_m: float
+    hand_moves: int
+    arrived_m: float = ARRIVED_M
+    edges_suspended: int = 0
+
+    @property
+    def distance_m(self) -> float:
+        """True distance left at the end."""
+        return math.hypot(self.final.x_m - self.hider.x_m, self.final.y_m - self.hider.y_m)
+
+    @property
+    def success(self) -> bool:
+        """The planner says that it arrived, and it is right."""
+        return self.run.succeeded and self.distance_m <= self.arrived_m
+
+    @property
+    def spl(self) -> float:
+        """Success weighted by path length."""
+        return spl(self.success, self.shortest_m, driven_m(self.run.truths))
+
+    def figures(self) -> dict[str, object]:
+        """One entry of "rounds"; the keys up to reason are fixed."""
+        status = self.run.status
+        failure = status.failure or ("" if self.success else "wrong_place")
+        return {
+            "success": self.success,
+            "final_distance_m": rounded(self.distance_m),
+            "spl": rounded(self.spl),
+            "steps": status.step,
+            "collisions": collisions(self.run.truths),
+            "reason": f"{failure}: {status.reason}" if failure else status.reason,
+            "failure": failure,
+            "manual_moves": max(self.hand_moves, manual_moves(self.run.truths)),
+            "shortest_m": rounded(self.shortest_m, 3),
+            "driven_m": rounded(driven_m(self.run.truths), 3),
+            "path_ratio": rounded(driven_m(self.run.truths) / self.shortest_m, 3),
+            "edges_suspended": self.edges_suspended,
+            "wall_s": rounded(self.run.wall_s, 2),
+            "start": _plain(self.start),
+            "hider": _plain(self.hider),
+            "final": _plain(self.final),
+        }
+
+
+def hiding_place(space: FreeSpace, seeker: Pose, rng: np.random.Generator) -> Pose:
+    """A random free pose at least MIN_APART_M of way from the seeker.
+
+    Raises:
+        ValueError: the free floor is too small for that.
+    """
+    for _ in range(MAX_DRAWS):
+        x_m, y_m, yaw_rad = space.random_pose(rng, MARGIN_M)
+        way_m = space.shortest_path_m((seeker.x_m, seeker.y_m), (x_m, y_m))
+        if MIN_APART_M <= way_m < math.inf:
+            return Pose(x_m=x_m, y_m=y_m, yaw_rad=yaw_rad)
+    raise ValueError(f"no free place at least {MIN_APART_M} m away from the seeker in {MAX_DRAWS} draws")
+
+
+class Game:
+    """Rounds in one stack; the seeker stays where the last one ended."""
+
+    def __init__(
+        self,
+        stack: Stack,
+        space: FreeSpace,
+        map_name: str,
+        rng: np.random.Generator,
+        arrived_m: float = ARRIVED_M,
+    ) -> None:
+        self._stack, self._space, self._map, self._rng = stack, space, map_name, rng
+        self._arrived_m = arrived_m
+        self.client, self.hand = MissionClient(stack.bus, stack.robot), Hand(stack.bus, stack.robot)
+
+    def begin(self, seed: int) -> Truth:
+        """Put the seeker at the world's start and wait until it sees something; returns the state there."""
+        truth = self.hand.reset(seed)
+        self.client.wait_for_frame(truth.stamp_ns)
+        return truth
+
+    def choose(self) -> tuple[Pose, Pose]:
+        """Where the seeker stands, and a random place to hide."""
+        start = self.hand.settled_truth().pose
+        return start, hiding_place(self._space, start, self._rng)
+
+    def hide(self, hider: Pose) -> Frame:
+        """Hide the other robot; returns its picture once the seeker may see it."""
+        picture = self.hand.place_hider(hider)
+        self.client.wait_for_frame(picture.stamp_ns)
+        return picture
+
+    def play(self, seed: int, max_steps: int, watch: Watch | None = None) -> Round:
+        """One round with a random place to hide."""
+        return self.seek(*self.choose(), seed, max_steps, watch)
+
+    def seek(self, start: Pose, hider: Pose, seed: int, max_steps: int, watch: Watch | None = None) -> Round:
+        """Hide, extract the picture's features, go there."""
+        picture, usable = self.hide(hider), self._usable_edges()
+        goal = self._stack.bus.ask(EXTRACT, ExtractRequest(frame=picture), EXTRACT_TIMEOUT_S)
+        moved = self.hand.moves
+        request = MissionRequest(action="goto", map=self._map, goal=goal, seed=seed, max_steps=max_steps)
+        run = self.client.run(request, watch)
+        played = self.finish(start, hider, picture, run, self.hand.moves - moved)
+        return replace(played, edges_suspended=max(0, usable - self._usable_edges()))
+
+    def _usable_edges(self) -> int:
+        found = read_map(self._stack, self._map)
+        return sum(not edge.suspended for edge in found.edges) if found is not None else 0
+
+    def view(self) -> Frame:
+        """What the seeker sees now."""
+        with self._stack.session() as own:
+            frame = own.bus.subscribe(FRAME, robot=own.robot).wait(FRAME_TIMEOUT_S)
+        if frame is None:
+            raise ExperimentError(f"no frame of {self._stack.robot} within {FRAME_TIMEOUT_S:.0f} s")
+        return frame
+
+    def finish(self, start: Pose, hider: Pose, goal: Frame, run: MissionRun, hand_moves: int) -> Round:
+        """Read where the seeker stands now."""
+        final = self.hand.settled_truth(run.last_seq).pose
+        self.client.collect()
+        shortest_m = self._space.shortest_path_m((start.x_m, start.y_m), (hider.x_m, hider.y_m))
+        return Round(start, hider, final, goal, run, shortest_m, hand_moves, self._arrived_m)
+
+
+def _plain(pose: Pose) -> dict[str, float]:
+    return {name: rounded(value) for name, value in pose.model_dump().items()}

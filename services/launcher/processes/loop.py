@@ -1,0 +1,96 @@
+"""The thread that steps every service runner, and stops all of them in the reverse of the start order."""
+
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+
+from services.launcher.processes.process import ChildProcess, stop_all
+from services.launcher.processes.runner import ServiceRunner, State
+from services.launcher.processes.state import ServiceStatus
+
+PERIOD_S = 0.05
+
+
+class SupervisorLoop:
+    """Steps the runners in one thread, which also starts every process (see ChildProcess for why).
+
+    Args:
+        runners: service name -> runner.
+        stages: start order; the first stage is what the others talk through.
+        changed: called in the loop's thread after any change, with the status of all services.
+    """
+
+    def __init__(
+        self,
+        runners: Mapping[str, ServiceRunner],
+        stages: Sequence[Sequence[str]],
+        changed: Callable[[Mapping[str, ServiceStatus]], None],
+    ) -> None:
+        self._runners, self._stages, self._changed = runners, stages, changed
+        self._stop = threading.Event()
+        # A daemon: should the main thread die without stopping us, the process ends and the kernel kills all.
+        self._thread = threading.Thread(target=self._run, name="supervisor", daemon=True)
+
+    def start(self) -> None:
+        """Start the thread."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop all services and wait for the end; harmless when it never started."""
+        self._stop.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    @property
+    def running(self) -> bool:
+        """Whether the loop still looks after the services."""
+        return self._thread.is_alive()
+
+    def status(self) -> dict[str, ServiceStatus]:
+        """Describe all services as of now."""
+        return {
+            name: ServiceStatus(state=r.state, pid=r.pid, restarts=r.restarts, last_exit=r.last_exit)
+            for name, r in self._runners.items()
+        }
+
+    def child(self, name: str) -> ChildProcess | None:
+        """Return the process of one service, None while it has none.
+
+        Raises:
+            KeyError: no such service; names those there are.
+        """
+        if name not in self._runners:
+            raise KeyError(f"no service {name!r}; there are {sorted(self._runners)}")
+        return self._runners[name].child
+
+    def _run(self) -> None:
+        last: dict[str, ServiceStatus] = {}
+        try:
+            while not self._stop.is_set():
+                self._step_all(time.monotonic())
+                now = self.status()
+                if now != last:
+                    self._changed(now)
+                    last = now
+                self._stop.wait(PERIOD_S)
+        finally:
+            self._stop_services()
+
+    def _step_all(self, now_s: float) -> None:
+        base = set(self._stages[0])
+        base_healthy = all(self._runners[name].state is State.HEALTHY for name in base)
+        for stage in self._stages:
+            for name in stage:
+                runner = self._runners[name]
+                ready = all(
+                    self._runners[other].satisfies(healthy) for other, healthy in runner.spec.needs.items()
+                )
+                runner.step(now_s, ready, watch_hung=base_healthy or name in base)
+
+    def _stop_services(self) -> None:
+        for stage in reversed(self._stages):
+            runners = [self._runners[name] for name in stage]
+            stop_all({runner.child: runner.spec.stop_grace_s for runner in runners if runner.child})
+            for runner in runners:
+                runner.child, runner.state = None, State.EXITED
+        self._changed(self.status())

@@ -1,0 +1,240 @@
+"""`Launcher`: the processes of docker-compose.yml on this machine, for the shell, experiments and tests.
+
+with Launcher(world="apartment", lockstep=True, seed=1, data_dir=folder) as stack:
+    stack.endpoint, stack.gateway_url
+    stack.kill("planner")
+    stack.wait_healthy("planner", timeout_s=5.0)
+"""
+
+import logging
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Collection, Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from services.launcher.processes.compose_file import COMPOSE_FILE, load_compose
+from services.launcher.processes.health import AlwaysReady, CommandHealth, Health, Liveliness
+from services.launcher.processes.local import LocalMachine, ProcessSpec, certificate_folder, local_process
+from services.launcher.processes.loop import SupervisorLoop
+from services.launcher.processes.plan import active_services, start_stages
+from services.launcher.processes.preparing import OPERATOR, prepare
+from services.launcher.processes.process import ChildProcess
+from services.launcher.processes.restart import RestartPolicy
+from services.launcher.processes.runner import ServiceRunner, State
+from services.launcher.processes.stack_settings import HOST, Ports, StackSettings
+from services.launcher.processes.state import ServiceStatus, StackState, StateFolder
+from services.launcher.processes.wait import LaunchError, require_healthy
+from shared.access.credentials import secured_url
+from shared.access.rules import robot_names
+
+log = logging.getLogger(__name__)
+
+
+class Launcher:
+    """A running stack. As a context manager it starts everything, waits until all is healthy, and stops all.
+
+    Args:
+        data_dir: maps, logs and state live here; one stack per folder.
+        world, lockstep, seed, profile: see StackSettings; None leaves the Compose file's default.
+        ports: default: free ones, so that stacks run side by side.
+        environment: set in every service last of all.
+        secure: certificates, mTLS and access rules on the bus.
+        only: run these services and what they depend on.
+        variables: what the Compose file interpolates; default: this process's environment.
+        compose_file: which processes there are.
+        timeout_s: how long the start may take.
+        policy: back-off of restarts.
+        watch: called from another thread with every change of status.
+    """
+
+    def __init__(
+        self,
+        data_dir: Path | str,
+        world: str | None = None,
+        lockstep: bool | None = None,
+        seed: int | None = None,
+        profile: str | None = None,
+        ports: Ports | None = None,
+        environment: Mapping[str, str] | None = None,
+        only: Collection[str] | None = None,
+        variables: Mapping[str, str] | None = None,
+        compose_file: Path = COMPOSE_FILE,
+        timeout_s: float = 120.0,
+        policy: RestartPolicy | None = None,
+        watch: Callable[[Mapping[str, ServiceStatus]], None] | None = None,
+        secure: bool = False,
+    ) -> None:
+        folder = Path(data_dir).resolve()
+        self.settings = StackSettings(
+            folder, world, lockstep, seed, profile, ports or Ports.free(), dict(environment or {}), secure
+        )
+        self._root, self._timeout_s, self._watch = compose_file.resolve().parent, timeout_s, watch
+        self._policy = policy or RestartPolicy()
+        self._state = StateFolder(folder)
+        self._started = ""
+        self._liveliness = Liveliness()
+        specs = self._specs(compose_file, variables, only)
+        self._healths = [self._health(spec) for spec in specs]
+        runners = {
+            spec.name: ServiceRunner(spec, health, self._spawn, self._policy)
+            for spec, health in zip(specs, self._healths, strict=True)
+        }
+        self._uses_bus = any(spec.alive_as for spec in specs)
+        self._loop = SupervisorLoop(runners, self._stages, self._changed)
+
+    @property
+    def endpoint(self) -> str:
+        """Zenoh endpoint of the router."""
+        return self.settings.endpoint
+
+    @property
+    def certs(self) -> Path | None:
+        """Certificate of the shell on a secured stack, None on an open one."""
+        folder = certificate_folder(self.settings.certs, OPERATOR)
+        return Path(folder) if folder else None
+
+    @property
+    def gateway_url(self) -> str:
+        """Base URL of the gateway."""
+        return f"http://{HOST}:{self.settings.ports.gateway}"
+
+    @property
+    def map_store_url(self) -> str:
+        """Base URL of the map store."""
+        url = f"http://{HOST}:{self.settings.ports.map_store}"
+        return secured_url(url) if self.settings.secure else url
+
+    @property
+    def logs(self) -> Path:
+        """Folder with one log file per service."""
+        return self._state.logs
+
+    def start(self, wait: bool = True) -> None:
+        """Start everything and wait until all is healthy.
+
+        Raises:
+            AlreadyRunningError: the data folder belongs to a running stack.
+            LaunchError: a service keeps crashing or is not healthy in time; everything is stopped again.
+            CertificatesError: a certificate has expired or does not fit.
+        """
+        self._state.acquire()
+        self._started = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
+        try:
+            if self.settings.certs:
+                prepare(self.settings.certs, self._robots)
+            self._loop.start()
+            if self._uses_bus:
+                self._liveliness.open(self.endpoint, self.certs)
+            if wait:
+                self.wait_all_healthy(self._timeout_s)
+        except BaseException:
+            self.stop()
+            raise
+
+    def stop(self) -> None:
+        """Stop all services in the reverse of the start order."""
+        self._loop.stop()
+        self._liveliness.close()
+        for health in self._healths:
+            health.close()
+        self._state.release()
+
+    def __enter__(self) -> Self:
+        """Start."""
+        self.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Stop."""
+        self.stop()
+
+    def status(self) -> dict[str, ServiceStatus]:
+        """Describe every service as of now."""
+        return self._loop.status()
+
+    def pid(self, service: str) -> int | None:
+        """Return the process id of a service, None while it is down."""
+        child = self._loop.child(service)
+        return child.pid if child else None
+
+    def kill(self, service: str, number: signal.Signals = signal.SIGKILL) -> int:
+        """Send a signal to a service's process group; returns its pid.
+
+        Raises:
+            LaunchError: it is not running.
+        """
+        child = self._loop.child(service)
+        if child is None:
+            raise LaunchError(f"{service} is not running, it is {self.status()[service].state.value}")
+        child.send(number)
+        return child.pid
+
+    def wait_healthy(self, service: str, timeout_s: float, other_than: int | None = None) -> None:
+        """Wait until a service is healthy, with another pid than `other_than` when given.
+
+        Raises:
+            LaunchError: not in time; says the state and the last log line.
+        """
+        require_healthy(self.status, [service], timeout_s, self.logs, other_than)
+
+    def wait_all_healthy(self, timeout_s: float, stop: threading.Event | None = None) -> None:
+        """Wait until every service is healthy or `stop` is set.
+
+        Raises:
+            LaunchError: not in time; at once for a service that keeps ending.
+        """
+        require_healthy(self.status, list(self.status()), timeout_s, self.logs, stop=stop)
+
+    def _specs(
+        self, compose_file: Path, variables: Mapping[str, str] | None, only: Collection[str] | None
+    ) -> list[ProcessSpec]:
+        given = self.settings.variables(variables)
+        self._robots = robot_names(given)
+        compose = load_compose(compose_file, given)
+        services = active_services(compose.services, only=only)
+        self._stages = start_stages(services)
+        machine = LocalMachine(sys.executable, self.settings.data_dir, self.settings.certs)
+        return [local_process(name, service, compose.services, machine) for name, service in services.items()]
+
+    def _health(self, spec: ProcessSpec) -> Health:
+        if spec.alive_as:
+            return self._liveliness.of(spec.alive_as)
+        if spec.check:
+            return CommandHealth(spec.check, self._environment(spec), self._root, spec.check_interval_s)
+        return AlwaysReady()
+
+    def _environment(self, spec: ProcessSpec) -> dict[str, str]:
+        return {**os.environ, **spec.environment, **self.settings.environment, "PYTHONPATH": str(self._root)}
+
+    def _spawn(self, spec: ProcessSpec) -> ChildProcess:
+        for folder in spec.data_folders:
+            folder.mkdir(parents=True, exist_ok=True)
+        return ChildProcess(
+            spec.command, self._environment(spec), self.logs / f"{spec.name}.jsonl", self._root
+        )
+
+    def _changed(self, services: Mapping[str, ServiceStatus]) -> None:
+        self._state.write(
+            StackState(
+                launcher_pid=os.getpid(),
+                started=self._started,
+                endpoint=self.endpoint,
+                gateway_url=self.gateway_url,
+                map_store_url=self.map_store_url,
+                logs=str(self.logs),
+                certs=str(self.certs) if self.certs else None,
+                services=dict(services),
+            )
+        )
+        if self._watch:
+            self._watch(services)
+
+
+__all__ = ["LaunchError", "Launcher", "Ports", "State"]

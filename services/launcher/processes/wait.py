@@ -1,0 +1,57 @@
+"""Waiting for services, and one clear line when it was in vain."""
+
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from services.launcher.processes.runner import State
+from services.launcher.processes.state import ServiceStatus
+
+PERIOD_S = 0.02
+
+
+class LaunchError(RuntimeError):
+    """The stack is not as it should be."""
+
+
+class KeepsEndingError(LaunchError):
+    """A service ends again and again: waiting longer is of no use."""
+
+
+def require_healthy(
+    status: Callable[[], Mapping[str, ServiceStatus]],
+    names: Sequence[str],
+    timeout_s: float,
+    logs: Path,
+    other_than: int | None = None,
+    stop: threading.Event | None = None,
+) -> None:
+    """Wait until all of `names` are healthy (with a pid other than `other_than`), or `stop` is set.
+
+    Raises:
+        KeepsEndingError: one has crashed for good or keeps crashing.
+        LaunchError: the time is up.
+    """
+    deadline_s = time.monotonic() + timeout_s
+    while True:
+        now = status()
+        waiting = [n for n in names if now[n].state is not State.HEALTHY or now[n].pid == other_than]
+        if not waiting or (stop and stop.is_set()):
+            return
+        crashed = [n for n in waiting if now[n].state in (State.DEGRADED, State.EXITED)]
+        if crashed and other_than is None:
+            raise KeepsEndingError(
+                f"{crashed[0]} keeps ending (exit {now[crashed[0]].last_exit}): {hint(crashed[0], logs)}"
+            )
+        if time.monotonic() > deadline_s:
+            states = ", ".join(f"{name} {now[name].state.value}" for name in waiting)
+            raise LaunchError(f"not healthy after {timeout_s:.0f} s: {states}; {hint(waiting[0], logs)}")
+        time.sleep(PERIOD_S)
+
+
+def hint(service: str, logs: Path) -> str:
+    """Return the last line of a service's log, and where to read on."""
+    path = logs / f"{service}.jsonl"
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines() if path.exists() else []
+    return f"{lines[-1][:300] if lines else 'its log is empty'} (see {path})"

@@ -1,0 +1,49 @@
+"""What a person sees while a mission runs: steps, rate, places, similarity, reason of the last decision."""
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+from services.launcher.client.mission import Watch
+from shared.messages import MissionStatus
+
+LINE_PERIOD_S = 20.0
+
+
+@contextmanager
+def mission_progress(console: Console, title: str) -> Iterator[Watch]:
+    """A live line on a terminal, a plain line every 20 s elsewhere."""
+    start_s = time.monotonic()
+    if not console.is_terminal:
+        yield _plain_lines(console, title, start_s)
+        return
+    columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    with Progress(*columns, console=console, transient=True) as progress:
+        task = progress.add_task(title)
+        yield lambda status: progress.update(task, description=f"{title}: {describe(status, start_s)}")
+
+
+def _plain_lines(console: Console, title: str, start_s: float) -> Watch:
+    last_s = [start_s]
+
+    def watch(status: MissionStatus) -> None:
+        now_s = time.monotonic()
+        if now_s - last_s[0] >= LINE_PERIOD_S:
+            last_s[0] = now_s
+            console.print(f"{title}: {describe(status, start_s)}", highlight=False)
+
+    return watch
+
+
+def describe(status: MissionStatus, start_s: float) -> str:
+    """One line about a running mission."""
+    rate = status.step / max(time.monotonic() - start_s, 1e-9)
+    place = f", via {status.via_index + 1}/{len(status.via_points)}" if status.via_points else ""
+    frontiers = f", {status.open_directions} open" if status.action == "explore" else ""
+    return (
+        f"step {status.step}, {rate:.1f} steps/s, {status.nodes} nodes, {status.edges} edges"
+        f"{frontiers}{place}, S {status.similarity}: {status.reason[:60]}"
+    )

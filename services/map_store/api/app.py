@@ -1,0 +1,81 @@
+"""REST over the same store: `create_app(store)`. The schema is at /openapi.json, a page at /docs."""
+
+from collections.abc import Callable, Collection
+
+from fastapi import APIRouter, Depends, FastAPI
+
+from services.map_store.api import (
+    archive_routes,
+    care_routes,
+    graph_routes,
+    history_routes,
+    map_routes,
+    problems,
+)
+from services.map_store.api.body_limit import BodyLimit
+from services.map_store.api.guard import reader_guard, writer_guard
+from services.map_store.api.schemas import Health
+from services.map_store.errors import UnavailableError
+from services.map_store.store import MapStore
+from shared.web.openapi import describing_problems
+
+VERSION = "1"
+MAX_BODY_BYTES = 100_000
+"""Of every request but an import."""
+
+DESCRIPTION = "Maps of places: their nodes, edges, pictures and history. Errors are RFC 9457 problems."
+
+
+def create_app(
+    store: MapStore,
+    token: str = "",
+    max_archive_bytes: int = 4_000_000_000,
+    ready: Callable[[], bool] = lambda: True,
+    names: Collection[str] | None = None,
+    guard_reading: bool = False,
+) -> FastAPI:
+    """Build the application.
+
+    Args:
+        store: the maps.
+        token: bearer token that writes need; empty = none.
+        max_archive_bytes: largest archive to import.
+        ready: whether the bus side answers too.
+        names: what Host may say; None = anything.
+        guard_reading: reading needs the token as well.
+    """
+    app = FastAPI(title="topnav map store", version=VERSION, description=DESCRIPTION)
+    app.add_middleware(BodyLimit, most=MAX_BODY_BYTES, exceptions={"/maps/import": max_archive_bytes})
+    problems.install(app)
+    write = [Depends(writer_guard(token))]
+    read = [Depends(reader_guard(token if guard_reading else "", names))]
+    for router in (
+        map_routes.build(store, write),
+        history_routes.build(store, write),
+        graph_routes.build(store, write),
+        care_routes.build(store, write),
+        archive_routes.build(store, write, max_archive_bytes),
+    ):
+        app.include_router(router, dependencies=read)
+    app.include_router(_health(store, ready))
+    app.openapi = describing_problems(app.openapi)  # type: ignore[method-assign]
+    return app
+
+
+def _health(store: MapStore, ready: Callable[[], bool]) -> APIRouter:
+    router = APIRouter(tags=["health"])
+
+    @router.get("/healthz")
+    def healthz() -> Health:
+        """The process lives."""
+        return Health(status="alive")
+
+    @router.get("/readyz")
+    def readyz() -> Health:
+        """The database answers and questions on the bus are taken."""
+        if not ready():
+            raise UnavailableError("the bus side has not started")
+        store.summaries()
+        return Health(status="ready")
+
+    return router

@@ -1,0 +1,93 @@
+"""Two revisions of a map beside one another: older graphs rebuilt from newer ones, and what differs. Pure."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from itertools import chain
+from typing import TypeVar
+
+from services.map_store.errors import ConflictError, CorruptError, InvalidError, MissingError
+from services.map_store.storage.graph import Graph, Key, Step, apply
+from shared.messages.maps import Edge
+
+K = TypeVar("K", int, Key)
+V = TypeVar("V")
+Value = bool | int | float | str | None
+"""What a field of an edge holds."""
+
+
+@dataclass(frozen=True)
+class EdgeChange:
+    """An edge that both revisions have; `before` and `after` hold the fields that differ, by name."""
+
+    a: int
+    b: int
+    before: Mapping[str, Value]
+    after: Mapping[str, Value]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What leads from one graph to the other, everything in ascending order.
+
+    Attributes:
+        nodes_changed: nodes of both with another record, other features or another thumbnail.
+        edges_changed: edges of both with another record.
+    """
+
+    nodes_added: tuple[int, ...]
+    nodes_removed: tuple[int, ...]
+    nodes_changed: tuple[int, ...]
+    edges_added: tuple[Key, ...]
+    edges_removed: tuple[Key, ...]
+    edges_changed: tuple[EdgeChange, ...]
+
+
+def rewind(graph: Graph, inverses: Iterable[Iterable[Step]]) -> Graph:
+    """The graph before some revisions.
+
+    Args:
+        graph: after the newest of them.
+        inverses: the steps that lead back over each revision, newest revision first.
+
+    Raises:
+        CorruptError: they do not belong to `graph`.
+    """
+    try:
+        return apply(graph, chain.from_iterable(inverses)).graph
+    except (MissingError, ConflictError, InvalidError) as error:
+        raise CorruptError(f"the history does not fit the graph: {error}") from error
+
+
+def compare(before: Graph, after: Graph) -> Comparison:
+    """What is in `after` and not in `before`, what is gone, and what both have in different forms."""
+    nodes_added, nodes_removed, nodes_changed = _differences(before.places, after.places)
+    edges_added, edges_removed, edges_changed = _differences(before.edges, after.edges)
+    return Comparison(
+        nodes_added=nodes_added,
+        nodes_removed=nodes_removed,
+        nodes_changed=nodes_changed,
+        edges_added=edges_added,
+        edges_removed=edges_removed,
+        edges_changed=tuple(_edge_change(before.edges[key], after.edges[key]) for key in edges_changed),
+    )
+
+
+def _differences(
+    before: Mapping[K, V], after: Mapping[K, V]
+) -> tuple[tuple[K, ...], tuple[K, ...], tuple[K, ...]]:
+    """Keys added, removed and changed."""
+    both = before.keys() & after.keys()
+    # Most values are the very same object in both: rewinding replaces only what a step touched.
+    changed = (key for key in both if before[key] is not after[key] and before[key] != after[key])
+    return tuple(sorted(after.keys() - both)), tuple(sorted(before.keys() - both)), tuple(sorted(changed))
+
+
+def _edge_change(before: Edge, after: Edge) -> EdgeChange:
+    old, new = before.model_dump(), after.model_dump()
+    fields = [name for name in old if old[name] != new[name]]
+    return EdgeChange(
+        a=before.a,
+        b=before.b,
+        before={name: old[name] for name in fields},
+        after={name: new[name] for name in fields},
+    )

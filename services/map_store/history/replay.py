@@ -1,0 +1,75 @@
+"""The graph once more, out of the history alone: what damaged rows are mended from."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from sqlalchemy import Connection, func, select
+
+from services.map_store.errors import CorruptError, GivenUpError, MapError
+from services.map_store.history import revisions as history
+from services.map_store.storage.graph import AddPlace, Graph, Key, Step, apply
+from services.map_store.storage.tables import revisions
+from shared.messages.maps import PutEdge, UpdateNode
+
+
+@dataclass(frozen=True)
+class Replay:
+    """What the history of a map tells.
+
+    Attributes:
+        newest: number of its newest revision.
+        damaged: revisions whose operations cannot be read, with the reason; not those given up.
+        graph: what all operations lead to; None when some are damaged or given up.
+        written: the revision that wrote each node and edge last, by number or by pair of numbers.
+        blobs: checksums that the readable operations name.
+    """
+
+    newest: int
+    damaged: Mapping[int, str]
+    graph: Graph | None
+    written: Mapping[int | Key, int]
+    blobs: frozenset[str]
+
+
+def replay(connection: Connection, map_id: int, at_least: int = 0) -> Replay:
+    """Read all operations of a map; entries up to revision `at_least` must be there."""
+    last = connection.execute(select(func.max(revisions.c.revision)).where(revisions.c.map_id == map_id))
+    newest = max(last.scalar() or 0, at_least)
+    done: list[Step] = []
+    whole = True
+    damaged: dict[int, str] = {}
+    written: dict[int | Key, int] = {}
+    for number in range(1, newest + 1):
+        try:
+            steps = history.steps_of(connection, map_id, number, inverse=False)
+        except CorruptError as error:
+            whole = False
+            if not isinstance(error, GivenUpError):
+                damaged[number] = str(error).removeprefix(f"revision {number}: ")
+            continue
+        done += steps
+        written |= {_place(step): number for step in steps}
+    named = {name for step in done if isinstance(step, AddPlace) for name in _blobs(step)}
+    return Replay(newest, damaged, _applied(done) if whole else None, written, frozenset(named))
+
+
+def _applied(steps: list[Step]) -> Graph | None:
+    try:
+        return apply(Graph(), steps).graph
+    except MapError:
+        return None
+
+
+def _place(step: Step) -> int | Key:
+    match step:
+        case AddPlace(place=place):
+            return place.node.node_id
+        case UpdateNode(node=node):
+            return node.node_id
+        case PutEdge(edge=edge):
+            return edge.a, edge.b
+    return step.node_id if step.op == "delete_node" else (step.a, step.b)
+
+
+def _blobs(step: AddPlace) -> list[str]:
+    return [name for name in (step.place.features, step.place.thumbnail) if name]

@@ -1,0 +1,126 @@
+"""Revisions of a map: what was done, by whom, and which one an undo takes back."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from sqlalchemy import Connection, Row, Select, delete, insert, select
+
+from services.map_store.errors import CorruptError, MissingError
+from services.map_store.history.summaries import Summaries
+from services.map_store.integrity.seals import intact, sealed
+from services.map_store.storage.catalogue import MapRecord
+from services.map_store.storage.graph import Change, Step
+from services.map_store.storage.rows import pack_history, pack_lost, unpack_steps
+from services.map_store.storage.tables import revisions
+
+
+@dataclass(frozen=True)
+class Revision:
+    """One entry of a map's history.
+
+    Attributes:
+        steps: how many it had.
+        undoes: the revision it took back.
+        summary: what it did, in words; made from its steps when the history is listed.
+    """
+
+    revision: int
+    author: str
+    stamp_ns: int
+    steps: int
+    undoes: int | None
+    summary: str = ""
+
+
+def record(
+    connection: Connection, map_id: int, entry: Revision, steps: tuple[Step, ...], change: Change
+) -> None:
+    """Write one revision with the steps that led to it and those that lead back."""
+    content, sha256 = pack_history(steps, change.inverse)
+    values = {
+        "map_id": map_id,
+        "revision": entry.revision,
+        "author": entry.author,
+        "stamp_ns": entry.stamp_ns,
+        "undoes": entry.undoes,
+        "steps": entry.steps,
+        "sha256": sha256,
+    }
+    connection.execute(insert(revisions).values({**sealed(revisions, values), "content": content}))
+
+
+def entries(
+    connection: Connection, found: MapRecord, before: int, limit: int, summaries: Summaries
+) -> list[Revision]:
+    """Up to `limit` revisions older than `before`, newest first; a damaged one says so in its summary."""
+    newest = min(found.revision, before - 1)
+    oldest = max(1, newest - limit + 1)
+    query = _headers(found.map_id).where(revisions.c.revision.between(oldest, newest))
+    rows = {row.revision: row for row in connection.execute(query)}
+    listed = []
+    for number in range(newest, oldest - 1, -1):
+        row = rows.get(number)
+        if row is None or not intact(revisions, row):
+            listed.append(Revision(number, "", 0, 0, None, f"unreadable: {_lacks(row)}"))
+            continue
+        said = summaries.of(connection, found.map_id, number, row.sha256)
+        listed.append(Revision(number, row.author, row.stamp_ns, row.steps, row.undoes, said))
+    return listed
+
+
+def last_standing(connection: Connection, found: MapRecord) -> int:
+    """The newest revision that is neither an undo nor undone: calling undo twice goes back two.
+
+    Everything after it is undone, so its inverse fits the graph as it is now. A damaged entry ends the
+    search: it may be an undo, and of which revision is not known.
+    """
+    rows = iter(connection.execute(_headers(found.map_id).order_by(revisions.c.revision.desc())).all())
+    undone: set[int] = set()
+    for number in range(found.revision, 0, -1):
+        row = next(rows, None)
+        if row is None or row.revision != number or not intact(revisions, row):
+            raise CorruptError(f"revision {number}: {_lacks(row)}; what is older cannot be undone")
+        if row.undoes is not None:
+            undone.add(row.undoes)
+        elif number not in undone:
+            return number
+    raise MissingError("nothing left to undo")
+
+
+def steps_of(connection: Connection, map_id: int, revision: int, inverse: bool) -> tuple[Step, ...]:
+    """The steps of one revision, or those that lead back over it; CorruptError when they are damaged."""
+    query = select(revisions).where(revisions.c.map_id == map_id, revisions.c.revision == revision)
+    row = connection.execute(query).first()
+    if row is None or not intact(revisions, row):
+        raise CorruptError(f"revision {revision}: {_lacks(row)}")
+    try:
+        return unpack_steps(row.content, row.sha256, inverse)
+    except CorruptError as error:
+        raise type(error)(f"revision {revision}: {error}") from None
+
+
+def inverses(connection: Connection, map_id: int, newer: int, older: int) -> Iterator[tuple[Step, ...]]:
+    """The ways back over all revisions from `newer` to the one after `older`, each read when it is needed."""
+    numbers = range(newer, older, -1)
+    return (steps_of(connection, map_id, number, inverse=True) for number in numbers)
+
+
+def give_up(connection: Connection, map_id: int, revision: int, now_ns: int) -> None:
+    """Put an entry that says so in the place of one that is damaged."""
+    same = revisions.c.map_id == map_id, revisions.c.revision == revision
+    connection.execute(delete(revisions).where(*same))
+    content, sha256 = pack_lost()
+    values = {"map_id": map_id, "revision": revision, "author": "", "stamp_ns": now_ns, "undoes": None}
+    row = sealed(revisions, {**values, "steps": 0, "sha256": sha256})
+    connection.execute(insert(revisions).values({**row, "content": content}))
+
+
+def _headers(map_id: int) -> Select[Any]:
+    """All of a map's entries without their steps."""
+    kept = [column for column in revisions.columns if column.name != "content"]
+    return select(*kept).where(revisions.c.map_id == map_id)
+
+
+def _lacks(row: Row[Any] | None) -> str:
+    return "its record is missing" if row is None else "its record does not match its checksum"

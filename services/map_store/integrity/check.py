@@ -1,0 +1,117 @@
+"""Looking for damage: every row, every blob and the file itself are read and held against checksums."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from sqlalchemy import Connection, select
+
+from services.map_store.errors import CorruptError
+from services.map_store.history.replay import Replay, replay
+from services.map_store.integrity import file_seal, losses
+from services.map_store.integrity.seals import intact
+from services.map_store.storage import answers, blobs, catalogue
+from services.map_store.storage.catalogue import MapRecord
+from services.map_store.storage.database import Database
+from services.map_store.storage.missions import sound
+from services.map_store.storage.rows import parse_edge, parse_node
+from services.map_store.storage.tables import edges, missions, nodes
+
+Finding = tuple[str, str]
+"""The damaged thing and the reason."""
+
+
+@dataclass(frozen=True)
+class Damage:
+    """One damaged thing; `map` is "" for what belongs to no map."""
+
+    map: str
+    thing: str
+    reason: str
+
+
+def check(database: Database, name: str | None = None) -> list[Damage]:
+    """Everything that is damaged, or all of it in one map; MissingError when there is no such map."""
+    found = check_contents(database, name)
+    return [*found, Damage("", "file", file_seal.TOLD)] if database.changed else found
+
+
+def check_contents(database: Database, name: str | None = None) -> list[Damage]:
+    """As `check`, without changed bytes in parts of the file where nothing is kept."""
+    found = [Damage("", "file", line) for line in database.inspect()]
+    try:
+        found += [Damage("", "file", line) for line in database.dangling()]
+        with database.read() as connection:
+            names = [catalogue.label(row) for row in catalogue.rows(connection)]
+            if name is None:
+                found += [Damage("", *finding) for finding in _missions(connection)]
+                found += [Damage("", *finding) for finding in _answers(connection)]
+    except CorruptError as error:
+        return [*found, Damage("", "file", str(error))]
+    for each in names if name is None else [name]:
+        found += _check_map(database, each)
+    return found
+
+
+def rows(connection: Connection, found: MapRecord) -> Iterator[Finding]:
+    """Nodes and edges whose rows do not match their seals, then how many are missing or too many."""
+    counts = []
+    for table, parse in ((nodes, parse_node), (edges, parse_edge)):
+        stored = connection.execute(select(table).where(table.c.map_id == found.map_id)).all()
+        counts.append(len(stored))
+        for row in stored:
+            try:
+                parse(row)
+            except CorruptError as error:
+                thing, _, reason = str(error).partition(": ")
+                yield thing, reason
+    if counts != [found.node_count, found.edge_count]:
+        told = f"{found.node_count} nodes and {found.edge_count} edges expected"
+        yield "graph", f"{told}, got {counts[0]} and {counts[1]}"
+
+
+def past(told: Replay, revision: int) -> Iterator[Finding]:
+    """Entries of the history that cannot be read and were not given up, and entries too many."""
+    yield from ((f"revision {number}", reason) for number, reason in told.damaged.items())
+    if told.newest != revision:
+        yield "history", f"{revision} revisions expected, got {told.newest}"
+
+
+def _check_map(database: Database, name: str) -> list[Damage]:
+    try:
+        with database.read() as connection:
+            found = catalogue.find(connection, name)
+            findings = list(rows(connection, found))
+            findings += past(replay(connection, found.map_id, found.revision), found.revision)
+            findings += _contents(connection, found)
+    except CorruptError as error:
+        return [Damage(name, "map", str(error))]
+    return [Damage(name, *finding) for finding in findings]
+
+
+def _contents(connection: Connection, found: MapRecord) -> Iterator[Finding]:
+    """Features and thumbnails: of a node when it has one, else of the past that an undo may bring back."""
+    used: dict[str, list[str]] = {}
+    for row in connection.execute(select(nodes).where(nodes.c.map_id == found.map_id)).all():
+        if not intact(nodes, row):  # told already, and nobody knows what it refers to
+            continue
+        used.setdefault(row.features, []).append(f"features of node {row.node_id}")
+        if row.thumbnail is not None:
+            used.setdefault(row.thumbnail, []).append(f"thumbnail of node {row.node_id}")
+    for name, reason in losses.unreadable(connection, found.map_id, used).items():
+        things = used.get(
+            name, [] if losses.given_up(connection, name) else ["picture of a node that is gone"]
+        )
+        yield from ((thing, reason) for thing in things)
+    for name in blobs.wrong_sizes(connection, found.map_id):
+        yield f"blob {name!s:.12}", "its size is recorded wrongly"
+
+
+def _missions(connection: Connection) -> Iterator[Finding]:
+    for row in connection.execute(select(missions)).all():
+        if not sound(row):
+            yield f"mission of {row.robot!r}", "its record does not match its checksum"
+
+
+def _answers(connection: Connection) -> Iterator[Finding]:
+    for number in answers.damaged(connection):
+        yield f"answer {number}", "its record does not match its checksum"

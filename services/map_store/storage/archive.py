@@ -1,0 +1,157 @@
+"""A map as one file: a zip of `map.json` and `blobs/<sha256>`; the same map gives the same bytes."""
+
+import zipfile
+import zlib
+from collections.abc import Callable
+from typing import IO, Literal
+
+from pydantic import Field, ValidationError
+
+from services.map_store.errors import CorruptError, InvalidError, MapError
+from services.map_store.storage.blobs import checksum, unpack_features
+from services.map_store.storage.contents import Kind
+from services.map_store.storage.graph import AddPlace, Graph, Place, Step, apply
+from services.map_store.storage.zip_opening import open_zip
+from shared.messages.base import Name, Part
+from shared.messages.maps import Edge, PutEdge
+from shared.wire import MAX_CONTAINER
+
+INDEX = "map.json"
+BLOBS = "blobs/"
+MAX_INDEX_BYTES = 64_000_000
+MAX_BLOB_BYTES = 64_000_000
+MAX_DIRECTORY_BYTES = 10_000_000
+"""Twice what a map with as many places as the bus carries needs for their two blobs each."""
+EPOCH = (1980, 1, 1, 0, 0, 0)
+"""Time stamp of every entry: the earliest a zip can hold."""
+
+
+class Index(Part):
+    """`map.json`: the graph and the checksums of its blobs."""
+
+    format: Literal["topnav-map.v1"] = "topnav-map.v1"
+    name: Name
+    revision: int = Field(ge=0)
+    places: tuple[Place, ...] = Field(max_length=MAX_CONTAINER)
+    edges: tuple[Edge, ...] = Field(max_length=MAX_CONTAINER)
+
+
+def write_archive(
+    file: IO[bytes], name: str, revision: int, graph: Graph, read_blob: Callable[[Place, Kind], bytes]
+) -> None:
+    """Write one map; `read_blob(place, kind)` gives the bytes of its "features" or "thumbnail"."""
+    places = tuple(graph.places[node_id] for node_id in sorted(graph.places))
+    links = tuple(graph.edges[key] for key in sorted(graph.edges))
+    index = Index(name=name, revision=revision, places=places, edges=links)
+    owners: dict[str, tuple[Place, Kind]] = {place.features: (place, "features") for place in places}
+    owners |= {place.thumbnail: (place, "thumbnail") for place in places if place.thumbnail}
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
+        _write(archive, INDEX, index.model_dump_json(indent=1).encode())
+        for sha256 in sorted(owners):
+            _write(archive, BLOBS + sha256, read_blob(*owners[sha256]))
+
+
+def _write(archive: zipfile.ZipFile, name: str, data: bytes) -> None:
+    entry = zipfile.ZipInfo(name, EPOCH)
+    entry.create_system, entry.external_attr = 3, 0o644 << 16  # as on Unix, wherever it is written
+    archive.writestr(entry, data)
+
+
+class Archive:
+    """An archive that was checked as a whole: its graph is valid and all its blobs are there and intact.
+
+    Args:
+        file: the zip, open for reading as long as this object is used.
+        max_bytes: most bytes all entries may have together when unpacked.
+
+    Raises:
+        InvalidError: it is not such an archive; the text names what is wrong.
+    """
+
+    def __init__(self, file: IO[bytes], max_bytes: int) -> None:
+        self._zip = open_zip(file, MAX_DIRECTORY_BYTES)
+        self._check_entries(max_bytes)
+        self.index = self._read_index()
+        self.steps = self._check_graph()
+        self._check_blobs()
+
+    def blob(self, sha256: str) -> bytes:
+        """Bytes of one blob."""
+        data = self._read(BLOBS + sha256, MAX_BLOB_BYTES)
+        if checksum(data) != sha256:
+            raise InvalidError(f"{BLOBS}{sha256[:12]}: does not match its checksum")
+        return data
+
+    def _check_entries(self, max_bytes: int) -> None:
+        entries = self._zip.infolist()
+        names = {entry.filename for entry in entries}
+        if len(names) != len(entries) or INDEX not in names:
+            raise InvalidError(f"archive must hold {INDEX} and every entry once, got {len(entries)} entries")
+        for entry in entries:
+            if entry.filename != INDEX and not _is_blob_name(entry.filename):
+                raise InvalidError(f"entry must be {INDEX} or {BLOBS}<sha256>, got {entry.filename[:80]!r}")
+            if entry.flag_bits & 1 or entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+                raise InvalidError(f"{entry.filename}: encrypted or packed in an unknown way")
+        total = sum(entry.file_size for entry in entries)
+        if total > max_bytes:
+            raise InvalidError(f"archive must unpack to at most {max_bytes} bytes, got {total}")
+
+    def _read(self, name: str, max_bytes: int) -> bytes:
+        try:
+            # A header may lie about the size: read one byte more than allowed, never all there is.
+            with self._zip.open(name) as entry:
+                data = entry.read(max_bytes + 1)
+        except (
+            zipfile.BadZipFile,
+            OSError,
+            EOFError,
+            KeyError,
+            ValueError,
+            RuntimeError,
+            zlib.error,
+        ) as error:
+            raise InvalidError(f"{name[:80]}: cannot be unpacked: {error}") from error
+        if len(data) > max_bytes:
+            raise InvalidError(f"{name[:80]}: at most {max_bytes} bytes expected")
+        return data
+
+    def _read_index(self) -> Index:
+        try:
+            return Index.model_validate_json(self._read(INDEX, MAX_INDEX_BYTES))
+        except ValidationError as error:
+            first = error.errors(include_url=False, include_input=False)[0]
+            place = ".".join(str(part) for part in first["loc"])
+            raise InvalidError(f"{INDEX}: {place}: {first['msg']}") from error
+
+    def _check_graph(self) -> tuple[Step, ...]:
+        steps: list[Step] = [AddPlace(place=place) for place in self.index.places]
+        steps += [PutEdge(edge=edge) for edge in self.index.edges]
+        if len({(edge.a, edge.b) for edge in self.index.edges}) != len(self.index.edges):
+            raise InvalidError(f"{INDEX}: an edge stands there twice")
+        try:
+            apply(Graph(), steps)
+        except MapError as error:
+            raise InvalidError(f"{INDEX}: {error}") from error
+        return tuple(steps)
+
+    def _check_blobs(self) -> None:
+        features = {place.features for place in self.index.places}
+        thumbnails = {place.thumbnail for place in self.index.places if place.thumbnail}
+        stored = {name.removeprefix(BLOBS) for name in self._zip.namelist() if name != INDEX}
+        if stored != features | thumbnails:
+            missing, extra = len((features | thumbnails) - stored), len(stored - features - thumbnails)
+            raise InvalidError(
+                f"archive must hold exactly the named blobs: {missing} missing, {extra} too many"
+            )
+        for sha256 in sorted(stored):
+            data = self.blob(sha256)
+            try:
+                if sha256 in features:
+                    unpack_features(data)
+            except CorruptError as error:
+                raise InvalidError(f"{BLOBS}{sha256[:12]}: {error}") from error
+
+
+def _is_blob_name(name: str) -> bool:
+    digits = name.removeprefix(BLOBS)
+    return name.startswith(BLOBS) and len(digits) == 64 and set(digits) <= set("0123456789abcdef")

@@ -1,0 +1,123 @@
+"""Maps by name: find, list, create, rename, delete. Every function works inside the caller's transaction."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+from sqlalchemy import Connection, Row, delete, insert, select, update
+
+from services.map_store.errors import ConflictError, CorruptError, InvalidError, MissingError
+from services.map_store.integrity.seals import intact, sealed
+from services.map_store.storage import blobs
+from services.map_store.storage.tables import edges, maps, nodes, revisions
+from shared.topics import NAME
+
+LISTED = 20
+"""Names given in an error."""
+
+
+@dataclass(frozen=True)
+class MapRecord:
+    """One line of the list of maps; times are nanoseconds since the Unix epoch."""
+
+    map_id: int
+    name: str
+    revision: int
+    created_ns: int
+    changed_ns: int
+    node_count: int = 0
+    edge_count: int = 0
+
+
+def check_name(name: str) -> str:
+    """Return `name`, or raise InvalidError: the rule of the bus holds everywhere."""
+    if not NAME.match(name):
+        raise InvalidError(f"map name must match [a-z0-9_-]{{1,64}}, got {name[:80]!r}")
+    return name
+
+
+def label(row: Row[Any]) -> str:
+    """What a map is called, even where damage made its name one that nobody can ask for."""
+    good = isinstance(row.name, str) and NAME.match(row.name) is not None
+    return str(row.name) if good else f"damaged-{row.map_id}"
+
+
+def rows(connection: Connection) -> Sequence[Row[Any]]:
+    """The records of all maps by number. There are few, and no index that may be damaged is asked."""
+    return connection.execute(select(maps).order_by(maps.c.map_id)).all()
+
+
+def find(connection: Connection, name: str) -> MapRecord:
+    """The record of a map; MissingError lists what there is, CorruptError says that it is damaged."""
+    check_name(name)
+    found = rows(connection)
+    for row in found:
+        if label(row) == name:
+            return record_of(row)
+    damaged = sum(not intact(maps, row) for row in found)
+    if damaged:
+        raise CorruptError(f"no map {name!r}, and {damaged} records of maps are damaged; 'topnav map check'")
+    raise missing(connection, name)
+
+
+def missing(connection: Connection, name: str) -> MissingError:
+    """The error that lists what there is."""
+    names = sorted(label(row) for row in rows(connection))
+    return MissingError(f"no map {name!r}; maps: {names[:LISTED]}")
+
+
+def exists(connection: Connection, name: str) -> bool:
+    """Whether a map of that name is there."""
+    return any(label(row) == name for row in rows(connection))
+
+
+def records(connection: Connection) -> list[MapRecord]:
+    """All maps by name, but those whose record is damaged."""
+    good = [record_of(row) for row in rows(connection) if intact(maps, row)]
+    return sorted(good, key=lambda record: record.name)
+
+
+def create(connection: Connection, name: str, now_ns: int) -> MapRecord:
+    """Make an empty map at revision 0."""
+    if exists(connection, check_name(name)):
+        raise ConflictError(f"map {name!r} exists already; read it, or delete it first")
+    values = {"name": name, "revision": 0, "created_ns": now_ns, "changed_ns": now_ns}
+    key = connection.execute(insert(maps).values(values)).inserted_primary_key
+    assert key is not None
+    record = MapRecord(int(key[0]), name, 0, now_ns, now_ns)
+    save(connection, record)
+    return record
+
+
+def save(connection: Connection, record: MapRecord) -> None:
+    """Write the record of a map that exists."""
+    values = sealed(maps, asdict(record))
+    connection.execute(update(maps).where(maps.c.map_id == record.map_id).values(values))
+
+
+def rename(connection: Connection, name: str, new_name: str) -> MapRecord:
+    """Give a map another name."""
+    found = find(connection, name)
+    if exists(connection, check_name(new_name)):
+        raise ConflictError(f"map {new_name!r} exists already")
+    renamed = replace(found, name=new_name)
+    save(connection, renamed)
+    return renamed
+
+
+def remove(connection: Connection, name: str) -> int:
+    """Delete a map with everything it owns; returns its last revision."""
+    found = find(connection, name)
+    for table in (edges, nodes, revisions):
+        connection.execute(delete(table).where(table.c.map_id == found.map_id))
+    blobs.drop(connection, found.map_id)
+    connection.execute(delete(maps).where(maps.c.map_id == found.map_id))
+    return found.revision
+
+
+def record_of(row: Row[Any]) -> MapRecord:
+    """The record in a row; CorruptError when it is damaged."""
+    if not intact(maps, row):
+        name = label(row)
+        raise CorruptError(f"map {name!r}: its record is damaged; 'topnav map repair {name}' mends it")
+    return MapRecord(**{name: value for name, value in row._mapping.items() if name != "seal"})

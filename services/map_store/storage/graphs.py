@@ -1,0 +1,48 @@
+"""Graphs in memory: the newest revision of the maps in use, so that a write does not read the whole map."""
+
+import threading
+from collections import OrderedDict
+
+from sqlalchemy import Connection
+
+from services.map_store.errors import CorruptError
+from services.map_store.storage.catalogue import MapRecord
+from services.map_store.storage.graph import Graph
+from services.map_store.storage.rows import read_graph
+
+CACHED_MAPS = 32
+
+
+class Graphs:
+    """A cache by map and revision; a revision that another process wrote is simply read again."""
+
+    def __init__(self) -> None:
+        self._graphs: OrderedDict[int, tuple[int, Graph]] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def get(self, connection: Connection, found: MapRecord) -> Graph:
+        """The graph of the map that `catalogue.find` found, as this transaction sees it."""
+        with self._lock:
+            revision, graph = self._graphs.get(found.map_id, (-1, Graph()))
+        if revision != found.revision:
+            try:
+                graph = read_graph(connection, found)
+            except CorruptError as error:
+                advice = f"'topnav map repair {found.name}' mends what can be mended"
+                raise CorruptError(f"map {found.name!r}: {error}; {advice}") from None
+            self.remember(found.map_id, found.revision, graph)
+        return graph
+
+    def forget(self, map_id: int) -> None:
+        """Read the map again when it is asked for."""
+        with self._lock:
+            self._graphs.pop(map_id, None)
+
+    def remember(self, map_id: int, revision: int, graph: Graph) -> None:
+        """Keep `graph` unless a newer revision is kept already."""
+        with self._lock:
+            if self._graphs.get(map_id, (-1, graph))[0] < revision:
+                self._graphs[map_id] = (revision, graph)
+                self._graphs.move_to_end(map_id)
+            while len(self._graphs) > CACHED_MAPS:
+                self._graphs.popitem(last=False)

@@ -1,0 +1,107 @@
+"""Mission records, one per robot: what a restarted planner goes on with, and which planner is the newest."""
+
+import logging
+from typing import Any
+
+from sqlalchemy import Connection, Row, delete, insert, select
+
+from services.map_store.errors import ConflictError, InvalidError
+from services.map_store.integrity.seals import intact, matches, sealed
+from services.map_store.storage.blobs import checksum
+from services.map_store.storage.database import Database
+from services.map_store.storage.tables import missions
+from shared.messages.maps import MissionRecord
+from shared.topics import MISSION_RECORD, NAME
+from shared.wire import WireError, decode, encode
+
+log = logging.getLogger(__name__)
+
+MAX_EPOCH = 2**62
+
+
+class MissionStore:
+    """Records by robot in `database`."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def claim(self, robot: str) -> MissionRecord:
+        """A planner starts: give it the record with the next epoch, which shuts its predecessors out."""
+        _check_robot(robot)
+        with self._database.write() as connection:
+            stored = self._read(connection, robot)
+            record = stored.model_copy(update={"epoch": stored.epoch + 1})
+            _write(connection, record)
+        return record
+
+    def save(self, record: MissionRecord) -> MissionRecord:
+        """Keep `record`; ConflictError when a planner with a later epoch has taken over."""
+        _check_robot(record.robot)
+        if record.epoch > MAX_EPOCH:
+            raise InvalidError(f"epoch must be at most {MAX_EPOCH}, got {record.epoch}")
+        with self._database.write() as connection:
+            stored = self._read(connection, record.robot)
+            if record.epoch < stored.epoch:
+                raise ConflictError(
+                    f"robot {record.robot!r}: epoch {record.epoch} is over, {stored.epoch} has begun; stop"
+                )
+            _write(connection, record)
+        return record
+
+    @staticmethod
+    def _read(connection: Connection, robot: str) -> MissionRecord:
+        row = connection.execute(select(missions).where(missions.c.robot == robot)).first()
+        if row is None:
+            return MissionRecord(robot=robot)
+        record = stored_record(row)
+        if record is None or record.robot != robot:
+            # The mission is lost; the epoch must not be, or an old planner could take the robot back.
+            log.error(
+                "robot %s: the record of its mission is damaged, only epoch %d is kept", robot, row.epoch
+            )
+            return MissionRecord(robot=robot, epoch=row.epoch)
+        return record
+
+
+def sound(row: Row[Any]) -> bool:
+    """Whether a row and the record in it say what was written."""
+    record = stored_record(row)
+    named = record is not None and (record.robot, record.epoch) == (row.robot, row.epoch)
+    return named and intact(missions, row)
+
+
+def mend_missions(connection: Connection) -> int:
+    """Write damaged rows anew, from the record or, where that is lost, with the epoch alone; how many."""
+    rows = connection.execute(select(missions)).all()
+    bad = sum(not sound(row) for row in rows)
+    if bad:
+        connection.execute(delete(missions))
+        for row in rows:
+            known = MissionRecord(robot=row.robot, epoch=row.epoch) if intact(missions, row) else None
+            record = stored_record(row) or known
+            if record is not None:
+                _write(connection, record)
+    return bad
+
+
+def stored_record(row: Row[Any]) -> MissionRecord | None:
+    """The record of a row; None when its bytes are damaged."""
+    if not matches(row.content, row.sha256):
+        return None
+    try:
+        return decode(MissionRecord, row.content, MISSION_RECORD.max_bytes)
+    except WireError:
+        return None
+
+
+def _write(connection: Connection, record: MissionRecord) -> None:
+    content = encode(record)
+    values = {"robot": record.robot, "epoch": record.epoch, "sha256": checksum(content)}
+    row = {**sealed(missions, values), "content": content}
+    connection.execute(delete(missions).where(missions.c.robot == record.robot))
+    connection.execute(insert(missions).values(row))
+
+
+def _check_robot(robot: str) -> None:
+    if not NAME.match(robot):
+        raise InvalidError(f"robot name must match [a-z0-9_-]{{1,64}}, got {robot[:80]!r}")

@@ -1,0 +1,167 @@
+"""Parts: the simple solids of which worlds are made. Pure; rendering, physics and sensors read them."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from simulator.scene.meshes import Mesh
+
+Vec3 = tuple[float, float, float]
+Rgb = tuple[int, int, int]
+Shape = Literal["box", "cylinder", "ellipsoid", "cushion", "drape", "leaf", "mesh", "hull"]
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Texture from a file: (height, width, 3) RGB bytes, row 0 at the top. The digest is the identity."""
+
+    digest: str
+    pixels: npt.NDArray[np.uint8] = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """Triangles from a file, in the frame of their part. The digest is the identity."""
+
+    digest: str
+    mesh: Mesh = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Material:
+    """Look of a surface: texture kind (see textures.catalogue), colour, seed; above 0, `glow` shines.
+
+    A `picture` takes the place of the drawn texture.
+    """
+
+    kind: str
+    colour: Rgb = (200, 200, 200)
+    seed: int = 0
+    glow: float = 0.0
+    picture: Picture | None = None
+
+
+@dataclass(frozen=True)
+class Part:
+    """One solid in some frame (x forward, y left, z up; metres, radians).
+
+    Attributes:
+        shape: cylinders stand along local z, `taper` is top radius / bottom radius; cushions are boxes with
+            round edges; a drape is a waved sheet in local y-z; a leaf is a bent sheet along local x; a mesh
+            shows its `geometry`; a hull is an invisible upright prism that only stops the robot.
+        centre_m: centre of the bounding box.
+        size_m: full extent along the local axes.
+        yaw_rad: rotation about z; pitch_rad and roll_rad come first (leaves and hanging things only).
+        solid: whether it stops the robot. Solid parts have neither pitch nor roll.
+        tile_m: side of one texture repeat; None stretches the texture over each face.
+        uv: part of the texture used when stretched: u0, v0, u1, v1 with v = 0 at the top.
+        geometry: triangles of a mesh, around its centre.
+        outline_m: corners of a hull around its centre, convex, counter-clockwise from above.
+        grain_m: how densely a box carries light; None leaves it to its size.
+    """
+
+    shape: Shape
+    centre_m: Vec3
+    size_m: Vec3
+    material: Material
+    yaw_rad: float = 0.0
+    pitch_rad: float = 0.0
+    roll_rad: float = 0.0
+    solid: bool = True
+    tile_m: float | None = 0.6
+    uv: tuple[float, float, float, float] = (0.0, 0.0, 1.0, 1.0)
+    taper: float = 1.0
+    casts_shadow: bool = True
+    geometry: Geometry | None = None
+    outline_m: tuple[tuple[float, float], ...] = ()
+    grain_m: float | None = None
+
+
+@dataclass(frozen=True)
+class Light:
+    """An area that shines: `facing` None shines evenly all round, else with the cosine to that direction."""
+
+    centre_m: Vec3
+    size_m: Vec3
+    power: tuple[float, float, float]
+    facing: Vec3 | None = None
+
+
+@dataclass(frozen=True)
+class Piece:
+    """What one piece of furniture is made of."""
+
+    parts: tuple[Part, ...]
+    lights: tuple[Light, ...] = field(default=())
+
+
+def moved(piece: Piece, x_m: float, y_m: float, yaw_rad: float, z_m: float = 0.0) -> Piece:
+    """Place a piece given in its own frame at a pose in the world."""
+    rotation = rotation_z(yaw_rad)
+    shift = np.array([x_m, y_m, z_m])
+
+    def point(p: Vec3) -> Vec3:
+        x, y, z = (rotation @ np.array(p) + shift).tolist()
+        return x, y, z
+
+    def direction(d: Vec3 | None) -> Vec3 | None:
+        if d is None:
+            return None
+        x, y, z = (rotation @ np.array(d)).tolist()
+        return x, y, z
+
+    parts = tuple(replace(p, centre_m=point(p.centre_m), yaw_rad=p.yaw_rad + yaw_rad) for p in piece.parts)
+    lights = tuple(
+        replace(light, centre_m=point(light.centre_m), facing=direction(light.facing),
+                size_m=tuple(np.abs(rotation @ np.array(light.size_m)).tolist()))
+        for light in piece.lights
+    )  # fmt: skip
+    return Piece(parts, lights)
+
+
+def rotation_z(yaw_rad: float) -> npt.NDArray[np.float64]:
+    """Rotation about z, (3, 3)."""
+    c, s = np.cos(yaw_rad), np.sin(yaw_rad)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def rotation_of(part: Part) -> npt.NDArray[np.float64]:
+    """Rotation from the part's axes to its frame: yaw * pitch * roll, (3, 3)."""
+    cp, sp = np.cos(part.pitch_rad), np.sin(part.pitch_rad)
+    cr, sr = np.cos(part.roll_rad), np.sin(part.roll_rad)
+    pitch = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
+    roll = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
+    return np.asarray(rotation_z(part.yaw_rad) @ pitch @ roll)
+
+
+def box(
+    x: tuple[float, float],
+    y: tuple[float, float],
+    z: tuple[float, float],
+    material: Material,
+    **options: object,
+) -> Part:
+    """A box given by its extents along the axes."""
+    centre = ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2, (z[0] + z[1]) / 2)
+    size = (abs(x[1] - x[0]), abs(y[1] - y[0]), abs(z[1] - z[0]))
+    return replace(Part("box", centre, size, material), **options)  # type: ignore[arg-type]
+
+
+def post(
+    x: float, y: float, z: tuple[float, float], radius: float, material: Material, **options: object
+) -> Part:
+    """An upright cylinder."""
+    part = Part("cylinder", (x, y, (z[0] + z[1]) / 2), (2 * radius, 2 * radius, z[1] - z[0]), material)
+    return replace(part, **options)  # type: ignore[arg-type]
+
+
+def solids_between(parts: Iterable[Part], low_m: float, high_m: float) -> list[Part]:
+    """The solid parts that reach into a band of heights."""
+    return [
+        p
+        for p in parts
+        if p.solid and p.centre_m[2] + p.size_m[2] / 2 > low_m and p.centre_m[2] - p.size_m[2] / 2 < high_m
+    ]

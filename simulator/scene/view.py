@@ -1,0 +1,80 @@
+"""The rendered scene with all that moves, and what disturbs the camera."""
+
+import sapien
+
+from simulator.disturbances.blur import Motion, mean_picture, poses_of
+from simulator.disturbances.camera import Moment, degraded
+from simulator.disturbances.fog import fog_of
+from simulator.disturbances.illumination import Contents, body_brightness, illuminated, view_brightness
+from simulator.disturbances.people import Figure
+from simulator.disturbances.tilt import tilt_of
+from simulator.robot.robot_shape import HIDER, SEEKER, chassis_parts, leg_parts, wheel_parts, whole_robot
+from simulator.scene.disk_cache import DiskCache
+from simulator.scene.painter import Painter
+from simulator.scene.render_scene import RenderScene
+from simulator.sensors.panorama import Image
+from simulator.settings import SimulationSettings
+from simulator.world.bodies import Bodies
+from simulator.world.world_file import WorldFile
+
+Pose2 = tuple[float, float, float]
+
+
+class View:
+    """Takes pictures of a world from anywhere."""
+
+    def __init__(
+        self, world: WorldFile, contents: Contents, settings: SimulationSettings, figures: list[Figure]
+    ) -> None:
+        """Build everything that can be seen.
+
+        Args:
+            world: the world file.
+            contents: its parts and lights, see scene_parts.expand.
+            settings: camera, robot, cache and levels of the disturbances.
+            figures: people and carts, in the order in which `Bodies` has their poses.
+        """
+        self._settings, self._levels = settings, settings.disturbances
+        self._cache = DiskCache(settings.cache_dir, settings.cache_limit_mb * 1_000_000)
+        level, robot = self._levels.illumination, settings.robot
+        shown, lit = illuminated(world, contents, level)
+        shade = body_brightness(level)
+        with Painter(self._cache) as painter:
+            sky = view_brightness(level)
+            self._scene = RenderScene(shown, lit, settings.camera, painter, self._cache, sky)
+            self._links = {"chassis": self._scene.add_body(chassis_parts(robot, SEEKER), shade)}
+            for k in range(4):
+                self._links[f"leg{k}"] = self._scene.add_body(leg_parts(robot), shade)
+                self._links[f"wheel{k}"] = self._scene.add_body(wheel_parts(robot), shade)
+            self._hider = self._scene.add_body(whole_robot(robot, HIDER), shade)
+            self._walkers = [self._scene.add_body(figure.looks, shade) for figure in figures]
+        fog = fog_of(self._levels.fog, self._levels.rain, level, world.environment)
+        self._scene.set_fog(fog.extinction, fog.grey)
+        self._cache.tidy()
+
+    def change(self, world: WorldFile, contents: Contents) -> None:
+        """Show another state of the world."""
+        shown, lit = illuminated(world, contents, self._levels.illumination)
+        with Painter(self._cache) as painter:
+            self._scene.change_static(shown, lit, painter, self._cache)
+
+    def picture(self, camera: Pose2, motion: Motion, bodies: Bodies, moment: Moment) -> Image:
+        """What a camera that moves like this sees, (height, width, 3) BGR."""
+        self._scene.move_flat(self._hider, bodies.hider)
+        for entity, pose in zip(self._walkers, bodies.walkers, strict=True):
+            self._scene.move_flat(entity, pose)
+        speed_mps = (motion[0] ** 2 + motion[1] ** 2) ** 0.5
+        tilt = tilt_of(self._levels.tilt, moment.seed, moment.time_s, speed_mps)
+        pictures = []
+        for pose in poses_of(camera, motion, self._levels.blur):
+            self._place_robot(bodies, pose[0] - camera[0], pose[1] - camera[1])
+            pictures.append(self._scene.panorama(pose, tilt))
+        return degraded(mean_picture(pictures), self._levels, moment)
+
+    def _place_robot(self, bodies: Bodies, dx_m: float, dy_m: float) -> None:
+        """Put the robot's links where they were, which during an exposure is a little further back."""
+        for name, entity in self._links.items():
+            pose = bodies.links[name]
+            if dx_m or dy_m:
+                pose = sapien.Pose([pose.p[0] + dx_m, pose.p[1] + dy_m, pose.p[2]], pose.q)
+            self._scene.move(entity, pose)

@@ -1,0 +1,142 @@
+"""What a world is like before anybody drives in it: size, free floor, faults and doubts. Pure."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from simulator.furniture.catalogue import FURNITURE
+from simulator.scene.parts import moved
+from simulator.world.footprints import clearance_m, footprints
+from simulator.world.freespace import BODY_BAND_M, FreeSpace, free_space
+from simulator.world.passages import Passage, narrow_passages
+from simulator.world.scene_parts import expand
+from simulator.world.world_file import WorldFile
+
+ROBOT_RADIUS_M = 0.26  # the body and a centimetre
+MOST_LOOKS = 480  # the renderer's table has 512, and the robots need some
+TOUCH_M = 1e-6
+TIGHT_M = 2 * ROBOT_RADIUS_M + 0.1
+
+
+@dataclass(frozen=True)
+class WorldReport:
+    """Figures of a world; `faults` keep it from being used, `doubts` are worth a look."""
+
+    name: str
+    size_m: tuple[float, float]
+    floor_m2: float
+    free_m2: float
+    cut_off_m2: float
+    rooms: int
+    parts: int
+    solids: int
+    lights: int
+    looks: int
+    start_free: bool
+    unreachable: tuple[str, ...]
+    passages: tuple[Passage, ...]
+    faults: tuple[str, ...]
+    doubts: tuple[str, ...]
+
+
+def examine(world: WorldFile, robot_radius_m: float = ROBOT_RADIUS_M) -> WorldReport:
+    """Look at a world that has loaded."""
+    parts, lights = expand(world)
+    rects = world.rectangles()
+    looks = len({part.material for part in parts})
+    faults, doubts = start_faults(world, robot_radius_m), _opening_doubts(world)
+    if looks > MOST_LOOKS:
+        faults.append(
+            f"at most {MOST_LOOKS} different materials can be shown, got {looks}; share colours and seeds"
+        )
+    if not lights and not any(part.material.glow for part in parts) and not getattr(world, "sun", None):
+        doubts.append("no lamps: only the even light of `lighting` is there; add a ceiling_light")
+    space = None if faults else free_space(world, robot_radius_m)
+    whole = _whole_free(space) if space else None
+    cell = space.resolution_m**2 if space else 0.0
+    lost = _unreachable(world, space) if space else ()
+    doubts += [f"{name}: the robot cannot get there from the start" for name in lost]
+    passages = tuple(narrow_passages(space)) if space else ()
+    doubts += [
+        f"passage at ({p.x_m}, {p.y_m}) is {p.width_m} m wide, the robot {2 * robot_radius_m:.2f} m: tight"
+        for p in passages if p.width_m < TIGHT_M
+    ]  # fmt: skip
+    return WorldReport(
+        name=world.name,
+        size_m=(
+            round(max(x[1] for x, _ in rects) - min(x[0] for x, _ in rects), 3),
+            round(max(y[1] for _, y in rects) - min(y[0] for _, y in rects), 3),
+        ),
+        floor_m2=round(sum((x[1] - x[0]) * (y[1] - y[0]) for x, y in rects), 2),
+        free_m2=round(float(space.free.sum()) * cell, 2) if space else 0.0,
+        cut_off_m2=round(float((whole & ~space.free).sum()) * cell, 2)
+        if space and whole is not None
+        else 0.0,
+        rooms=len(world.rooms),
+        parts=len(parts),
+        solids=sum(part.solid for part in parts),
+        lights=len(lights),
+        looks=looks,
+        start_free=not start_faults(world, robot_radius_m),
+        unreachable=lost,
+        passages=passages,
+        faults=tuple(faults),
+        doubts=tuple(doubts),
+    )
+
+
+def start_faults(world: WorldFile, robot_radius_m: float = ROBOT_RADIUS_M) -> list[str]:
+    """What stands where the robot starts, and how far it would have to be."""
+    parts, _ = expand(world)
+    start = np.array([[world.start.x_m, world.start.y_m]])
+    gap = float(clearance_m(start, footprints(parts, *BODY_BAND_M))[0])
+    if gap >= robot_radius_m:
+        return []
+    nearest, name = math.inf, "a wall"
+    for k, item in enumerate(world.furniture):
+        piece = FURNITURE[item.kind].build(item.options, item.seed)
+        placed = moved(piece, *item.at_m, math.radians(item.yaw_deg), item.z_m)
+        distance = float(clearance_m(start, footprints(placed.parts, *BODY_BAND_M))[0])
+        if distance < min(nearest, gap + 1e-6):
+            nearest, name = distance, f"furniture.{k} ({item.kind})"
+    return [
+        f"start ({world.start.x_m:g}, {world.start.y_m:g}) must be {robot_radius_m:g} m from everything, "
+        f"{name} is {gap:.2f} m away; move one of them"
+    ]
+
+
+def _whole_free(space: FreeSpace) -> np.ndarray:
+    return np.asarray(space.clearance_m >= space.robot_radius_m)
+
+
+def _unreachable(world: WorldFile, space: FreeSpace) -> tuple[str, ...]:
+    """Rooms and grounds in which no reachable floor lies."""
+    reached = space.centres_m()
+    lost = []
+    for area in (*world.rooms, *getattr(world, "grounds", ())):
+        inside = (reached >= (area.x_m[0], area.y_m[0])) & (reached <= (area.x_m[1], area.y_m[1]))
+        if not inside.all(axis=1).any():
+            lost.append(area.name)
+    return tuple(lost)
+
+
+def _opening_doubts(world: WorldFile) -> list[str]:
+    """Openings that do not join two pieces of floor."""
+    doubts = []
+    areas = (*world.rooms, *getattr(world, "grounds", ()), *world.openings)
+    for k, opening in enumerate(world.openings):
+        own = (opening.x_m, opening.y_m)
+        joined = sum(_touch(own, (area.x_m, area.y_m)) for area in areas if area is not opening)
+        if joined < 2:
+            doubts.append(
+                f"openings.{k} must touch two rooms along a wall, it touches {joined}: "
+                "put its edges on the edges of both"
+            )
+    return doubts
+
+
+def _touch(a: tuple[tuple[float, float], ...], b: tuple[tuple[float, float], ...]) -> bool:
+    """Whether two rectangles share a piece of an edge, or overlap."""
+    gaps = [max(a[k][0], b[k][0]) - min(a[k][1], b[k][1]) for k in (0, 1)]
+    return max(gaps) < TOUCH_M and min(gaps) < -TOUCH_M

@@ -1,0 +1,49 @@
+"""Durations of stages from hand-made arrivals."""
+
+import numpy as np
+import pytest
+
+from experiments.bench.stages import Arrival, stage_durations_ms, table
+from shared.messages import Command, Event, Features, Heading, Truth
+from shared.messages.missions import EventValue
+from shared.messages.simulation import Pose
+
+POSE = Pose(x_m=0.0, y_m=0.0, yaw_rad=0.0)
+
+
+def features(seq):
+    arrays = {"lonlat_rad": np.zeros((1, 2), np.float32), "scores": np.zeros(1, np.float32)}
+    return Features(seq=seq, stamp_ns=seq, pipeline="p", descriptors=np.zeros((1, 4), np.uint8), **arrays)
+
+
+def cycle(seq, start_s):
+    return [
+        Arrival(
+            "truth", start_s, Truth(seq=seq, stamp_ns=seq, robot="r1", world="w", pose=POSE, render_ms=60)
+        ),
+        Arrival("features", start_s + 0.050, features(seq)),
+        Arrival("heading", start_s + 0.080, Heading(seq=seq, stamp_ns=seq, robot="r1")),
+        Arrival("command", start_s + 0.081, Command(seq=seq, stamp_ns=seq, robot="r1")),
+    ]
+
+
+def test_stages_follow_from_the_arrivals_of_one_frame_and_the_next():
+    values = (EventValue(name="match_ms", value=5.0), EventValue(name="verify_ms", value=10.0))
+    event = Arrival("event", 0.08, Event(seq=9, stamp_ns=1, robot="r1", kind="heading", values=values))
+    found = stage_durations_ms([*cycle(1, 0.0), event, *cycle(2, 0.150)])
+    expected = {"render": 60.0, "extract": 50.0, "match": 5.0, "verify": 10.0, "plan": 15.0, "drive": 1.0}
+    for stage, duration_ms in (expected | {"simulate": 9.0}).items():
+        assert found[stage] == pytest.approx([duration_ms]), stage
+
+
+def test_a_repeated_message_does_not_move_its_first_arrival():
+    again = Arrival("features", 0.070, features(1))
+    assert stage_durations_ms([*cycle(1, 0.0), again, *cycle(2, 0.2)])["plan"] == pytest.approx([30.0])
+
+
+def test_a_cycle_that_lacks_a_message_is_left_out():
+    assert stage_durations_ms([*cycle(1, 0.0)[:-1], *cycle(2, 0.2)])["drive"] == []
+
+
+def test_table_leaves_out_what_nobody_measured():
+    assert table({"render": [1.0, 3.0], "match": []}) == {"render": {"p50_ms": 2.0, "p99_ms": 2.98}}

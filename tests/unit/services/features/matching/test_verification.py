@@ -1,0 +1,65 @@
+"""Verified matches tell the direction of another place, the same every time."""
+
+import numpy as np
+import pytest
+
+from services.features.matching.matching_requests import RequestError, pair, verify_paired
+from services.features.pipeline.extraction import extract
+from services.features.pipeline.named_pipelines import PROFILES
+from services.features.pipeline.pipeline import Pipeline
+from services.features.places.places import Places
+from shared.messages.features import Features
+from shared.messages.matching import MatchRequest
+
+STEP_M = (0.5, 0.2)
+YAW_RAD = 0.7
+
+
+@pytest.fixture(scope="module", params=["sift", "orb", "beblid"])
+def pipeline(request) -> Pipeline:
+    return Pipeline(PROFILES[request.param])
+
+
+def features(pipeline: Pipeline, picture: np.ndarray) -> Features:
+    words = extract(picture, pipeline.extractor, pipeline.representation, pipeline.profile)
+    return Features(
+        seq=3,
+        pipeline=pipeline.identity,
+        lonlat_rad=words.lonlat_rad,
+        scores=words.scores,
+        descriptors=words.descriptors,
+    )
+
+
+def places(pipeline: Pipeline, **of: Features) -> Places:
+    kept = Places.of(pipeline)
+    for name, found in of.items():
+        kept.put(int(name.removeprefix("n")), found)
+    return kept
+
+
+def test_heading_and_yaw_of_another_place(room, pipeline):
+    here = features(pipeline, room(0.0, 0.0, 0.0, 400))
+    there = places(pipeline, n8=features(pipeline, room(*STEP_M, YAW_RAD, 400)))
+    request = MatchRequest(map="flat", node_ids=(8,))
+    answers = [verify_paired(pipeline, request, pair(pipeline, request, here, there))[0] for _ in range(2)]
+    found = answers[0]
+    assert found.status == "ok"
+    assert found.inliers > 0.8 * found.raw_matches > 60
+    assert found.heading_rad == pytest.approx(np.arctan2(STEP_M[1], STEP_M[0]), abs=np.deg2rad(2.0))
+    assert found.yaw_rad == pytest.approx(YAW_RAD, abs=np.deg2rad(0.5))
+    assert found.matches_rad.shape == (found.raw_matches, 4)
+    assert found.model_dump() == answers[1].model_dump()
+
+
+def test_a_node_of_another_pipeline_is_refused_naming_both(pipeline, room):
+    here = features(pipeline, room(0.0, 0.0, 0.0, 400))
+    other = places(pipeline, n8=here.model_copy(update={"pipeline": "superpoint-tangent-150"}))
+    with pytest.raises(RequestError, match=f"node 8 .*'superpoint-tangent-150'.*{pipeline.identity!r}"):
+        pair(pipeline, MatchRequest(map="flat", best_k=1), here, other)
+
+
+def test_an_empty_map_has_no_results(pipeline, room):
+    here = features(pipeline, room(0.0, 0.0, 0.0, 400))
+    request = MatchRequest(map="flat", best_k=5)
+    assert verify_paired(pipeline, request, pair(pipeline, request, here, places(pipeline))) == ()

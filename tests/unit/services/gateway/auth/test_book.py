@@ -1,0 +1,75 @@
+"""Which tokens are taken while the file changes."""
+
+from pathlib import Path
+
+import pytest
+
+from services.gateway.auth.book import TokenBook, open_book
+from services.gateway.settings import GatewaySettings
+from shared.access.token import Token, digest_of
+from shared.access.token_file import write_tokens
+
+ANNA = Token(name="anna", role="operator", sha256=digest_of("s1"))
+BERT = Token(name="bert", role="viewer", sha256=digest_of("s2"))
+
+
+class Clock:
+    now_s = 0.0
+
+    def __call__(self) -> float:
+        self.now_s += 10.0
+        return self.now_s
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    """A file with one token."""
+    write_tokens(tmp_path / "tokens.json", [ANNA])
+    return tmp_path / "tokens.json"
+
+
+def role(book: TokenBook, secret: str) -> str | None:
+    token = book.find(secret)
+    return token.role if token else None
+
+
+def test_added_and_removed_tokens_count_at_once(path: Path) -> None:
+    book = TokenBook("", path, Clock())
+    assert (role(book, "s1"), role(book, "s2")) == ("operator", None)
+    write_tokens(path, [ANNA, BERT])
+    assert role(book, "s2") == "viewer"
+    write_tokens(path, [BERT])
+    assert role(book, "s1") is None
+    assert not book.holds(ANNA)
+    assert book.holds(BERT)
+
+
+@pytest.mark.parametrize("content", [None, "{", "[]"])
+def test_a_file_that_breaks_opens_nothing_but_the_single_token(path: Path, content: str | None) -> None:
+    book = TokenBook("single", path, Clock())
+    assert role(book, "s1") == "operator"
+    if content is None:
+        path.unlink()
+    else:
+        path.write_text(content)
+    assert role(book, "s1") is None
+    assert role(book, "single") == "admin"
+    assert book.guards
+    write_tokens(path, [ANNA])
+    assert role(book, "s1") == "operator"
+
+
+def test_tokens_are_asked_for_when_there_is_a_secret_or_a_file(path: Path) -> None:
+    assert not TokenBook("", None).guards
+    assert TokenBook("x", None).guards
+    write_tokens(path, [])
+    assert TokenBook("", path).guards
+
+
+def test_a_gateway_into_which_nobody_could_come_does_not_start(path: Path, tmp_path: Path) -> None:
+    open_book(GatewaySettings(tokens_file=path))
+    write_tokens(path, [])
+    with pytest.raises(ValueError, match="holds no token: make one"):
+        open_book(GatewaySettings(tokens_file=path))
+    with pytest.raises(ValueError, match="cannot be read"):
+        open_book(GatewaySettings(tokens_file=tmp_path / "none.json"))

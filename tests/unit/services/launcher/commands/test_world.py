@@ -1,0 +1,70 @@
+"""`topnav world`: what it prints, writes and returns."""
+
+import copy
+import json
+
+import pytest
+import yaml
+from typer.testing import CliRunner
+
+from services.launcher.commands.world import app
+from simulator.world.world_file import WorldFileError
+
+PAINT = {"texture": "lacquer", "colour": [200, 200, 200]}
+WORLD = {
+    "format": "topnav-world/1",
+    "name": "cell",
+    "start": {"x_m": 2.0, "y_m": 2.0},
+    "rooms": [
+        {"name": "room", "x_m": [0, 5], "y_m": [0, 4], "floor": PAINT, "walls": PAINT, "ceiling": PAINT}
+    ],
+    "furniture": [{"kind": "ceiling_light", "at_m": [2, 2], "z_m": 2.6}],
+}
+
+
+def check(folder, *arguments, **changes):
+    file = folder / "cell.yaml"
+    file.write_text(yaml.safe_dump({**copy.deepcopy(WORLD), **changes}), encoding="utf-8")
+    return CliRunner().invoke(app, ["check", str(file), *map(str, arguments)])
+
+
+def test_sound_world_is_described_and_drawn(tmp_path):
+    result = check(tmp_path, "--plan", tmp_path / "plan.png", "--json", tmp_path / "cell.json")
+    assert result.exit_code == 0
+    assert "5 x 4 m" in result.output
+    assert (tmp_path / "plan.png").read_bytes().startswith(b"\x89PNG")
+    figures = json.loads((tmp_path / "cell.json").read_text(encoding="utf-8"))
+    assert figures["floor_m2"] == 20.0
+    assert figures["faults"] == []
+
+
+def test_fault_is_printed_and_makes_the_exit_status_1(tmp_path):
+    result = check(tmp_path, start={"x_m": 0.1, "y_m": 1.0})
+    assert result.exit_code == 1
+    assert "a wall is 0.10 m away" in " ".join(result.output.split())
+
+
+def test_world_that_does_not_load_raises_what_the_launcher_prints(tmp_path):
+    result = check(tmp_path, rooms=[])
+    assert isinstance(result.exception, WorldFileError)
+
+
+def test_kinds_lists_furniture_and_renews_a_page(tmp_path):
+    assert "| `sofa` |" in CliRunner().invoke(app, ["kinds"]).output
+    page = tmp_path / "page.md"
+    page.write_text(
+        "before\n<!-- begin: topnav world kinds -->\noutdated\n<!-- end: topnav world kinds -->\nafter\n"
+    )
+    CliRunner().invoke(app, ["kinds", "--into", str(page)])
+    text = page.read_text(encoding="utf-8")
+    assert text.startswith("before\n")
+    assert text.endswith("after\n")
+    assert "`sofa`" in text
+    assert "outdated" not in text
+
+
+def test_page_without_marks_is_refused(tmp_path):
+    (tmp_path / "page.md").write_text("nothing")
+    result = CliRunner().invoke(app, ["kinds", "--into", str(tmp_path / "page.md")])
+    with pytest.raises(ValueError, match="must have the lines"):
+        raise result.exception
