@@ -20,6 +20,8 @@ from shared.messages import (
     MatchReply,
     MatchRequest,
     Message,
+    MissionKinds,
+    MissionKindsRequest,
     MissionRecord,
     MissionRecordRequest,
     MissionRequest,
@@ -104,6 +106,7 @@ MAP_DELTA = Topic("topnav/maps/{map}/delta", MapDelta, Delivery.RECOVERED, 64 * 
 MATCH = Query("topnav/{robot}/match", MatchRequest, MatchReply, 32 * MB, anyone=True)
 EXTRACT = Query("topnav/features/extract", ExtractRequest, Features, 64 * MB, anyone=True)
 MISSION = Query("topnav/{robot}/mission", MissionRequest, MissionStatus, 8 * MB)
+MISSION_KINDS = Query("topnav/{robot}/mission/kinds", MissionKindsRequest, MissionKinds, 1 * MB)
 ESTOP = Query("topnav/{robot}/estop", EStopRequest, EStopState, 10_000)
 MAP = Query("topnav/maps/{map}/graph", MapRequest, MapReply, 512 * MB, anyone=True)
 MAP_READ = Query("topnav/maps/{map}/read", MapRequest, MapReply, 512 * MB, anyone=True)
@@ -127,6 +130,7 @@ QUERIES: tuple[Query[Message, Message], ...] = (
     MATCH,
     EXTRACT,
     MISSION,
+    MISSION_KINDS,
     ESTOP,
     MAP,
     MAP_READ,

@@ -12,8 +12,8 @@ import numpy as np
 
 from services.drive.core import DriveLimits, compute_command
 from services.drive.passing import Passing
-from services.planner.graph import MapGraph
 from services.planner.ports import Decision, Mission, Observation
+from shared.mapgraph.graph import MapGraph
 from shared.messages import Features, Heading, Ranges
 from shared.messages.maps import AddNode, Operation
 from shared.messages.matching import NodeMatch

@@ -8,7 +8,7 @@ import torch
 from experiments.monte_carlo.scene import MonteCarloScene, Placement, draw_scene, generator_of, lonlat_from
 from experiments.monte_carlo.tracking import follow
 from experiments.monte_carlo.votes import draw_choices
-from services.planner.heading.registry import heading_method
+from services.planner.heading.methods import heading_estimate
 from shared.geometry.angles import FloatArray, wrap_rad
 from shared.geometry.two_view import two_view
 from shared.geometry.two_view_types import TwoViewSettings
@@ -56,7 +56,9 @@ def noisy_errors(plan: NoisePlan) -> FloatArray:
         )
         geometry = two_view(current, target, rng, plan.two_view)
         for row, name in enumerate(ALL_METHODS):
-            heading = heading_method(name)(current, target, geometry).heading_rad
+            two_view_rad = geometry.heading_rad if geometry.usable else None
+            by_votes = name != "epipolar"
+            heading = heading_estimate(name, current, target).heading_rad if by_votes else two_view_rad
             error = None if heading is None else abs(float(wrap_rad(heading - scene.heading_rad)))
             errors[row, run] = NO_ANSWER_DEG if error is None else np.rad2deg(error)
     return errors

@@ -6,7 +6,7 @@ import numpy as np
 
 from experiments.monte_carlo.scene import Placement, draw_scene, generator_of, lonlat_from
 from experiments.monte_carlo.votes import draw_choices
-from services.planner.heading.registry import heading_method
+from services.planner.heading.methods import heading_estimate
 from services.planner.heading.weights import WeightSettings
 from shared.geometry.angles import FloatArray, wrap_rad
 
@@ -47,7 +47,7 @@ def scene_sweep(plan: SweepPlan) -> FloatArray:
     for chosen in draw_choices(plan.runs, plan.count, len(scene.points), rng):
         for row, weight in enumerate(FUNCTIONS.values()):
             for column, name in enumerate(WEIGHTED):
-                heading = heading_method(name, weight)(current[chosen], target[chosen], None).heading_rad
+                heading = heading_estimate(name, current[chosen], target[chosen], weight).heading_rad
                 wrong = np.pi / 2 if heading is None else abs(float(wrap_rad(heading - scene.heading_rad)))
                 errors[row, column] += np.rad2deg(wrong) / plan.runs
     return errors

@@ -6,8 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from experiments.monte_carlo.scene import MonteCarloScene, lonlat_from
-from services.planner.heading.latitudes import latitude_votes
-from services.planner.heading.pairs import pair_votes
+from services.planner.heading.votes import latitude_votes, pair_votes
 from services.planner.heading.weights import WeightSettings
 from shared.geometry.angles import FloatArray
 

@@ -79,7 +79,7 @@ def long_edges(data_dir: Path, map_name: str, profile: Profile, longest_m: float
     raw = [
         (a, b)
         for a, b in combinations(sorted(places), 2)
-        if len(pipeline.matcher.match(places[a], [places[b]])[0]) > profile.s_edge_min
+        if len(pipeline.matcher.match(places[a], [places[b]])[0]) > profile.mapping.s_edge_min
     ]
     ours = [(edge.a, edge.b) for edge in graph.edges]
     return {

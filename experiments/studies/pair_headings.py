@@ -10,7 +10,7 @@ import numpy as np
 from experiments.studies.pair_features import FeaturePair
 from experiments.studies.pairs import PosePair
 from services.features.pipeline.pipeline import Pipeline
-from services.planner.heading.registry import heading_method
+from services.planner.heading.methods import heading_estimate
 from shared.geometry.two_view import TwoViewResult, two_view
 
 METHODS = ("epipolar", "1", "2", "3", "4", "5", "6")
@@ -61,7 +61,8 @@ def judge_pair(pair: PosePair, features: FeaturePair, pipeline: Pipeline, seed: 
 def _errors(
     pair: PosePair, current: np.ndarray, target: np.ndarray, result: TwoViewResult
 ) -> dict[str, float | None]:
-    headings = {name: heading_method(name)(current, target, result).heading_rad for name in METHODS}
+    headings = {name: heading_estimate(name, current, target).heading_rad for name in METHODS[1:]}
+    headings["epipolar"] = result.heading_rad if result.usable else None
     return {name: _error(heading, pair.heading_rad) for name, heading in headings.items()}
 
 

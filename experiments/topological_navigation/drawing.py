@@ -7,8 +7,8 @@ import networkx as nx
 from matplotlib.figure import Figure
 
 from services.launcher.drawing.plans import EDGE, NODE, START, TARGET, VIA
-from services.planner.graph import MapGraph
-from services.planner.ports import GOAL
+from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.routing import GOAL
 
 
 def graph_figure(graph: MapGraph, path: Sequence[int] = (), start: int | None = None) -> Figure:

@@ -10,7 +10,7 @@ from services.map_store.storage.archive import Archive, write_archive
 from services.map_store.storage.blobs import checksum, pack_features, unpack_features
 from services.map_store.storage.contents import Kind
 from services.map_store.storage.graph import AddPlace, Graph, Place
-from services.planner.graph import MapGraph
+from shared.mapgraph.graph import MapGraph
 from shared.messages.features import Features
 from shared.messages.maps import AddNode, Operation, PutEdge
 

@@ -21,10 +21,10 @@ from experiments.topological_navigation.vectors import (
 )
 from services.drive.momentary import obstacle_heading
 from services.features.networks.runtime import WeightsError
-from services.planner.heading.choose import HeadingSettings, choose_heading
-from services.planner.heading.registry import MethodName
+from services.planner.heading.choose import heading_by_votes
+from services.planner.heading.methods import MethodName
+from services.planner.mapping.strategies import ThesisExploration
 from services.planner.missions.goto import Goto
-from services.planner.missions.strategies import ThesisExploration
 from services.planner.ports import Decision, Mission, Observation
 from services.planner.profiles import THESIS, Profile
 from shared.geometry.angles import FloatArray
@@ -255,8 +255,7 @@ class TopologicalNavigation(SelectKeypointDescriptor):
         Raises:
             ValueError: the matches give no direction.
         """
-        settings = HeadingSettings(method=method, verified_only=False)
-        choice = choose_heading(settings, matched1_sp, matched2_sp, None)
+        choice = heading_by_votes(method, matched1_sp, matched2_sp, "given matches")
         angle = choice.estimate.heading_rad
         if angle is None:
             raise ValueError(f"the matches give no heading: {choice.reason}")

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from services.planner.heading.pairs import signed_bisectors, vote_signs
+from services.planner.heading.votes import signed_bisectors, vote_signs
 from shared.geometry.angles import FloatArray
 
 

@@ -3,36 +3,31 @@
 import logging
 import uuid
 from contextlib import suppress
+from typing import Any
 
 import numpy as np
 
-from services.planner.frontiers import open_directions
-from services.planner.graph import MapGraph
-from services.planner.missions.explore import FrontierExploration
-from services.planner.missions.goto import Goto
-from services.planner.missions.strategies import ThesisExploration
+from services.planner.mission_kinds import MissionContext, MissionError, MissionKinds
 from services.planner.ports import Decision, Mission, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.remote import RemoteMap, RemoteMatcher
 from services.planner.settings import PlannerSettings
 from shared.bus import Bus
+from shared.mapgraph.frontiers import open_directions
+from shared.mapgraph.graph import MapGraph
 from shared.messages import MapDelta, MissionRecord, MissionRecordRequest, MissionRequest, MissionStatus
-from shared.messages.missions import FailureKind, MissionState
+from shared.messages.missions import CONTROLS, EventValue, FailureKind, MissionState
 from shared.queries import RefusedError
 from shared.topics import MISSION_RECORD
 
 log = logging.getLogger(__name__)
 
 
-class MissionError(ValueError):
-    """A request that cannot be followed; the text goes to the asker."""
-
-
 class MissionControl:
     """State machine of missions: idle, running, paused, then succeeded, failed or cancelled."""
 
-    def __init__(self, settings: PlannerSettings, profile: Profile, bus: Bus) -> None:
-        self._settings, self._profile, self._bus = settings, profile, bus
+    def __init__(self, settings: PlannerSettings, profile: Profile, kinds: MissionKinds, bus: Bus) -> None:
+        self._settings, self._profile, self._kinds, self._bus = settings, profile, kinds, bus
         self._record = MissionRecord(robot=settings.robot)
         self._mission: Mission | None = None
         self._matcher: RemoteMatcher | None = None
@@ -62,25 +57,13 @@ class MissionControl:
         )
         log.info("claimed epoch %d", self.epoch)
         if self._record.action:
-            self._begin(create=False)
-            self.state = "paused" if self._record.paused else "running"
-            self._reason = "taken over after a restart"
+            self._go_on()
         elif self._record.outcome:
             self._remember_end()
 
-    def _remember_end(self) -> None:
-        """Say how the last mission ended: the planner before may have died before anybody heard of it."""
-        ended = self._record
-        self._record = ended.model_copy(update={"action": ended.ended_action})
-        self.state, self._failure, self._reason = ended.outcome or "idle", ended.failure, ended.reason
-        self.step_count = ended.step
-        self.map = RemoteMap(self._bus, ended.map, self._settings.map_timeout_s)
-        with suppress(RefusedError):  # deleted since
-            self.map.load(create=False)
-
     def handle(self, request: MissionRequest) -> MissionStatus:
         """Follow a request and return the status after it; MissionError says why not."""
-        if request.action in ("explore", "goto"):
+        if request.action not in CONTROLS:
             self._start(request)
         elif request.action != "status":
             self._change(request.action)
@@ -96,7 +79,7 @@ class MissionControl:
         assert self._mission is not None
         assert self._matcher is not None
         self._matcher.begin(observation.features.seq, observation.features.stamp_ns)
-        if (lost := self._notice_lost_places()) is not None:
+        if (lost := self._notice_lost_nodes()) is not None:
             decision = lost
         elif self.step_count >= self._record.max_steps:
             why = f"not done within {self._record.max_steps} steps"
@@ -106,15 +89,20 @@ class MissionControl:
         self.step_count += 1
         self._reason = decision.why
         if decision.outcome:
-            self._finish(
-                "succeeded" if decision.outcome == "succeeded" else "failed", decision.failure, decision.why
-            )
+            self._finish(decision.outcome, decision.failure, decision.why)
         return decision
 
     def status(self) -> MissionStatus:
         """What is published after every step."""
         progress = self._mission.progress if self._mission is not None else Progress()
-        graph = self.map.graph if self.map is not None else None
+        graph = self.map.graph if self.map is not None else MapGraph()
+        facts = {
+            "nodes": len(graph.nodes),
+            "edges": len(graph.edges),
+            "open_directions": open_directions(graph),
+            "similarity": progress.similarity,
+            "disparity_rad": progress.disparity_rad,
+        }
         return MissionStatus(
             robot=self._settings.robot,
             mission_id=self._record.mission_id,
@@ -124,15 +112,14 @@ class MissionControl:
             failure=self._failure,
             reason=self._reason[:400],
             step=self.step_count,
-            nodes=len(graph.nodes) if graph is not None else 0,
-            edges=len(graph.edges) if graph is not None else 0,
-            open_directions=open_directions(graph) if graph is not None else 0,
             via_points=progress.via_points,
             via_index=progress.via_index,
             nearest_node=progress.nearest_node,
-            similarity=progress.similarity,
-            disparity_rad=progress.disparity_rad,
             epoch=self.epoch,
+            travel=progress.travel,
+            travel_reason=progress.travel_reason,
+            figures=self._figures({**facts, **progress.figures}),
+            **facts,
         )
 
     def follow_store(self, delta: MapDelta) -> None:
@@ -147,11 +134,41 @@ class MissionControl:
             if error.code != "missing":
                 raise
             if self.state in ("running", "paused"):
-                kind: FailureKind = "goal_not_in_map" if self._record.action == "goto" else "lost"
+                kind: FailureKind = "goal_not_in_map" if self._has_goal() else "lost"
                 self._finish("failed", kind, f"the map is gone: {error}")
 
-    def _notice_lost_places(self) -> Decision | None:
-        """Somebody took places away: plan anew, from what is left, and never lead to one that is gone.
+    def _go_on(self) -> None:
+        """Go on with the mission of a planner before; one of a kind that is not known here has failed."""
+        try:
+            self._begin(self._record, create=False)
+        except MissionError as error:
+            self._finish("failed", "service_lost", f"cannot go on after a restart: {error}")
+            return
+        self.state = "paused" if self._record.paused else "running"
+        self._reason = "taken over after a restart"
+
+    def _remember_end(self) -> None:
+        """Say how the last mission ended: the planner before may have died before anybody heard of it."""
+        ended = self._record
+        self._record = ended.model_copy(update={"action": ended.ended_action})
+        self.state, self._failure, self._reason = ended.outcome or "idle", ended.failure, ended.reason
+        self.step_count = ended.step
+        self.map = RemoteMap(self._bus, ended.map, self._settings.map_timeout_s)
+        with suppress(RefusedError):  # deleted since
+            self.map.load(create=False)
+
+    def _figures(self, values: dict[str, float | int | str | bool | None]) -> tuple[EventValue, ...]:
+        """What the kind's record shows; of a kind that is not known here nothing."""
+        with suppress(MissionError):
+            shown = self._kinds[self._record.action].shown
+            return tuple(EventValue(name=name, value=values[name]) for name in shown if name in values)
+        return ()
+
+    def _has_goal(self) -> bool:
+        return self._record.goal is not None or "goal_node" in _parameters(self._record)
+
+    def _notice_lost_nodes(self) -> Decision | None:
+        """Somebody took nodes away: plan anew, from what is left, and never lead to one that is gone.
 
         Returns the end of a mission whose goal is among them.
         """
@@ -163,59 +180,53 @@ class MissionControl:
         if not lost:
             self._known = self.map.graph
             return None
-        why = f"places {sorted(lost)[:8]} were taken out of the map"
-        if self._record.goal_node in lost:
-            return Decision("hold", why=why, outcome="failed", failure="goal_not_in_map")
+        why = f"nodes {sorted(lost)[:8]} were taken out of the map"
+        try:
+            self._mission = self._make(self._record, self.map, self._matcher)
+        except MissionError as error:
+            return Decision("hold", why=f"{why}: {error}", outcome="failed", failure="goal_not_in_map")
         log.info("%s: planning anew", why)
-        self._mission = self._make(self.map, self._matcher)
         self._known = self.map.graph
         return None
 
     def _start(self, request: MissionRequest) -> None:
         if self.state in ("running", "paused"):
-            raise MissionError(f"mission {self._record.mission_id} is {self.state}; cancel it first")
-        if request.action == "goto" and (request.goal is None) == (request.goal_node is None):
-            raise MissionError("goto needs a goal picture's features or a goal_node, exactly one of them")
-        self._record = MissionRecord(
+            why = f"mission {self._record.mission_id} is {self.state}; cancel it first"
+            raise MissionError(why, "conflict")
+        record = MissionRecord(
             robot=self._settings.robot,
             epoch=self.epoch,
             mission_id=request.mission_id or uuid.uuid4().hex[:12],
-            action="explore" if request.action == "explore" else "goto",
+            action=request.action,
             map=request.map,
+            parameters=request.parameters,
             goal=request.goal,
             goal_node=request.goal_node,
             seed=request.seed,
             max_steps=request.max_steps,
         )
-        self._begin(create=request.action == "explore")
+        self._begin(record, create=self._kinds[record.action].makes_map)
         self._save()
         self.state, self._failure, self._reason, self.step_count = "running", "", "started", 0
 
-    def _begin(self, *, create: bool) -> None:
-        record = self._record
-        self.map = RemoteMap(self._bus, record.map, self._settings.map_timeout_s)
-        self.map.load(create=create)
-        self._known = self.map.graph
-        self._matcher = RemoteMatcher(self._bus, record.robot, self.map, self._settings.query_timeout_s)
-        self._mission = self._make(self.map, self._matcher)
+    def _begin(self, record: MissionRecord, *, create: bool) -> None:
+        """Take up a mission; one that cannot be leaves everything as it was."""
+        maps = RemoteMap(self._bus, record.map, self._settings.map_timeout_s)
+        maps.load(create=create)
+        matcher = RemoteMatcher(self._bus, record.robot, maps, self._settings.query_timeout_s)
+        self._mission = self._make(record, maps, matcher)
+        self._record, self.map, self._matcher, self._known = record, maps, matcher, maps.graph
 
-    def _make(self, maps: RemoteMap, matcher: RemoteMatcher) -> Mission:
-        record = self._record
-        if record.action == "explore":
-            rng = np.random.default_rng(record.seed)
-            if self._profile.exploration == "strategies":
-                return ThesisExploration(self._profile, maps, matcher, rng)
-            return FrontierExploration(self._profile, maps, matcher, rng)
-        if record.goal is not None:
-            return Goto(self._profile, maps, matcher, record.goal)
-        if record.goal_node not in maps.graph.nodes:
-            raise MissionError(f"map {maps.name!r} has no node {record.goal_node}")
-        return Goto(self._profile, maps, matcher, maps.features_of(record.goal_node))
+    def _make(self, record: MissionRecord, maps: RemoteMap, matcher: RemoteMatcher) -> Mission:
+        rng = np.random.default_rng(record.seed)
+        context = MissionContext(self._profile, maps, matcher, rng, record.goal)
+        return self._kinds[record.action].start(context, _parameters(record))
 
     def _change(self, action: str) -> None:
         allowed = {"pause": ("running",), "resume": ("paused",), "cancel": ("running", "paused")}[action]
         if self.state not in allowed:
-            raise MissionError(f"{action} needs a mission that is {' or '.join(allowed)}, it is {self.state}")
+            why = f"{action} needs a mission that is {' or '.join(allowed)}, it is {self.state}"
+            raise MissionError(why, "conflict")
         if action == "cancel":
             self._finish("cancelled", "cancelled", "cancelled by request")
             return
@@ -225,10 +236,24 @@ class MissionControl:
 
     def _finish(self, state: MissionState, failure: FailureKind, reason: str) -> None:
         self.state, self._failure, self._reason = state, failure, reason
-        ended = {"action": "", "goal": None, "goal_node": None, "paused": False, "step": self.step_count}
+        ended = MissionRecord(
+            robot=self._record.robot,
+            epoch=self.epoch,
+            mission_id=self._record.mission_id,
+            map=self._record.map,
+            seed=self._record.seed,
+            max_steps=self._record.max_steps,
+            step=self.step_count,
+        )
         how = {"ended_action": self._record.action, "outcome": state, "failure": failure}
-        self._save(self._record.model_copy(update={**ended, **how, "reason": reason[:400]}))
+        self._save(ended.model_copy(update={**how, "reason": reason[:400]}))
 
     def _save(self, record: MissionRecord | None = None) -> None:
         request = MissionRecordRequest(action="save", record=record or self._record)
         self._bus.ask(MISSION_RECORD, request, self._settings.map_timeout_s, robot=self._settings.robot)
+
+
+def _parameters(record: MissionRecord) -> dict[str, Any]:
+    """Of the mission, with the goal node of a sender or a record that knows no parameters."""
+    node = {} if record.goal_node is None else {"goal_node": record.goal_node}
+    return {**record.parameters, **node}

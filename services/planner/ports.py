@@ -1,18 +1,18 @@
 """What a mission sees of the world and what it decides; the service fills these from the bus."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
-from services.planner.graph import MapGraph
+from shared.mapgraph.graph import MapGraph
 from shared.messages.features import Features
 from shared.messages.maps import Operation
 from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
 from shared.messages.sensors import Ranges
 
-GOAL = -1
-"""Node id under which the goal picture is reported by a match."""
+Matches = dict[int, NodeMatch]
+"""How a picture relates to nodes, by node id; to a goal picture by routing.GOAL."""
 
 
 @dataclass(frozen=True)
@@ -24,14 +24,12 @@ class Observation:
 
 
 class Matcher(Protocol):
-    """Compares the current frame with places."""
+    """Compares the current frame with nodes."""
 
-    def match(
-        self, node_ids: Sequence[int], best_k: int = 0, targets: Sequence[Features] = ()
-    ) -> dict[int, NodeMatch]:
+    def match(self, node_ids: Sequence[int], best_k: int = 0, targets: Sequence[Features] = ()) -> Matches:
         """Matches of the current frame by node id, most similar first."""
 
-    def locate(self, features: Features, best_k: int) -> dict[int, NodeMatch]:
+    def locate(self, features: Features, best_k: int) -> Matches:
         """Matches of any picture with the most similar nodes of the map."""
 
 
@@ -42,6 +40,9 @@ class MapAccess(Protocol):
 
     def commit(self, operations: Sequence[Operation]) -> None:
         """Write all operations or none; the graph shows them afterwards."""
+
+    def features_of(self, node_id: int) -> Features:
+        """What a node looks like."""
 
 
 @dataclass(frozen=True)
@@ -75,19 +76,30 @@ class Decision:
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a mission stands, for its status."""
+    """Where a mission stands, for its status.
+
+    Attributes:
+        travel: state of the travel machine, "" while the mission does not travel; travel_reason: of its last
+            transition.
+        figures: of this kind of mission, for its record.
+    """
 
     via_points: tuple[int, ...] = ()
     via_index: int = 0
     nearest_node: int | None = None
     similarity: int = 0
     disparity_rad: float | None = None
+    travel: str = ""
+    travel_reason: str = ""
+    figures: Mapping[str, float | int | str | bool | None] = field(default_factory=dict)
 
 
 class Mission(Protocol):
-    """Explore or goto: decides once per frame."""
+    """Decides once per frame."""
 
-    progress: Progress
+    @property
+    def progress(self) -> Progress:
+        """Where it stands."""
 
     def decide(self, observation: Observation) -> Decision:
         """Choose what to do after this frame."""

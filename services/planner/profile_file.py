@@ -32,7 +32,7 @@ def profile_of_file(path: Path) -> Profile:
     found = _read(path)
     base = profile_named(found.base)
     try:
-        return Profile.model_validate(base.model_dump() | found.thresholds)
+        return base.replaced(**found.thresholds)
     except ValidationError as error:
         faults = "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors())
         raise ValueError(f"profile file {path}: {faults}") from error

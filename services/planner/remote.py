@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 
-from services.planner.graph import MapGraph
-from services.planner.ports import GOAL
-from services.planner.rebasing import rebased
+from services.planner.ports import Matches
 from shared.bus import Bus
+from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.rebasing import rebased
+from shared.mapgraph.routing import GOAL
 from shared.messages import MapReply, MapRequest, MatchRequest
 from shared.messages.features import Features
 from shared.messages.maps import AddNode, DeleteNode, MapDelta, Operation
-from shared.messages.matching import NodeMatch
 from shared.queries import RefusedError
 from shared.topics import MAP, MATCH
 
@@ -111,9 +111,7 @@ class RemoteMatcher:
         self.frame_seq, self.frame_stamp_ns = frame_seq, frame_stamp_ns
         self.match_ms = self.verify_ms = 0.0
 
-    def match(
-        self, node_ids: Sequence[int], best_k: int = 0, targets: Sequence[Features] = ()
-    ) -> dict[int, NodeMatch]:
+    def match(self, node_ids: Sequence[int], best_k: int = 0, targets: Sequence[Features] = ()) -> Matches:
         """Matches of the current frame by node id; the first target is GOAL."""
         return self._ask(
             MatchRequest(
@@ -127,7 +125,7 @@ class RemoteMatcher:
             )
         )
 
-    def locate(self, features: Features, best_k: int) -> dict[int, NodeMatch]:
+    def locate(self, features: Features, best_k: int) -> Matches:
         """Matches of any picture with the most similar nodes."""
         return self._ask(
             MatchRequest(
@@ -139,7 +137,7 @@ class RemoteMatcher:
             )
         )
 
-    def _ask(self, request: MatchRequest) -> dict[int, NodeMatch]:
+    def _ask(self, request: MatchRequest) -> Matches:
         reply = self._bus.ask(MATCH, request, self._timeout_s, robot=self._robot)
         self.match_ms += reply.match_ms
         self.verify_ms += reply.verify_ms

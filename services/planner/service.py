@@ -4,21 +4,34 @@ import logging
 import threading
 import time
 
-from services.planner.control import MissionControl, MissionError
+from services.planner.control import MissionControl
+from services.planner.mission_kinds import MissionError, mission_kinds
 from services.planner.ports import Decision, Observation
 from services.planner.profiles import Profile
 from services.planner.settings import PlannerSettings
 from shared.bus import Bus
-from shared.messages import EStopState, Event, Features, Heading, MissionRequest, MissionStatus, Ranges
+from shared.messages import (
+    EStopState,
+    Event,
+    Features,
+    Heading,
+    MissionKinds,
+    MissionRequest,
+    MissionStatus,
+    Ranges,
+)
 from shared.messages.missions import EventValue
 from shared.queries import QueryError, RefusedError, Request
-from shared.topics import EVENT, FEATURES, HEADING, MAP_DELTA, MISSION, RANGES, STATUS, STOPPED
+from shared.topics import EVENT, FEATURES, HEADING, MAP_DELTA, MISSION, MISSION_KINDS, RANGES, STATUS, STOPPED
 from shared.wire import WireError
 
 log = logging.getLogger(__name__)
 
 PERIOD_S = 0.1
+"""Longest sleep when nothing comes: requests and deaths are noticed this soon."""
+
 HEARTBEAT_S = 1.0
+"""Statuses are repeated this often: who was away, or lost a message, knows it this much later."""
 
 
 class Planner:
@@ -34,10 +47,12 @@ class Planner:
         self._stops = bus.subscribe(STOPPED, robot=robot)
         self._planners = bus.subscribe(STATUS, robot=robot)
         self._requests = bus.requests(MISSION, robot=robot)
+        self._kind_requests = bus.requests(MISSION_KINDS, robot=robot)
         self._headings = bus.publisher(HEADING, robot=robot)
         self._statuses = bus.publisher(STATUS, robot=robot)
         self._events = bus.publisher(EVENT, robot=robot)
-        self.control = MissionControl(settings, self._profile, bus)
+        self._kinds = mission_kinds(settings.missions_folder)
+        self.control = MissionControl(settings, self._profile, self._kinds, bus)
         self._replaced = False
         self._stopped: EStopState | None = None
         self._features: Features | None = None
@@ -46,7 +61,7 @@ class Planner:
         self._event_count = 0
         self._heartbeat_s = 0.0
 
-    def turn(self, now_s: float) -> None:
+    def step(self, now_s: float) -> None:
         """Requests first, then the newest frame; a planner that was replaced does neither."""
         if self._is_replaced():
             self._stand_by()
@@ -54,6 +69,8 @@ class Planner:
         self._stopped = self._stops.take() or self._stopped
         while (request := self._requests.take()) is not None:
             self._handle(request)
+        while (question := self._kind_requests.take()) is not None:
+            question.reply(MissionKinds(kinds=self._kinds.infos()))
         if (stop := self._emergency_stop()) and self.control.state == "running":
             self.control.pause(stop)
             self._publish_status(now_s)
@@ -86,6 +103,8 @@ class Planner:
         """Leave every question to the other planner, and the robot too."""
         while (request := self._requests.take()) is not None:
             request.leave()
+        while (question := self._kind_requests.take()) is not None:
+            question.leave()
         self._deltas.take_all()
 
     def _ready(self, features: Features, ranges: Ranges) -> bool:
@@ -119,8 +138,8 @@ class Planner:
             action=decision.action,
             heading_rad=decision.heading_rad,
             s_cv=decision.s_cv,
-            s_slow=self._profile.s_slow,
-            s_max=self._profile.s_max,
+            s_slow=self._profile.travel.s_slow,
+            s_max=self._profile.travel.s_max,
             speed_fraction=decision.speed_fraction,
             method=decision.method,
             why=decision.why[:400],
@@ -176,7 +195,8 @@ class Planner:
         try:
             status = self.control.handle(request.message)
         except (MissionError, QueryError, WireError) as error:
-            request.refuse(str(error), error.code if isinstance(error, RefusedError) else "")
+            code = error.code if isinstance(error, RefusedError | MissionError) else ""
+            request.refuse(str(error), code)
             return
         request.reply(status)
         self._statuses.put(status)
@@ -197,6 +217,6 @@ def run(settings: PlannerSettings, bus: Bus, stop: threading.Event) -> None:
                 planner.control.claim()
                 claimed = True
                 bus.announce("planner")
-            planner.turn(time.monotonic())
+            planner.step(time.monotonic())
         except (QueryError, WireError) as error:
             bus.counters.count("unanswered", str(error))

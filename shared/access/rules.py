@@ -84,6 +84,7 @@ QUESTIONS: dict[Query[Any, Any], Grant] = {
     topics.MATCH: _grant([Role.FEATURES], [Role.PLANNER, *PEOPLE]),
     topics.EXTRACT: _grant([Role.FEATURES], PEOPLE),
     topics.MISSION: _grant([Role.PLANNER], PEOPLE),
+    topics.MISSION_KINDS: _grant([Role.PLANNER], PEOPLE),
     topics.ESTOP: _grant([Role.DRIVE], PEOPLE),
     # One key reads and writes: who only reads has a key of its own.
     topics.MAP: _grant([Role.MAP_STORE], [Role.PLANNER, *PEOPLE]),

@@ -6,7 +6,13 @@ from shared.messages.estop import EStopRequest, EStopState
 from shared.messages.features import ExtractRequest, Features
 from shared.messages.maps import MapDelta, MapReply, MapRequest, MissionRecord, MissionRecordRequest
 from shared.messages.matching import MatchReply, MatchRequest
-from shared.messages.missions import Event, MissionRequest, MissionStatus
+from shared.messages.missions import (
+    Event,
+    MissionKinds,
+    MissionKindsRequest,
+    MissionRequest,
+    MissionStatus,
+)
 from shared.messages.sensors import Frame, Ranges
 from shared.messages.simulation import SimulationReply, SimulationRequest, Truth
 
@@ -23,6 +29,8 @@ ALL: tuple[type[Message], ...] = (
     EStopState,
     MissionRequest,
     MissionStatus,
+    MissionKindsRequest,
+    MissionKinds,
     Event,
     MapRequest,
     MapReply,
@@ -51,6 +59,8 @@ __all__ = [
     "MatchReply",
     "MatchRequest",
     "Message",
+    "MissionKinds",
+    "MissionKindsRequest",
     "MissionRecord",
     "MissionRecordRequest",
     "MissionRequest",

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from shared.messages.base import SECTORS, Bearing, Message, Name, Part
 from shared.messages.features import Features
-from shared.messages.missions import FailureKind
+from shared.messages.missions import FailureKind, KindName, Parameters
 
 Sectors = Annotated[tuple[bool, ...], Field(min_length=SECTORS, max_length=SECTORS, fail_fast=True)]
 MAP_ITEMS = 2_000_000
@@ -172,7 +172,8 @@ class MissionRecord(Message):
     """A mission as kept by the map store, so that a planner that restarts goes on with it.
 
     Attributes:
-        action: "" once it has ended; then `ended_action` says what it was, `outcome` and what follows how.
+        action: kind of mission; "" once it has ended: then `ended_action` says what it was, `outcome` and
+            what follows how.
     """
 
     SCHEMA: ClassVar[str] = "mission_record.v1"
@@ -180,15 +181,16 @@ class MissionRecord(Message):
     robot: Name
     epoch: int = Field(default=0, ge=0)
     mission_id: str = ""
-    action: Literal["", "explore", "goto"] = ""
+    action: KindName = ""
     map: Name = "default"
+    parameters: Parameters = Field(default_factory=dict)
     goal: Features | None = None
     goal_node: int | None = None
     seed: int = 0
     max_steps: int = 20_000
     step: int = 0
     paused: bool = False
-    ended_action: Literal["", "explore", "goto"] = ""
+    ended_action: KindName = ""
     outcome: Literal["", "succeeded", "failed", "cancelled"] = ""
     failure: FailureKind = ""
     reason: str = Field(default="", max_length=400)

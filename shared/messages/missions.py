@@ -1,8 +1,9 @@
 """Missions: what a robot is asked to do, how it goes and why. Gateway <-> planner."""
 
-from typing import ClassVar, Literal
+import math
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import AfterValidator, Field, JsonValue
 
 from shared.messages.base import Message, Name, Part
 from shared.messages.features import Features
@@ -13,22 +14,65 @@ FailureKind = Literal[
 ]
 
 
+CONTROLS = ("pause", "resume", "cancel", "status")
+"""Actions that are no kind of mission."""
+
+KindName = Annotated[str, Field(pattern=r"^[a-z0-9_-]{0,64}$")]
+"""Name of a kind of mission, or "" for none. Which there are, the planner says (`MissionKinds`)."""
+
+
+def _portable(value: Any) -> Any:
+    """Refuse, at any depth, numbers that JSON or msgpack has not."""
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ValueError("numbers must be finite")
+    if isinstance(value, int) and not -(2**63) <= value < 2**63:
+        raise ValueError("integers must fit into 64 bits")
+    for inner in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
+        _portable(inner)
+    return value
+
+
+Parameters = Annotated[dict[str, JsonValue], Field(max_length=64), AfterValidator(_portable)]
+"""What a kind of mission asks for, by name; its own model checks them."""
+
+
 class MissionRequest(Message):
-    """Start, pause, resume, cancel or ask. A goto names its goal by picture or by node."""
+    """Start, pause, resume, cancel or ask.
+
+    Attributes:
+        action: one of CONTROLS, or the kind of mission to start.
+        parameters: of the kind.
+        goal: features of a goal picture, for kinds that take one.
+        goal_node: the parameter of that name, from senders that know no parameters.
+    """
 
     SCHEMA: ClassVar[str] = "mission_request.v1"
 
-    action: Literal["explore", "goto", "pause", "resume", "cancel", "status"]
+    action: Name
     map: Name = "default"
     mission_id: str = Field(default="", max_length=64)
+    parameters: Parameters = Field(default_factory=dict)
     goal: Features | None = None
     goal_node: int | None = None
     seed: int = Field(default=0, ge=0)
     max_steps: int = Field(default=20_000, ge=1)
 
 
+class EventValue(Part):
+    """One named figure of an event or a mission."""
+
+    name: str = Field(max_length=64)
+    value: float | int | str | bool | None
+
+
 class MissionStatus(Message):
-    """The state of a robot's current or last mission, published at every step."""
+    """The state of a robot's current or last mission, published at every step.
+
+    Attributes:
+        figures: those that the kind's record shows.
+        travel: state of the travel machine (deploy/TRAVEL.md); "" while the mission does not travel.
+        travel_reason: of its last transition.
+    """
 
     SCHEMA: ClassVar[str] = "mission_status.v1"
     MAX_ITEMS: ClassVar[int] = 25_000
@@ -50,13 +94,40 @@ class MissionStatus(Message):
     similarity: int = 0
     disparity_rad: float | None = None
     epoch: int = 0
+    figures: tuple[EventValue, ...] = Field(default=(), max_length=64, fail_fast=True)
+    travel: str = Field(default="", max_length=32)
+    travel_reason: str = Field(default="", max_length=200)
 
 
-class EventValue(Part):
-    """One named figure of an event."""
+class MissionKindInfo(Part):
+    """What other processes need to know of a kind of mission.
 
-    name: str = Field(max_length=64)
-    value: float | int | str | bool | None
+    Attributes:
+        title: for people, as on a button.
+        parameters: JSON Schema of its parameters.
+        shown: figures that its record shows, by their names in the status.
+        takes_picture: whether a goal picture may come with the request.
+    """
+
+    name: Name
+    title: str = Field(default="", max_length=100)
+    parameters: Parameters = Field(default_factory=dict)
+    shown: tuple[Annotated[str, Field(max_length=64)], ...] = Field(default=(), max_length=32)
+    takes_picture: bool = False
+
+
+class MissionKindsRequest(Message):
+    """Ask a planner which kinds of mission it knows."""
+
+    SCHEMA: ClassVar[str] = "mission_kinds_request.v1"
+
+
+class MissionKinds(Message):
+    """The kinds of mission of one planner, by name."""
+
+    SCHEMA: ClassVar[str] = "mission_kinds.v1"
+
+    kinds: tuple[MissionKindInfo, ...] = Field(default=(), max_length=256, fail_fast=True)
 
 
 class Event(Message):

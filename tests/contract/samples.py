@@ -20,6 +20,8 @@ from shared.messages import (
     MatchReply,
     MatchRequest,
     Message,
+    MissionKinds,
+    MissionKindsRequest,
     MissionRecord,
     MissionRecordRequest,
     MissionRequest,
@@ -40,7 +42,7 @@ from shared.messages.maps import (
     UpdateNode,
 )
 from shared.messages.matching import NodeMatch
-from shared.messages.missions import EventValue
+from shared.messages.missions import EventValue, MissionKindInfo
 from shared.messages.simulation import Pose
 from shared.wire import encode
 
@@ -130,6 +132,7 @@ def mission() -> MissionRecord:
         mission_id="m-1",
         action="goto",
         map="flat",
+        parameters={"rounds": 2, "places": ["dock", "door"]},
         goal=features(),
         goal_node=4,
         seed=1,
@@ -224,6 +227,7 @@ def samples() -> dict[type[Message], Message]:
             action="goto",
             map="flat",
             mission_id="m-1",
+            parameters={"rounds": 2, "places": ["dock", "door"]},
             goal=features(),
             goal_node=4,
             seed=1,
@@ -248,6 +252,22 @@ def samples() -> dict[type[Message], Message]:
             similarity=70,
             disparity_rad=0.25,
             epoch=3,
+            figures=(EventValue(name="similarity", value=70),),
+            travel="following",
+            travel_reason="a path leads from a node in sight to the destination",
+        ),
+        MissionKindsRequest(**at),
+        MissionKinds(
+            **at,
+            kinds=(
+                MissionKindInfo(
+                    name="patrol",
+                    title="Go round",
+                    parameters={"type": "object", "properties": {"rounds": {"type": "integer"}}},
+                    shown=("rounds",),
+                    takes_picture=True,
+                ),
+            ),
         ),
         Event(
             **at,

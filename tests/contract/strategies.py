@@ -53,6 +53,12 @@ def _value(annotation: Any, metadata: tuple[Any, ...]) -> st.SearchStrategy[Any]
         return st.lists(_value(get_args(annotation)[0], ()), min_size=least, max_size=max(LONG, least)).map(
             tuple
         )
+    if origin is dict:
+        plain = st.one_of(st.none(), st.booleans(), st.integers(-WIDEST, WIDEST), st.text(max_size=20))
+        values = st.one_of(
+            plain, st.floats(allow_nan=False, allow_infinity=False), st.lists(plain, max_size=2)
+        )
+        return st.dictionaries(st.text(max_size=20), values, max_size=LONG)
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return messages(annotation)
     return _scalar(annotation, metadata)

@@ -9,15 +9,17 @@ import numpy.typing as npt
 from shared.geometry.angles import FloatArray, wrap_rad
 
 BINS = 18
+"""Sectors of 20 degrees (section 6.1.2)."""
+
 EMPTY_RUN = 9
+"""Half of the sectors (section 6.1.2)."""
 
 
 def polar_histogram(current: FloatArray, bins: int = BINS) -> npt.NDArray[np.intp]:
     """Matches per sector of the current frame, (bins,); sector 0 starts at the seam, longitude -pi."""
     turn = (wrap_rad(current[:, 0]) + np.pi) / (2.0 * np.pi)
-    index = np.minimum(
-        (turn * bins + 1e-9).astype(np.intp), bins - 1
-    )  # an angle on an edge belongs to the upper bin
+    upper = turn * bins + 1e-9  # an angle on an edge belongs to the upper bin
+    index = np.minimum(upper.astype(np.intp), bins - 1)
     return np.bincount(index, minlength=bins)
 
 

@@ -1,45 +1,176 @@
-"""Leaving a place in an unexplored direction. Pure."""
+"""Leaving a node, frame by frame: until what is seen is new, known, blocked, or aliased."""
 
 import math
 from dataclasses import dataclass
 
-from services.planner.mapping.places import CONFIDENCE_MIN
+from services.planner.mapping.back_bearing import BackBearing
+from services.planner.mapping.edges import judge_edges
+from services.planner.mapping.nodes import add_node, is_new_node
+from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
 from services.planner.profiles import Profile
-from services.planner.similarity import CLOSE, similarity
-from shared.messages.matching import NodeMatch
+from services.planner.similarity import ranked, similarity, trusted
+from services.planner.surroundings import free_way_m, hidden_openings, through_gap_rad
+from shared.mapgraph.cycle_consistency import far_nodes
+from shared.mapgraph.frontiers import mark_explored, sector_rad
+from shared.mapgraph.graph import MapGraph
+from shared.messages.maps import UpdateNode
+from shared.messages.sensors import Ranges
 
-FIRST_JUMP_RAD = math.radians(90.0)
-"""The direction back is about opposite to the way at first; the robot may still get round something."""
+COMPARED = 5
+"""The node left and the neighbours most similar to it; chosen: they surround the first metres of the way."""
 
-JUMP_RAD = math.radians(25.0)
-"""Then it turns slowly while the robot drives away; it never jumps so far between two frames."""
+CORNER_STEPS = 2
+"""Steps after which a view that is out of sight of the map means a corner; chosen: before, a frame was
+missed."""
+
+DOORWAY_NODES = 3
+"""Nearest nodes asked whether they know an opening; chosen: one before, one after and one beside it."""
 
 
-@dataclass
-class Departure:
-    """Leaving `node_id` through `sector`, straight on in the direction `heading_rad` (robot frame)."""
+@dataclass(frozen=True)
+class NewNode:
+    """A node was added where the robot stands."""
 
     node_id: int
-    sector: int
-    heading_rad: float
-    steps: int = 0
-    unseen_steps: int = 0
-    retreating: bool = False
-    back_rad: float | None = None
+    notes: tuple[Note, ...]
 
-    def follows(self, origin: NodeMatch | None, profile: Profile) -> bool:
-        """Whether the direction back turned smoothly since the last frame; a jump means a look-alike view.
 
-        Close to the place the direction may turn by anything: the robot passes it on its way out.
-        """
-        if origin is None or origin.heading_rad is None or origin.confidence < CONFIDENCE_MIN:
-            return True
-        if similarity(origin, profile) > CLOSE * profile.s_node_max:
-            return True
-        expected, jump_rad = self.heading_rad + math.pi, FIRST_JUMP_RAD
-        if self.back_rad is not None:
-            expected, jump_rad = self.back_rad, JUMP_RAD
-        if abs(math.remainder(origin.heading_rad - expected, math.tau)) > jump_rad:
+class Departure:
+    """Leaving `node_id` through `sector`. `done` once the direction is closed; a NewNode ends it as well.
+
+    Attributes:
+        heading_rad: where it leads, robot frame; held by the yaw towards the node left.
+    """
+
+    def __init__(
+        self,
+        profile: Profile,
+        maps: MapAccess,
+        matcher: Matcher,
+        node_id: int,
+        sector: int,
+        heading_rad: float,
+    ) -> None:
+        self._profile, self._maps, self._matcher = profile, maps, matcher
+        self.node_id, self.sector, self.heading_rad = node_id, sector, heading_rad
+        self._back = BackBearing()
+        self._steps = self._unseen_frames = 0
+        self._retreating = False
+        self.done = False
+        self.progress = Progress()
+
+    def step(self, observation: Observation) -> Decision | NewNode:
+        """Go straight on, or end."""
+        self._steps += 1
+        rules = self._profile.mapping
+        matches = self._matcher.match(self._near(), 0)
+        origin = matches.get(self.node_id)
+        best = ranked(matches, self._profile)
+        s_best = similarity(best[0][1], self._profile) if best else 0
+        self.progress = Progress(nearest_node=best[0][0] if best else None, similarity=s_best)
+        if origin is not None and trusted(origin, self._profile) and origin.yaw_rad is not None:
+            self.heading_rad = math.remainder(sector_rad(self.sector) + origin.yaw_rad, math.tau)
+        if s_best <= rules.s_edge_min:
+            return self._out_of_sight(s_best)
+        verified = self._profile.sensing.similarity == "verified"
+        if verified and not self._back.follows(origin, self.heading_rad, self._profile):
+            return self._lost_track()
+        if self._retreating or self._doorway(observation.ranges, matches):
+            return self._new_node(observation, {**self._candidates(), **matches})
+        if is_new_node(matches, self._profile):
+            return self._new_or_known(observation, {**self._candidates(), **matches})
+        blocked_m = self._profile.sensing.blocked_m
+        if free_way_m(observation.ranges, self.heading_rad, self._profile) < blocked_m:
+            return self._close("blocked by an obstacle")
+        if self._steps > rules.departure_steps:
+            return self._close("nothing new on the way")
+        heading_rad = through_gap_rad(observation.ranges, self.heading_rad, self._profile)
+        return _go(heading_rad, f"leaving node {self.node_id}, S {s_best}")
+
+    def _new_or_known(self, observation: Observation, matches: Matches) -> Decision | NewNode:
+        """New unless some node of the whole map is too similar; aliased views make no node known."""
+        graph = self._maps.graph
+        edges = judge_edges(graph, observation, matches, self._profile, self.node_id)
+        credible = {n: m for n, m in matches.items() if n not in edges.refused or n == self.node_id}
+        closes_loop = self._profile.mapping.s_far and far_nodes(graph, edges.admitted, self.node_id)
+        if is_new_node(credible, self._profile) or closes_loop:
+            return self._new_node(observation, credible)
+        return self._close(f"leads to node {ranked(credible, self._profile)[0][0]}")
+
+    def _out_of_sight(self, s_best: int) -> Decision:
+        """The view changed within a few steps, as at a corner: go back and make a node there."""
+        self._unseen_frames += 1
+        if self._unseen_frames > self._profile.mapping.saturation_steps:
+            return self._close("out of sight of the map", lost=True)
+        self._retreating = self._steps > CORNER_STEPS
+        heading = self.heading_rad + (math.pi if self._retreating else 0.0)
+        return _go(heading, f"out of sight of the map, S {s_best}")
+
+    def _lost_track(self) -> Decision:
+        """The node left seems to lie elsewhere all at once: go back to where it did not."""
+        self._unseen_frames += 1
+        if self._unseen_frames > self._profile.mapping.saturation_steps:
+            return self._close("the view back is aliased", lost=True)
+        self._retreating = True
+        return _go(self.heading_rad + math.pi, f"the bearing back to node {self.node_id} jumped")
+
+    def _doorway(self, ranges: Ranges, matches: Matches) -> bool:
+        """Whether a way out shows beside the way that the nodes around do not know."""
+        if not self._profile.sensing.doorway_m or is_new_node(matches, self._profile):
             return False
-        self.back_rad = origin.heading_rad
-        return True
+        nodes = self._maps.graph.nodes
+        seen = [(n, m) for n, m in ranked(matches, self._profile) if n in nodes and trusted(m, self._profile)]
+        near = [(nodes[n], m.yaw_rad or 0.0) for n, m in seen[:DOORWAY_NODES]]
+        return bool(near) and bool(hidden_openings(ranges, near, self._profile))
+
+    def _new_node(self, observation: Observation, matches: Matches) -> Decision | NewNode:
+        edges = judge_edges(self._maps.graph, observation, matches, self._profile, self.node_id)
+        if not edges.admitted:
+            return self._close("no view back to be sure of", lost=True)
+        self._mark_explored()
+        node_id, refused = add_node(self._maps, observation, edges, self._profile, self.node_id)
+        count = len(self._maps.graph.neighbours(node_id))
+        nearest, match = ranked(matches, self._profile)[0]
+        values: dict[str, float | int | str | bool | None] = {
+            "node": node_id,
+            "edges": count,
+            "nearest": nearest,
+            "s": similarity(match, self._profile),
+        }
+        return NewNode(node_id, (Note("node_added", f"new node with {count} edges", values), *refused))
+
+    def _close(self, why: str, *, lost: bool = False) -> Decision:
+        """This direction is done; go back to known ground when nothing is seen."""
+        self._mark_explored()
+        self.done = True
+        note = Note("direction_closed", f"node {self.node_id} direction {self.sector}: {why}")
+        if lost:
+            back_rad = math.remainder(self.heading_rad + math.pi, math.tau)
+            return Decision("go", back_rad, 0, 1.0, "reverse", f"lost mode: {why}", (note,))
+        return Decision("hold", why=why, notes=(note,))
+
+    def _mark_explored(self) -> None:
+        node = self._maps.graph.nodes.get(self.node_id)
+        if node is not None and not node.explored[self.sector]:
+            self._maps.commit([UpdateNode(node=mark_explored(node, self.sector))])
+
+    def _candidates(self) -> Matches:
+        """Nodes that may get an edge: the most similar ones, or the newest (thesis section 6.1.1)."""
+        newest = self._profile.mapping.edge_window
+        if not newest:
+            return self._matcher.match([], self._profile.mapping.edge_candidates)
+        return self._matcher.match(sorted(self._maps.graph.nodes)[-newest:], 0)
+
+    def _near(self) -> list[int]:
+        graph = self._maps.graph
+        around = sorted(graph.neighbours(self.node_id), key=lambda n: -_inliers(graph, self.node_id, n))
+        return [self.node_id, *around[: COMPARED - 1]]
+
+
+def _go(heading_rad: float, why: str) -> Decision:
+    return Decision("go", math.remainder(heading_rad, math.tau), 0, 1.0, "frontier", why)
+
+
+def _inliers(graph: MapGraph, first: int, second: int) -> int:
+    edge = graph.edge(first, second)
+    return edge.inliers if edge is not None else 0

@@ -1,241 +1,223 @@
 """Mission goto: drive to where a picture was taken (thesis sections 4.1 and 4.3)."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
-from services.planner.mapping.surroundings import is_clear, is_clear_from
-from services.planner.ports import GOAL, Decision, MapAccess, Matcher, Note, Observation, Progress
+from pydantic import BaseModel, ConfigDict, Field
+
+from services.planner.mission_kinds import MissionContext, MissionError, MissionKind
+from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
 from services.planner.profiles import Profile
-from services.planner.similarity import ranked, similarity, trusted
-from services.planner.travel.experience import Experience, Leg, leg
-from services.planner.travel.following import PathFollower, Target
-from services.planner.travel.region import places_around
-from services.planner.travel.routing import plan_path, visible
-from services.planner.travel.search import Search, search_back
+from services.planner.similarity import ranked, trusted
+from services.planner.similarity import similarity as similarity_of
+from services.planner.surroundings import is_clear, is_clear_from
+from services.planner.travel.destination import Setback, Verdict
+from services.planner.travel.edge_experience import EdgeExperience
+from services.planner.travel.localisation import reachable_nodes
+from services.planner.travel.machine import Travel
+from services.planner.travel.states import Event, State
+from shared.mapgraph.graph import EdgeKey, edge_key
+from shared.mapgraph.routing import GOAL
 from shared.messages.features import Features
-from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
 from shared.messages.sensors import Ranges
 
-LOCALISE_K = 8
-MAX_LOST = 12
-MAX_STUCK = 8
+COMPARED = 8
+"""Nodes compared to localise a frame or the goal; chosen: about the neighbours of a node of the apartment's
+map."""
+
+LOST_MAX = 12
+"""Times a mission may lose its waypoint; chosen: more than any round of `topnav hide-and-seek` needed."""
+
+STUCK_MAX = 8
+"""Times it may come no nearer to one; chosen alike."""
+
 SEARCH_STEPS = 150
-LAST_LEG_RAD = 1.0
+"""Steps of searching before the mission ends as lost (decision 0014)."""
+
+AVOID_RAD = 0.5
+"""Added to the cost of starting at a waypoint that failed; chosen: another node within 3 m comes first."""
+
+LAST_EDGE_RAD = 1.0
+"""Added to the way from a last node from which the goal was not found; chosen: its other sides come first."""
+
 GOAL_SHARE = 0.6
-"""Least similarity of an arrival relative to that of the most similar place: where the goal picture was
-taken, nothing resembles the view more than the goal does. Of 75 arrivals in three worlds the right ones had
-S 159 and more, the one look-alike 31."""
+"""Least similarity of an arrival relative to that of the most similar node: where the goal picture was taken,
+nothing resembles the view more than the goal does. Of 75 arrivals in three worlds the right ones had S 159
+and more, the one aliased 31."""
 
 
-class Goto:
-    """Localise current and target frame, plan, follow, replan; ends with arrival or a typed failure."""
+class GotoParameters(BaseModel):
+    """Goal of a goto without a picture."""
 
-    def __init__(self, profile: Profile, maps: MapAccess, matcher: Matcher, goal: Features) -> None:
-        self._profile, self._maps, self._matcher, self._goal = profile, maps, matcher, goal
-        self._targets: dict[int, float] | None = None
-        self._follower: PathFollower | None = None
-        self._lost = self._stuck = 0
-        self._look_alike = False
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    goal_node: int | None = Field(default=None, ge=0, lt=2**63, description="A node of the map.")
+
+
+class GoalDestination:
+    """Where a picture was taken: the nodes it resembles, and what was learnt on the way there."""
+
+    compared, search_steps = COMPARED, SEARCH_STEPS
+
+    def __init__(
+        self, profile: Profile, maps: MapAccess, matcher: Matcher, goal: Features, experience: EdgeExperience
+    ) -> None:
+        self._profile, self._maps, self._matcher = profile, maps, matcher
+        self._experience = experience
+        self.picture: Features | None = goal
+        self.arrival_rad = profile.arrival.arrival_rad
+        self.aliased = False
+        self._targets = self._locate(goal)
         self._avoid: dict[int, float] = {}
-        self._doubted: set[Leg] = set()
-        self._experience = Experience(profile, maps)
-        self._suspect: tuple[Leg, str] | None = None
-        self._excused: set[Leg] = set()
-        self._search: Search | None = None
-        self._last_heading_rad = 0.0
-        self._last: int | None = None
-        self.progress = Progress()
+        self._lost = self._stuck = 0
+        self._suspect: tuple[EdgeKey, str] | None = None
+        self._relocated: set[EdgeKey] = set()
 
-    def decide(self, observation: Observation) -> Decision:
-        """One step; the frame itself is already with the matcher."""
-        notes: tuple[Note, ...] = ()
-        if self._targets is None:
-            self._targets = self._locate_goal()
-            notes = (Note("goal_located", f"goal resembles nodes {sorted(self._targets)}"),)
-        if self._follower is None:
-            notes += self._plan_notes(here := self._localise(), observation.ranges)
-            waiting = self._plan(here, observation.ranges)
-            if waiting is not None:
-                return _with_notes(waiting, notes)
-        assert self._follower is not None
-        state, decision = self._follower.step(observation, self._matcher)
-        self.progress = self._follower.progress
-        if state == "arrived":
-            here = self._places_here()
-            s_map = max((similarity(match, self._profile) for match in here.values()), default=0)
-            if self._follower.progress.similarity >= GOAL_SHARE * s_map:
-                return self._end("succeeded", "", decision.why, notes + decision.notes)
-            self._deceived(here)
-            why = f"a look-alike of the goal: a place of the map resembles this view more, S {s_map}"
-            state, decision = "stuck", replace(decision, why=f"{decision.why}, {why}")
-        if state == "going":
-            self._last_heading_rad = decision.heading_rad
-            if self.progress.nearest_node is not None:
-                self._last = self.progress.nearest_node
-            return _with_notes(decision, notes)
-        return self._recover(state, decision, notes)
+    def targets(self) -> dict[int, float]:
+        """Nodes the goal resembles, with the cost of the way from each."""
+        return self._targets
 
-    def _localise(self) -> dict[int, NodeMatch]:
-        """The goal and the most similar places of the whole map, from the current frame alone."""
-        return self._matcher.match([], LOCALISE_K, (self._goal,))
+    def starts(self, visible: Mapping[int, float]) -> dict[int, float]:
+        """Without nodes that no way was found to; those that failed come later."""
+        closed = self._experience.unreachable
+        return {node: c + self._avoid.get(node, 0.0) for node, c in visible.items() if node not in closed}
 
-    def _places_here(self) -> dict[int, NodeMatch]:
-        """The places that resemble this view; none by the thesis's rules, which do not ask."""
-        if self._profile.path_cost == "nodes":
-            return {}
-        return {node: match for node, match in self._localise().items() if node != GOAL}
+    def goes_straight(self) -> bool:
+        """Not once the robot got stuck: what shut the straight way is still there."""
+        return not self._stuck
 
-    def _deceived(self, here: dict[int, NodeMatch]) -> None:
-        """This is not where the picture was taken: nor is that beside the places seen from here."""
-        self._look_alike = True
-        seen = {node for node, match in here.items() if trusted(match, self._profile)}
-        elsewhere = {node: cost for node, cost in (self._targets or {}).items() if node not in seen}
-        self._targets = elsewhere or self._targets
+    def set_out(self) -> None:
+        """Nothing to remember."""
 
-    def _plan_notes(self, here: dict[int, NodeMatch], ranges: Ranges) -> tuple[Note, ...]:
+    def localised(self, seen: Matches, ranges: Ranges) -> tuple[Note, ...]:
         """What localisation says about edges: one that just failed, suspended ones that are seen free."""
-        seen = {n: m for n, m in here.items() if n != GOAL and trusted(m, self._profile)}
-        notes = list(self._judge_suspect(seen))
-        for near in (n for n, m in seen.items() if m.status == "no_baseline"):
-            for far, match in seen.items():
+        sure = {node: match for node, match in seen.items() if trusted(match, self._profile)}
+        notes = list(self._judge_suspect(sure))
+        for near in (node for node, match in sure.items() if match.status == "no_baseline"):
+            for far, match in sure.items():
                 if far != near and is_clear(match, ranges, self._profile):
-                    note = self._experience.seen_free(leg(near, far), match)
+                    note = self._experience.seen_free(edge_key(near, far), match)
                     notes += [] if note is None else [note]
         return tuple(notes)
 
-    def _judge_suspect(self, seen: dict[int, NodeMatch]) -> tuple[Note, ...]:
-        """A robot that finds itself far from the leg it lost was carried: that says nothing about the leg.
+    def no_path(self) -> Verdict:
+        """Lift all bans once; then, or when nothing is banned for long, give up."""
+        self._lost += 1
+        banned = len(self._experience.banned)
+        why = f"no path from here to the goal, {banned} edges failed in this mission"
+        if self._experience.lift_bans():
+            return Verdict(notes=(Note("second_try", f"{why}: all are tried once more"),), why=why)
+        if self._lost <= LOST_MAX and not banned:
+            return Verdict(why=why)
+        return Verdict(failure="blocked" if banned else "no_path", why=why)
 
-        Nobody carries it off the same leg twice: then the leg leads elsewhere than the map says.
+    def setback(self, setback: Setback) -> Verdict:
+        """Blame the edge or the waypoint that failed."""
+        edge, waypoint = setback.edge, setback.waypoint
+        if waypoint == GOAL and edge is not None and setback.path[-2] in self._targets:
+            self._targets[setback.path[-2]] += LAST_EDGE_RAD
+        self._avoid[waypoint] = self._avoid.get(waypoint, 0.0) + AVOID_RAD
+        edge = edge if edge is None or GOAL not in edge else None
+        notes: tuple[Note, ...] = (Note("replan", f"{setback.event.value}: {setback.why}"),)
+        if setback.event is Event.WAYPOINT_LOST:
+            if edge is not None:
+                self._suspect = (edge, "lost")
+            self._lost += 1
+            given_up: FailureKind = "blocked" if self._experience.banned else "lost"
+            return Verdict(notes, given_up if self._lost > LOST_MAX else "", still_there=self._lost == 1)
+        self._stuck += 1
+        notes += self._experience.stuck(edge, waypoint)
+        return Verdict(notes, "blocked" if self._stuck > STUCK_MAX else "")
+
+    def refutes_arrival(self, end: int, similarity: int, last: int | None) -> str:  # noqa: ARG002
+        """Whether another node resembles the view more than the goal does; the thesis does not ask."""
+        if self._profile.travel.path_cost == "nodes":
+            return ""
+        assert self.picture is not None
+        here = self._matcher.match([], COMPARED, (self.picture,))
+        here.pop(GOAL, None)
+        s_map = max((similarity_of(match, self._profile) for match in here.values()), default=0)
+        if similarity >= GOAL_SHARE * s_map:
+            return ""
+        self._rule_out(here)
+        return f"aliased: a node of the map resembles this view more than the goal does, S {s_map}"
+
+    def _locate(self, goal: Features) -> dict[int, float]:
+        found = self._matcher.locate(goal, COMPARED)
+        nodes = self._maps.graph.nodes
+        clear = {n for n, m in found.items() if n in nodes and is_clear_from(nodes[n], m, self._profile)}
+        return reachable_nodes(found, self._profile, self._profile.mapping.s_edge_min, clear)
+
+    def _rule_out(self, here: Matches) -> None:
+        """This is not where the picture was taken: nor is that beside the nodes seen from here."""
+        self.aliased = True
+        seen = {node for node, match in here.items() if trusted(match, self._profile)}
+        elsewhere = {node: cost for node, cost in self._targets.items() if node not in seen}
+        self._targets = elsewhere or self._targets
+
+    def _judge_suspect(self, seen: Matches) -> tuple[Note, ...]:
+        """A robot that finds itself far from the edge it lost was carried: that says nothing about the edge.
+
+        Nobody carries it off the same edge twice: then the edge leads elsewhere than the map says.
         """
         if self._suspect is None or not seen:
             return ()
-        (ends, why), self._suspect = self._suspect, None
+        (edge, why), self._suspect = self._suspect, None
         graph = self._maps.graph
-        near = {*ends, *graph.neighbours(ends[0]), *graph.neighbours(ends[1])}
+        near = {*edge, *graph.neighbours(edge[0]), *graph.neighbours(edge[1])}
         best = ranked(seen, self._profile)[0][0]
-        if best not in near and ends not in self._excused:
-            self._excused.add(ends)
-            return (Note("relocated", f"lost near edge {ends}, found again at node {best}"),)
-        return (self._experience.failed(ends, why),)
-
-    def _plan(self, here: dict[int, NodeMatch], ranges: Ranges) -> Decision | None:
-        """Set a follower, or return how the mission goes on without one."""
-        assert self._targets is not None
-        here = dict(here)
-        seen_goal = here.pop(GOAL, None)
-        if seen_goal is not None and not self._stuck and self._in_sight(seen_goal, ranges):
-            self._follow([GOAL])
-            return None
-        if not self._targets:
-            return self._end("failed", "goal_not_in_map", "the goal resembles no place of the map", ())
-        here = {n: here[n] for n in places_around(self._maps.graph, here, self._profile, self._last)}
-        clear = {n for n, m in here.items() if is_clear(m, ranges, self._profile)}
-        starts = visible(here, self._profile, self._profile.s_via_min, clear)
-        closed = self._experience.unreachable
-        ways = {
-            node: cost + self._avoid.get(node, 0.0) for node, cost in starts.items() if node not in closed
-        }
-        banned = self._experience.banned
-        path = plan_path(self._maps.graph, ways, self._targets, self._profile, self._doubted, banned)
-        if path:
-            self._search = None
-            self._follow([*path, GOAL])
-            return None
-        if starts:
-            return self._no_way()
-        return self._look_for_map(ranked(here, self._profile)[:1])
-
-    def _no_way(self) -> Decision:
-        """Known places are in sight, but every path is closed."""
-        self._lost += 1
-        banned = len(self._experience.banned)
-        why = f"no path from here to the goal, {banned} legs failed in this mission"
-        if self._experience.forgive():
-            return Decision("hold", why=why, notes=(Note("second_try", f"{why}: all are tried once more"),))
-        if self._lost <= MAX_LOST and not banned:
-            return Decision("hold", why=why)
-        return self._end("failed", "blocked" if banned else "no_path", why, ())
-
-    def _look_for_map(self, nearest: list[tuple[int, NodeMatch]]) -> Decision:
-        """Lost: towards what resembles a place most, else in sweeps that grow."""
-        if self._search is None:
-            self._search = search_back(self._last_heading_rad, SEARCH_STEPS)
-        s_nearest = similarity(nearest[0][1], self._profile) if nearest else 0
-        if self._search.exhausted:
-            why = f"nothing known found in {SEARCH_STEPS} steps, best similarity {s_nearest}"
-            return self._end("failed", "lost", why, ())
-        heading_rad = self._search.next_heading()
-        if nearest and nearest[0][1].heading_rad is not None:
-            heading_rad = nearest[0][1].heading_rad
-        why = f"looking for a place I know, best similarity {s_nearest}"
-        return Decision("go", heading_rad, 0, 1.0, "searching", why)
-
-    def _locate_goal(self) -> dict[int, float]:
-        """Places the goal resembles, with the cost of the last leg from each."""
-        found = self._matcher.locate(self._goal, LOCALISE_K)
-        nodes = self._maps.graph.nodes
-        clear = {n for n, m in found.items() if n in nodes and is_clear_from(nodes[n], m, self._profile)}
-        return visible(found, self._profile, self._profile.s_edge_min, clear)
-
-    def _in_sight(self, match: NodeMatch, ranges: Ranges) -> bool:
-        seen = trusted(match, self._profile) and is_clear(match, ranges, self._profile)
-        return seen and similarity(match, self._profile) > self._profile.s_edge_min
-
-    def _follow(self, path: list[int]) -> None:
-        target = Target(self._goal, self._profile.arrival_rad, self._look_alike)
-        self._follower = PathFollower(
-            self._profile, self._maps, path, target, self._doubted, self._experience
-        )
-
-    def _recover(self, state: str, decision: Decision, notes: tuple[Note, ...]) -> Decision:
-        """Give up the edge that failed and plan again from what is seen now."""
-        assert self._follower is not None
-        if state == "unclear":
-            return self._doubt(self._follower.next_leg(), decision, notes)
-        ends, via = self._follower.failed_leg()
-        if via == GOAL and ends is not None:
-            self._blame_last_leg(self._follower.path[-2])
-        self._follower = None
-        self._avoid[via] = self._avoid.get(via, 0.0) + 0.5
-        notes += (*decision.notes, Note("replan", f"{state}: {decision.why}"))
-        ends = ends if ends is None or GOAL not in ends else None
-        if state == "stuck":
-            notes += self._experience.stuck(ends, via)
-            self._stuck += 1
-            if self._stuck > MAX_STUCK:
-                return self._end("failed", "blocked", decision.why, notes)
-        elif ends is not None:
-            self._suspect = (ends, state)
-        if state != "stuck":
-            self._lost += 1
-            self._last = self._last if self._lost == 1 else None
-            if self._lost > MAX_LOST:
-                kind: FailureKind = "blocked" if self._experience.banned else "lost"
-                return self._end("failed", kind, decision.why, notes)
-        return Decision("hold", why=f"planning again: {decision.why}", notes=notes)
-
-    def _blame_last_leg(self, last: int) -> None:
-        """The goal was not found from its last place: those on its other sides come first now."""
-        if self._targets is not None and last in self._targets:
-            self._targets[last] += LAST_LEG_RAD
-
-    def _doubt(self, doubted: Leg, decision: Decision, notes: tuple[Note, ...]) -> Decision:
-        """No free ground is seen along a leg: plan again with it as the last resort."""
-        self._doubted.add(doubted)
-        self._follower = None
-        notes += (*decision.notes, Note("leg_doubted", f"leg {doubted}: {decision.why}"))
-        return Decision("hold", why=f"planning again: {decision.why}", notes=notes)
-
-    def _end(self, outcome: str, kind: FailureKind, why: str, notes: tuple[Note, ...]) -> Decision:
-        return Decision(
-            "hold",
-            why=why,
-            notes=notes,
-            outcome="succeeded" if outcome == "succeeded" else "failed",
-            failure=kind,
-        )
+        if best not in near and edge not in self._relocated:
+            self._relocated.add(edge)
+            return (Note("relocated", f"lost near edge {edge}, found again at node {best}"),)
+        return (self._experience.failed(edge, why),)
 
 
-def _with_notes(decision: Decision, notes: tuple[Note, ...]) -> Decision:
-    return replace(decision, notes=notes + decision.notes) if notes else decision
+class Goto:
+    """Travels to a goal picture; ends with arrival or a typed failure."""
+
+    def __init__(self, profile: Profile, maps: MapAccess, matcher: Matcher, goal: Features) -> None:
+        self._profile, self._maps, self._matcher, self._goal = profile, maps, matcher, goal
+        self._travel: Travel | None = None
+
+    @property
+    def progress(self) -> Progress:
+        """Where it stands."""
+        return Progress() if self._travel is None else self._travel.progress
+
+    def decide(self, observation: Observation) -> Decision:
+        """One frame; in the first one the goal is located in the map."""
+        if self._travel is not None:
+            return self._outcome(self._travel, self._travel.step(observation))
+        experience = EdgeExperience(self._profile, self._maps)
+        destination = GoalDestination(self._profile, self._maps, self._matcher, self._goal, experience)
+        self._travel = Travel(self._profile, self._maps, self._matcher, destination, experience)
+        located = Note("goal_located", f"goal resembles nodes {sorted(destination.targets())}")
+        decision = self._travel.step(observation)
+        return self._outcome(self._travel, replace(decision, notes=(located, *decision.notes)))
+
+    @staticmethod
+    def _outcome(travel: Travel, decision: Decision) -> Decision:
+        return replace(decision, outcome="succeeded") if travel.state is State.ARRIVED else decision
+
+
+def _make(context: MissionContext, parameters: GotoParameters) -> Goto:
+    node_id = parameters.goal_node
+    if (context.goal is None) == (node_id is None):
+        raise MissionError("goto needs a goal picture's features or a goal_node, exactly one of them")
+    goal = context.goal
+    if goal is None:
+        if node_id not in context.maps.graph.nodes:
+            raise MissionError(f"the map has no node {node_id}", "missing")
+        goal = context.maps.features_of(node_id)
+    return Goto(context.profile, context.maps, context.matcher, goal)
+
+
+KIND = MissionKind(
+    name="goto",
+    title="Drive to a picture or node",
+    parameters=GotoParameters,
+    make=_make,
+    shown=("similarity",),
+    takes_picture=True,
+)

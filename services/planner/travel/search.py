@@ -4,7 +4,11 @@ import math
 from dataclasses import dataclass
 
 FIRST_STEPS = 6
+"""Steps of the first sweep; chosen: 0.7 m back, where a node was last seen (nodes lie 0.7 m apart)."""
+
 GROWTH = 1.5
+"""Each sweep is longer by half: decision 0014."""
+
 TURN_RAD = math.radians(137.5)
 """The golden angle: later sweeps never repeat an earlier direction."""
 

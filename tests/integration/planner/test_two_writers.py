@@ -5,13 +5,13 @@ import time
 from itertools import pairwise
 
 import pytest
+from services.planner.mapping.places import Edges, add_node
 
-from services.planner.frontiers import sector_rad
-from services.planner.mapping.places import Edges, add_place
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT
 from services.planner.remote import RemoteMap
 from shared.bus import open_bus, wait_until
+from shared.mapgraph.frontiers import sector_rad
 from shared.messages.base import SECTORS
 from shared.messages.maps import AddNode, Edge, Node, PutEdge, UpdateNode
 from shared.messages.sensors import Ranges
@@ -68,7 +68,7 @@ def test_a_planner_knows_its_new_place_by_the_id_that_it_got(two):
     angles_rad = tuple(sector_rad(n) for n in range(SECTORS))
     ranges = Ranges(robot="r2", angles_rad=angles_rad, distances_m=(4.0,) * SECTORS, max_range_m=4.0)
     seen = Observation(FEATURES.model_copy(update={"stamp_ns": 3}), ranges)
-    node_id, _ = add_place(second, seen, Edges(), DEFAULT, None)
+    node_id, _ = add_node(second, seen, Edges(), DEFAULT, None)
     assert (node_id, second.graph.nodes[node_id].stamp_ns) == (2, 3)
 
 

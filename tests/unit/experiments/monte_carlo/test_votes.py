@@ -16,7 +16,7 @@ from experiments.monte_carlo.scene import (
 )
 from experiments.monte_carlo.tracking import DEG, DcpePlan, follow, scene_paths
 from experiments.monte_carlo.votes import draw_choices, headings, vote_table
-from services.planner.heading.registry import heading_method
+from services.planner.heading.methods import heading_estimate
 from services.planner.heading.weights import WeightSettings
 from shared.geometry.angles import wrap_rad
 
@@ -25,7 +25,7 @@ COUNTS = (5, 21, 40)
 
 def expected(scene, chosen, method):
     current, target = lonlat_from(scene.current, scene.points), lonlat_from(scene.target, scene.points)
-    found = [heading_method(method)(current[row], target[row], None).heading_rad for row in chosen]
+    found = [heading_estimate(method, current[row], target[row]).heading_rad for row in chosen]
     return np.array(found)
 
 

@@ -12,8 +12,7 @@ import pytest
 import torch
 
 from experiments.topological_navigation import SelectKeypointDescriptor, TopologicalNavigation
-from services.planner.heading.latitudes import latitude_votes
-from services.planner.heading.pairs import pair_votes
+from services.planner.heading.votes import latitude_votes, pair_votes
 from tests.unit.services.features.room import render_room
 
 PLACES = [(-1.2 + 0.3 * k, 0.0) for k in range(9)]

@@ -23,7 +23,8 @@ def write(tmp_path):
 def test_thresholds_of_the_file_replace_those_of_its_base(write):
     path = write({"base": "outdoor", "thresholds": {"s_edge_min": 33, "disparity_rad_per_m": 0.05}})
     rules = PlannerSettings(profile_file=path).rules()
-    assert rules == OUTDOOR.model_copy(update={"s_edge_min": 33, "disparity_rad_per_m": 0.05})
+    assert rules == OUTDOOR.replaced(s_edge_min=33, disparity_rad_per_m=0.05)
+    assert (rules.mapping.s_edge_min, rules.sensing.disparity_rad_per_m) == (33, 0.05)
 
 
 def test_no_file_leaves_the_named_profile():

@@ -2,9 +2,9 @@
 
 import pytest
 
-from services.planner.graph import MapGraph
-from services.planner.ports import GOAL
 from services.planner.remote import RemoteMap, RemoteMatcher
+from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.routing import GOAL
 from shared.messages import MatchReply
 from shared.messages.maps import Node
 from shared.messages.matching import NodeMatch

@@ -3,21 +3,14 @@
 import numpy as np
 import pytest
 
-from services.planner.heading.latitudes import latitude_votes
-from services.planner.heading.method_1 import method_1
-from services.planner.heading.method_2 import method_2
-from services.planner.heading.method_3 import method_3
-from services.planner.heading.method_4 import method_4
-from services.planner.heading.method_5 import method_5
-from services.planner.heading.method_6 import method_6
-from services.planner.heading.pairs import pair_votes
-from services.planner.heading.registry import heading_method
+from services.planner.heading.methods import METHODS, heading_estimate, heading_vector
+from services.planner.heading.votes import latitude_votes, pair_votes
 from services.planner.heading.weights import UNWEIGHTED, WeightSettings
 from shared.geometry.angles import difference_rad
 from tests.unit.services.planner.heading.scenes import deg, ring, see
 
 EXP = WeightSettings()
-THESIS_NAMES = ["1", "2", "3", "4", "5", "6"]
+THESIS_NAMES = list(METHODS)
 
 
 @pytest.mark.parametrize(
@@ -58,7 +51,7 @@ def test_pairs_are_unordered(count, pairs):
 def test_antipodal_pair_is_skipped():
     current, target = deg((0, 0), (180, 0)), deg((0, 0), (170, 0))
     np.testing.assert_array_equal(pair_votes(current, target).directions, [[0.0, 0.0]])
-    assert method_1(current, target).estimate().heading_rad is None
+    assert heading_estimate("1", current, target).heading_rad is None
 
 
 @pytest.mark.parametrize(
@@ -81,37 +74,38 @@ def test_vote_of_one_latitude(lat_current, lat_target, factor):
     np.testing.assert_allclose(votes.growth_rad, [growth], atol=1e-12)
 
 
-def vector(resultant):
+def vector(name, current, target, *how):
+    resultant = heading_vector(name, current, target, *how)
     return resultant.vector * np.exp(resultant.log_scale)
 
 
 def test_exponential_of_degrees_weighs_by_hand():
     current, target = deg((0, 10), (90, 10)), deg((0, 12), (90, 13))
-    np.testing.assert_allclose(vector(method_4(current, target, EXP)), [np.exp(2.0), np.exp(3.0)], rtol=1e-9)
+    np.testing.assert_allclose(vector("4", current, target, EXP), [np.exp(2.0), np.exp(3.0)], rtol=1e-9)
     radians = WeightSettings(unit="rad", gain=10.0)
     expected = np.exp(10.0 * np.deg2rad([2.0, 3.0]))
-    np.testing.assert_allclose(vector(method_4(current, target, radians)), expected, rtol=1e-9)
+    np.testing.assert_allclose(vector("4", current, target, radians), expected, rtol=1e-9)
 
 
 def test_unweighted_methods_2_and_4_are_methods_1_and_3():
     current, target = see(ring()), see(ring(), (0.6, 0.3), 1.0)
     np.testing.assert_allclose(
-        vector(method_2(current, target, UNWEIGHTED)), vector(method_1(current, target)), atol=1e-12
+        vector("2", current, target, UNWEIGHTED), vector("1", current, target), atol=1e-12
     )
     np.testing.assert_allclose(
-        vector(method_4(current, target, UNWEIGHTED)), vector(method_3(current, target)), atol=1e-12
+        vector("4", current, target, UNWEIGHTED), vector("3", current, target), atol=1e-12
     )
 
 
 def test_methods_5_and_6_add_method_4_to_1_and_2():
     current, target = see(ring(20)), see(ring(20), (0.3, -0.2), 0.5)
     weight = WeightSettings(gain=0.1)
-    four = vector(method_4(current, target, weight))
-    one, two = vector(method_1(current, target)), vector(method_2(current, target, weight))
-    np.testing.assert_allclose(vector(method_5(current, target, weight)), one + four, rtol=1e-9)
-    np.testing.assert_allclose(vector(method_6(current, target, weight)), two + four, rtol=1e-9)
+    four = vector("4", current, target, weight)
+    one, two = vector("1", current, target), vector("2", current, target, weight)
+    np.testing.assert_allclose(vector("5", current, target, weight), one + four, rtol=1e-9)
+    np.testing.assert_allclose(vector("6", current, target, weight), two + four, rtol=1e-9)
     halves = one / np.linalg.norm(one) + four / np.linalg.norm(four)
-    np.testing.assert_allclose(vector(method_5(current, target, weight, "unit")), halves, rtol=1e-9)
+    np.testing.assert_allclose(vector("5", current, target, weight, "unit"), halves, rtol=1e-9)
 
 
 @pytest.mark.parametrize("name", THESIS_NAMES)
@@ -122,7 +116,7 @@ def test_features_all_around_give_the_direction_of_travel(name, heading_deg):
     points = np.stack([3 * np.cos(angle), 3 * np.sin(angle), np.where(np.arange(36) % 2, 1.0, -1.0)], axis=1)
     heading = np.deg2rad(heading_deg)
     target = see(points, 0.4 * np.array([np.cos(heading), np.sin(heading)]), yaw_rad=0.3)
-    estimate = heading_method(name, WeightSettings(gain=0.2))(see(points), target, None)
+    estimate = heading_estimate(name, see(points), target, WeightSettings(gain=0.2))
     assert abs(np.rad2deg(difference_rad(estimate.heading_rad, heading))) < 8.0
     assert 0.0 < estimate.strength <= 1.0
 
@@ -130,24 +124,24 @@ def test_features_all_around_give_the_direction_of_travel(name, heading_deg):
 @pytest.mark.parametrize("name", THESIS_NAMES)
 @pytest.mark.parametrize("yaw", [0.1, 1.0, np.pi, -2.5])
 def test_yaw_of_the_target_does_not_alter_the_heading(name, yaw):
-    current, method = see(ring()), heading_method(name)
-    straight = method(current, see(ring(), (0.5, 0.4)), None)
-    turned = method(current, see(ring(), (0.5, 0.4), yaw), None)
+    current = see(ring())
+    straight = heading_estimate(name, current, see(ring(), (0.5, 0.4)))
+    turned = heading_estimate(name, current, see(ring(), (0.5, 0.4), yaw))
     assert abs(float(difference_rad(straight.heading_rad, turned.heading_rad))) < 1e-9
 
 
 @pytest.mark.parametrize("name", THESIS_NAMES)
 def test_turning_the_current_frame_turns_the_heading_with_it(name):
-    target, method = see(ring(), (0.5, 0.4)), heading_method(name)
-    straight = method(see(ring()), target, None)
-    turned = method(see(ring(), yaw_rad=0.7), target, None)
+    target = see(ring(), (0.5, 0.4))
+    straight = heading_estimate(name, see(ring()), target)
+    turned = heading_estimate(name, see(ring(), yaw_rad=0.7), target)
     assert abs(float(difference_rad(straight.heading_rad - 0.7, turned.heading_rad))) < 1e-9
 
 
 @pytest.mark.parametrize("name", THESIS_NAMES)
 @pytest.mark.parametrize("yaw", [0.0, 1.0])
 def test_identical_frames_name_no_direction_for_votes_without_rounding_noise(name, yaw):
-    estimate = heading_method(name)(see(ring()), see(ring(), yaw_rad=yaw), None)
+    estimate = heading_estimate(name, see(ring()), see(ring(), yaw_rad=yaw))
     assert (estimate.heading_rad, estimate.strength) == (None, 0.0)
 
 
@@ -155,13 +149,13 @@ def test_identical_frames_name_no_direction_for_votes_without_rounding_noise(nam
 @pytest.mark.parametrize("count", [0, 1])
 def test_hardly_any_match_raises_nothing(name, count):
     current, target = see(ring(count)), see(ring(count), (0.5, 0.0))
-    estimate = heading_method(name)(current, target, None)
+    estimate = heading_estimate(name, current, target)
     assert estimate.heading_rad is None or count == 1
 
 
 def test_steep_weights_do_not_overflow():
     current, target = deg((10, 1), (-20, 2), (90, 3)), deg((170, 80), (-170, 85), (0, 60))
     for name in THESIS_NAMES:
-        estimate = heading_method(name, WeightSettings(gain=100.0))(current, target, None)
+        estimate = heading_estimate(name, current, target, WeightSettings(gain=100.0))
         assert np.isfinite(estimate.heading_rad)
         assert np.isfinite(estimate.strength)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from services.planner.heading.registry import heading_method
+from services.planner.heading.methods import heading_estimate
 from tests.unit.services.planner.heading.scenes import ring, see
 
 NAMES = ("1", "2", "3", "4", "5", "6", "histogram")
@@ -24,7 +24,7 @@ def views(seed, count, away_m, towards):
 def heading(name, current, target):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        estimate = heading_method(name)(current, target, None)
+        estimate = heading_estimate(name, current, target)
     assert estimate.heading_rad is None or isinstance(estimate.heading_rad, float)
     return estimate
 

@@ -1,0 +1,100 @@
+"""Making a node and its edges from the current frame (thesis equations 4.1 and 4.2)."""
+
+from collections.abc import Sequence
+
+from services.planner.mapping.edges import NewEdges
+from services.planner.ports import MapAccess, Matches, Note, Observation
+from services.planner.profiles import Profile
+from services.planner.similarity import heading_of, ranked, similarity
+from services.planner.surroundings import openings
+from shared.mapgraph.edge_ends import edge_between
+from shared.mapgraph.frontiers import with_explored
+from shared.mapgraph.graph import MapGraph
+from shared.messages.maps import AddNode, Edge, Node, Operation, PutEdge, UpdateNode
+from shared.messages.matching import NodeMatch
+
+
+def is_new_node(matches: Matches, profile: Profile) -> bool:
+    """Node rule 4.2: the nearest node is similar, but not too similar."""
+    best = ranked(matches, profile)[:1]
+    rules = profile.mapping
+    return bool(best) and rules.s_node_max > similarity(best[0][1], profile) > rules.s_edge_min
+
+
+def add_node(
+    maps: MapAccess,
+    observation: Observation,
+    edges: NewEdges,
+    profile: Profile,
+    driven_from: int | None,
+) -> tuple[int, tuple[Note, ...]]:
+    """Write the frame as a node with its edges, in one transaction.
+
+    Args:
+        maps: where to write.
+        observation: the frame and the distances around.
+        edges: the edges it gets.
+        profile: thresholds.
+        driven_from: node the robot came from; its edge counts as driven.
+
+    Returns:
+        The new node's id, and a note for each edge that was refused.
+    """
+    node_id = maps.graph.next_id()
+    admitted = edges_to(node_id, edges.admitted, edges, profile, driven_from)
+    features = observation.features
+    node = Node(
+        node_id=node_id,
+        stamp_ns=features.stamp_ns,
+        frame_seq=features.seq,
+        pipeline=features.pipeline,
+        keypoints=len(features.lonlat_rad),
+        open=openings(observation.ranges, profile),
+    )
+    seen = admitted + edges_to(node_id, edges.covered, edges, profile)
+    node, *others = explored_along(maps.graph, node, seen, profile)
+    operations: list[Operation] = [AddNode(node=node, features=features)]
+    operations += [PutEdge(edge=edge) for edge in admitted]
+    operations += [UpdateNode(node=other) for other in others]
+    maps.commit(operations)
+    node_id = max(maps.graph.nodes)  # another robot may have taken the id meanwhile: the newest one is this
+    why = [f"node {node_id}: {reason}" for reason in edges.refused.values()]
+    return node_id, tuple(Note("closure_refused", reason) for reason in why)
+
+
+def explored_along(graph: MapGraph, node: Node, seen: Sequence[Edge], profile: Profile) -> list[Node]:
+    """`node`, then each node at the other end of `seen` with less left to explore than before."""
+    rules = profile.mapping.explored
+    grown = MapGraph([*graph.nodes.values(), node], [*graph.edges.values(), *seen])
+    others = [graph.nodes[e.b if e.a == node.node_id else e.a] for e in seen]
+    known = [with_explored(other, grown, rules) for other in others]
+    changed = [n for n in known if n != graph.nodes[n.node_id]]
+    return [with_explored(node, grown, rules), *changed]
+
+
+def edges_to(
+    node_id: int, matches: Matches, judged: NewEdges, profile: Profile, driven_from: int | None = None
+) -> list[Edge]:
+    """Edges from a node, whose frame was matched, to the nodes of `matches`."""
+    return [
+        _edge(node_id, other, match, profile, clear=other in judged.clear, driven=other == driven_from)
+        for other, match in matches.items()
+    ]
+
+
+def _edge(node_id: int, other: int, match: NodeMatch, profile: Profile, *, clear: bool, driven: bool) -> Edge:
+    found = heading_of(match, profile)
+    return Edge.model_validate(
+        {
+            **edge_between(node_id, other, found[0] if found is not None else None, match.yaw_rad),
+            "raw_matches": match.raw_matches,
+            "inliers": match.inliers,
+            "confidence": match.confidence,
+            "disparity_rad": match.disparity_rad,
+            "s_min": profile.mapping.s_edge_min,
+            "s_max": profile.mapping.s_node_max,
+            "clear": clear,
+            "traversals": int(driven),
+            "why": "driven" if driven else "seen",
+        }
+    )

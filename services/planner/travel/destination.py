@@ -1,0 +1,96 @@
+"""What a mission adds to travel: where it leads, when it is reached, and what is made of setbacks."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+from services.planner.ports import Matches, Note
+from services.planner.travel.states import Event
+from shared.mapgraph.graph import EdgeKey
+from shared.messages.features import Features
+from shared.messages.missions import FailureKind
+from shared.messages.sensors import Ranges
+
+
+@dataclass(frozen=True)
+class Setback:
+    """A path that ended before its end.
+
+    Attributes:
+        event: what ended it.
+        edge: the edge driven, which may end at the GOAL; None before the first waypoint.
+        waypoint: what was aimed at.
+        path: the whole path.
+        why: for people.
+    """
+
+    event: Event
+    edge: EdgeKey | None
+    waypoint: int
+    path: tuple[int, ...]
+    why: str
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a destination makes of a setback or of having no path.
+
+    Attributes:
+        notes: what it changed.
+        failure: why the travel is given up; "" to go on.
+        still_there: whether the robot is believed to be near where it was last seen.
+        why: for people, where there is no setback that says it.
+    """
+
+    notes: tuple[Note, ...] = ()
+    failure: FailureKind = ""
+    still_there: bool = True
+    why: str = ""
+
+
+class Destination(Protocol):
+    """Where a travel leads.
+
+    Attributes:
+        picture: the goal picture's features; None where the path ends at a node.
+        arrival_rad: disparity at which the end is reached.
+        aliased: the picture resembles a wrong spot too: it counts only from the last waypoint on.
+        compared: nodes of the map compared with a frame to localise.
+        search_steps: frames without anything known after which the travel is given up.
+    """
+
+    picture: Features | None
+    arrival_rad: float
+    aliased: bool
+    compared: int
+    search_steps: int
+
+    def targets(self) -> Mapping[int, float]:
+        """Nodes the path may end at, with the cost of the way beyond; without any the travel is given up."""
+
+    def starts(self, visible: Mapping[int, float]) -> Mapping[int, float]:
+        """Of the nodes in sight, with the cost of the way there, those to start from."""
+
+    def localised(self, seen: Matches, ranges: Ranges) -> tuple[Note, ...]:
+        """Learn from a frame that was compared with the whole map."""
+
+    def goes_straight(self) -> bool:
+        """Whether the picture may be headed for without a path when it is in sight."""
+
+    def set_out(self) -> None:
+        """A path was found."""
+
+    def no_path(self) -> Verdict:
+        """Nodes are in sight, no path leads on."""
+
+    def setback(self, setback: Setback) -> Verdict:
+        """A path ended early."""
+
+    def refutes_arrival(self, end: int, similarity: int, last: int | None) -> str:
+        """Why the end of the path is not the destination after all; "" confirms it.
+
+        Args:
+            end: node at which the path ends, or GOAL.
+            similarity: of the view and the end.
+            last: node the robot was last seen at.
+        """

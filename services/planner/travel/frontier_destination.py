@@ -1,0 +1,114 @@
+"""The nearest node with something unexplored, as a destination; what cannot be reached is closed."""
+
+from collections.abc import Mapping
+
+from services.planner.ports import MapAccess, Matcher, Matches, Note
+from services.planner.profiles import Profile
+from services.planner.travel.destination import Setback, Verdict
+from services.planner.travel.edge_experience import EdgeExperience
+from services.planner.travel.localisation import nodes_around
+from shared.mapgraph.frontiers import frontier_sectors, without_frontiers
+from shared.messages.features import Features
+from shared.messages.maps import UpdateNode
+from shared.messages.sensors import Ranges
+
+COMPARED = 5
+"""Nodes compared to localise a frame; chosen: the robot has been at all of them, so the nearest few
+suffice."""
+
+FAILURES_MAX = 2
+"""Travels in vain after which a node's directions are closed (decision 0004)."""
+
+IN_VAIN_MAX = 4
+"""Travels in vain, one after the other, after which their ends are blamed too; chosen: twice FAILURES_MAX."""
+
+SEARCH_STEPS = 120
+"""Steps of searching before exploration ends as lost; chosen: the third growing sweep, 14 m at 0.12 m a
+step."""
+
+
+class FrontierDestination:
+    """Any node with a frontier; remembers what failed, so that exploration always ends.
+
+    Attributes:
+        reached: the node at which the last travel ended, and the yaw of its camera in the robot frame.
+    """
+
+    compared, search_steps = COMPARED, SEARCH_STEPS
+    aliased = False
+
+    def __init__(
+        self, profile: Profile, maps: MapAccess, matcher: Matcher, experience: EdgeExperience
+    ) -> None:
+        self._profile, self._maps, self._matcher = profile, maps, matcher
+        self._experience = experience
+        self.picture: Features | None = None
+        self.arrival_rad = profile.arrival.travel_arrival_rad
+        self.reached = (0, 0.0)
+        self._end = 0
+        self._failures: dict[int, int] = {}
+        self._bad_starts: set[int] = set()
+        self._in_vain = self._cut_off = 0
+
+    def targets(self) -> dict[int, float]:
+        """Nodes with a frontier."""
+        return {n: 0.0 for n, node in self._maps.graph.nodes.items() if frontier_sectors(node)}
+
+    def starts(self, visible: Mapping[int, float]) -> Mapping[int, float]:
+        """Those in sight that did not fail as a start, if there are any."""
+        return {n: cost for n, cost in visible.items() if n not in self._bad_starts} or visible
+
+    def goes_straight(self) -> bool:
+        """There is no picture to head for."""
+        return False
+
+    def localised(self, _seen: Matches, _ranges: Ranges) -> tuple[Note, ...]:
+        """Nothing is learnt: exploration sees edges again when it stands at a node."""
+        return ()
+
+    def set_out(self) -> None:
+        """There is a path again."""
+        self._cut_off = 0
+
+    def no_path(self) -> Verdict:
+        """After a few such frames what is left is closed."""
+        frontier = self.targets()
+        self._cut_off += 1
+        why = f"no path to {len(frontier)} nodes with unexplored directions"
+        if self._cut_off < self._profile.mapping.saturation_steps:
+            return Verdict(why=why)
+        nodes = self._maps.graph.nodes
+        self._maps.commit([UpdateNode(node=without_frontiers(nodes[n])) for n in frontier])
+        values: dict[str, float | int | str | bool | None] = {"nodes": len(frontier)}
+        return Verdict(notes=(Note("nodes_unreachable", f"{why}: closed", values),), why=why)
+
+    def setback(self, setback: Setback) -> Verdict:
+        """Twice in vain: that node's directions are closed.
+
+        A way that ended early blames its end only when others ended before it; one that ended before its
+        first waypoint is tried from another node in sight.
+        """
+        end = setback.path[-1]
+        self._in_vain += 1
+        blamed = setback.waypoint == end or self._in_vain > IN_VAIN_MAX
+        self._failures[end] = self._failures.get(end, 0) + blamed
+        notes = [Note("travel_failed", f"to node {end}: {setback.why}")]
+        if setback.edge is None:
+            self._bad_starts.add(setback.waypoint)
+        else:
+            notes.append(self._experience.failed(setback.edge, setback.why))
+        if self._failures[end] >= FAILURES_MAX:
+            self._maps.commit([UpdateNode(node=without_frontiers(self._maps.graph.nodes[end]))])
+            notes.append(Note("node_unreachable", f"node {end}: its directions are closed"))
+        return Verdict(tuple(notes), still_there=self._in_vain <= 1)
+
+    def refutes_arrival(self, end: int, similarity: int, last: int | None) -> str:  # noqa: ARG002
+        """Whether the view belongs to another part of the map."""
+        matches = self._matcher.match([end], COMPARED)
+        if end not in nodes_around(self._maps.graph, matches, self._profile, last):
+            return f"aliased: other nodes resemble this view more than node {end}"
+        self._bad_starts, self._in_vain = set(), 0
+        match = matches.get(end)
+        yaw_rad = match.yaw_rad if match is not None and match.yaw_rad is not None else 0.0
+        self.reached = (end, yaw_rad)
+        return ""

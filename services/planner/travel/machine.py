@@ -1,0 +1,170 @@
+"""The travel machine: localises, plans, follows, loses and finds itself again (thesis sections 4.1 to 4.3).
+
+`states.py` has its states and transitions. A mission gives it a `Destination` and asks it for one decision a
+frame.
+"""
+
+from dataclasses import replace
+
+from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
+from services.planner.profiles import Profile
+from services.planner.similarity import ranked, similarity
+from services.planner.travel.destination import Destination, Setback
+from services.planner.travel.edge_experience import EdgeExperience
+from services.planner.travel.localisation import edge_cost, in_sight, nodes_around, starts_in_sight
+from services.planner.travel.path_follower import PathFollower
+from services.planner.travel.search import Search, search_back
+from services.planner.travel.states import TRANSITIONS, Event, State
+from shared.mapgraph.graph import EdgeKey
+from shared.mapgraph.routing import GOAL, plan_path
+from shared.messages.missions import FailureKind
+
+
+class Travel:
+    """One robot on its way; ends as ARRIVED or FAILED.
+
+    Attributes:
+        state: what it is doing.
+        reason: of the last transition.
+        last_heading_rad: where the robot came from, turned round: a lost one first goes back.
+    """
+
+    def __init__(
+        self,
+        profile: Profile,
+        maps: MapAccess,
+        matcher: Matcher,
+        destination: Destination,
+        experience: EdgeExperience,
+    ) -> None:
+        self._profile, self._maps, self._matcher = profile, maps, matcher
+        self._destination, self._experience = destination, experience
+        self.state, self.reason = State.LOCALISING, ""
+        self.last_heading_rad = 0.0
+        self._last: int | None = None
+        self._unclear: set[EdgeKey] = set()
+        self._follower: PathFollower | None = None
+        self._search: Search | None = None
+        self._notes: list[Note] = []
+        self._progress = Progress()
+
+    @property
+    def progress(self) -> Progress:
+        """Where the travel stands, for the mission's status."""
+        return replace(self._progress, travel=self.state.value, travel_reason=self.reason)
+
+    def set_out(self, node_id: int) -> None:
+        """The robot stands at a node and will want a new destination."""
+        self._change(Event.SET_OUT)
+        self._search, self._last = None, node_id
+
+    def step(self, observation: Observation) -> Decision:
+        """One frame; the matcher has it already."""
+        self._notes = []
+        decision = None if self.state is State.FOLLOWING else self._find_way(observation)
+        if decision is None:
+            decision = self._follow(observation)
+        return replace(decision, notes=(*self._notes, *decision.notes))
+
+    def _find_way(self, observation: Observation) -> Decision | None:
+        """Localise and plan; None once there is a path to follow."""
+        destination, graph, profile = self._destination, self._maps.graph, self._profile
+        pictures = () if destination.picture is None else (destination.picture,)
+        seen = self._matcher.match([], destination.compared, pictures)
+        goal = seen.pop(GOAL, None)
+        self._notes += destination.localised(seen, observation.ranges)
+        if goal is not None and destination.goes_straight() and in_sight(goal, observation.ranges, profile):
+            self._set_off([GOAL], Event.GOAL_IN_SIGHT)
+            return None
+        targets = destination.targets()
+        if not targets:
+            return self._give_up("goal_not_in_map", "the goal resembles no node of the map")
+        here = {node: seen[node] for node in nodes_around(graph, seen, profile, self._last)}
+        visible = starts_in_sight(here, observation.ranges, profile)
+        starts, banned = destination.starts(visible), self._experience.banned
+        path = plan_path(graph, starts, targets, edge_cost(profile), self._unclear, banned)
+        if path:
+            destination.set_out()
+            self._set_off([*path, GOAL] if pictures else path, Event.PATH_FOUND)
+            return None
+        if visible:
+            return self._wait()
+        return self._look_around(here)
+
+    def _set_off(self, path: list[int], event: Event) -> None:
+        self._change(event)
+        self._search = None
+        self._follower = PathFollower(
+            self._profile, self._maps, path, self._destination, self._unclear, self._experience
+        )
+
+    def _follow(self, observation: Observation) -> Decision:
+        follower = self._follower
+        assert follower is not None
+        event, decision = follower.step(observation, self._matcher)
+        self._progress = follower.progress
+        if event is None:
+            self.last_heading_rad = decision.heading_rad
+            if self._progress.nearest_node is not None:
+                self._last = self._progress.nearest_node
+            return decision
+        self._notes += decision.notes
+        why = decision.why
+        if event is Event.REACHED:
+            refuted = self._destination.refutes_arrival(
+                follower.path[-1], self._progress.similarity, self._last
+            )
+            if not refuted:
+                self._change(event)
+                return Decision("hold", why=why)
+            event, why = Event.ALIASED, f"{why}, {refuted}"
+        self._change(event)
+        if event is Event.WAY_UNCLEAR:
+            self._unclear.add(follower.next_edge())
+            self._notes.append(Note("leg_doubted", f"edge {follower.next_edge()}: {why}"))
+            return Decision("hold", why=f"planning again: {why}")
+        return self._recover(Setback(event, *follower.failed_edge(), tuple(follower.path), why))
+
+    def _recover(self, setback: Setback) -> Decision:
+        """Learn from what ended the path, and plan again from what the next frame shows."""
+        verdict = self._destination.setback(setback)
+        self._notes += verdict.notes
+        if not verdict.still_there:
+            self._last = None
+        if verdict.failure:
+            return self._give_up(verdict.failure, setback.why)
+        return Decision("hold", why=f"planning again: {setback.why}")
+
+    def _wait(self) -> Decision:
+        self._change(Event.NO_PATH)
+        verdict = self._destination.no_path()
+        self._notes += verdict.notes
+        if verdict.failure:
+            return self._give_up(verdict.failure, verdict.why)
+        return Decision("hold", why=verdict.why)
+
+    def _look_around(self, here: Matches) -> Decision:
+        """Lost mode (thesis section 4.2): towards what resembles a node most, else in growing sweeps."""
+        self._change(Event.NOTHING_KNOWN)
+        patience = self._destination.search_steps
+        if self._search is None:
+            self._search = search_back(self.last_heading_rad, patience)
+        nearest = ranked(here, self._profile)[:1]
+        s_nearest = similarity(nearest[0][1], self._profile) if nearest else 0
+        if self._search.exhausted:
+            why = f"no node of the map recognised in {patience} steps, best similarity {s_nearest}"
+            return self._give_up("lost", why)
+        heading_rad = self._search.next_heading()
+        if nearest and nearest[0][1].heading_rad is not None:
+            heading_rad = nearest[0][1].heading_rad
+        why = f"looking for a node I know, best similarity {s_nearest}"
+        return Decision("go", heading_rad, 0, 1.0, "search", why)
+
+    def _give_up(self, failure: FailureKind, why: str) -> Decision:
+        self._change(Event.GIVEN_UP)
+        return Decision("hold", why=why, outcome="failed", failure=failure)
+
+    def _change(self, event: Event) -> None:
+        """Take the transition of the table; there is none for an event that this state does not know."""
+        transition = TRANSITIONS[self.state, event]
+        self.state, self.reason = transition.after, transition.reason

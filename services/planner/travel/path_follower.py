@@ -1,0 +1,208 @@
+"""Following a path: which waypoint to aim at, and what ends it early."""
+
+from collections.abc import Collection
+
+from services.planner.ports import Decision, MapAccess, Matcher, Note, Observation, Progress
+from services.planner.profiles import Profile
+from services.planner.similarity import heading_of, similarity
+from services.planner.travel.destination import Destination
+from services.planner.travel.edge_experience import EdgeExperience
+from services.planner.travel.states import Event
+from services.planner.travel.steady_heading import SteadyHeading
+from services.planner.travel.waypoints import (
+    has_arrived,
+    is_at,
+    is_near_end,
+    is_strict,
+    may_advance,
+    speed_fraction,
+)
+from shared.mapgraph.graph import EdgeKey, edge_key
+from shared.mapgraph.routing import GOAL
+from shared.messages.matching import NodeMatch
+from shared.messages.sensors import Ranges
+
+WINDOW = 4
+"""Waypoints compared at each step; chosen: nodes lie 0.7 m apart and are recognised up to some 2.5 m away."""
+
+STUCK_STEPS = 35
+"""Steps without coming closer after which no progress is made; chosen: 4.2 m at 0.12 m a step, further than
+the way round any one piece of furniture."""
+
+CLOSER = 0.95
+"""Share of the least disparity so far that counts as closer; chosen: one step of 0.12 m from 2.4 m away."""
+
+WAITING_STEPS = 8
+"""Steps at a waypoint after which the next one should have shown; chosen: 2.4 s, in which a person has
+passed."""
+
+NEAREST_STEPS = 8
+"""Steps without coming closer after which a spot within `near_rad` is as near as obstacles allow; chosen: 2.4
+s."""
+
+
+class PathFollower:
+    """Drives along `path` (node ids; GOAL may be last) and looks ahead along it."""
+
+    def __init__(
+        self,
+        profile: Profile,
+        maps: MapAccess,
+        path: list[int],
+        destination: Destination,
+        unclear: Collection[EdgeKey],
+        experience: EdgeExperience,
+    ) -> None:
+        self._profile, self._maps, self._destination = profile, maps, destination
+        self._unclear, self._experience = unclear, experience
+        self.path, self.index = path, 0
+        self._strict = is_strict(profile)
+        self._unseen_frames = 0
+        self._heading_rad: float | None = None
+        self._steady = SteadyHeading()
+        self._best_rad = float("inf")
+        self._stale = self._waiting = 0
+        self.progress = Progress(via_points=tuple(path))
+
+    def step(self, observation: Observation, matcher: Matcher) -> tuple[Event | None, Decision]:
+        """Compare with the next waypoints, advance, and head for the present one.
+
+        Returns:
+            What ended the path, None while it goes on; and what to do for this frame.
+        """
+        matches = self._compare(matcher)
+        notes = self._advance(matches, observation.ranges)
+        waypoint = self.path[self.index]
+        match, name = matches.get(waypoint), _name(waypoint)
+        s_cv = similarity(match, self._profile) if match is not None else 0
+        self._report(waypoint, s_cv, match)
+        arrival_rad = self._destination.arrival_rad
+        if self._at_end() and match is not None and has_arrived(match, self._profile, arrival_rad):
+            return Event.REACHED, _hold(f"arrived at {name}, S {s_cv}", notes)
+        if self._next_is_unclear(match):
+            return Event.WAY_UNCLEAR, _hold(f"no free ground seen beyond {name}", notes)
+        found = heading_of(match, self._profile) if match is not None else None
+        if match is None or found is None or s_cv < self._profile.travel.s_via_min:
+            return self._unseen(name, s_cv, notes)
+        self._unseen_frames = 0
+        self._heading_rad, method = self._steadied(waypoint, found[0], s_cv), found[1]
+        if self._waits_too_long(match):
+            return Event.NO_PROGRESS, _hold(f"at {name}, {_name(self.path[self.index + 1])} unseen", notes)
+        if self._no_progress(match):
+            if self._near_end(match):
+                return Event.REACHED, _hold(f"as near to {name} as obstacles allow, S {s_cv}", notes)
+            return Event.NO_PROGRESS, _hold(f"no progress towards {name}", notes)
+        slow = self._at_end() and arrival_rad > 0.0
+        speed = speed_fraction(match, self._profile) if slow else 1.0
+        return None, Decision("go", self._heading_rad, s_cv, speed, method, f"to {name}, S {s_cv}", notes)
+
+    def failed_edge(self) -> tuple[EdgeKey | None, int]:
+        """What stopped the robot: the edge driven and its waypoint; at a waypoint, what comes next."""
+        if self._waiting > WAITING_STEPS:
+            return self.next_edge(), self.path[self.index + 1]
+        return self._current_edge(), self.path[self.index]
+
+    def next_edge(self) -> EdgeKey:
+        """The edge from the present waypoint to the one after it."""
+        return edge_key(*self.path[self.index : self.index + 2])
+
+    def _current_edge(self) -> EdgeKey | None:
+        """The edge being driven; None at index 0, where there is none (thesis equation 6.4)."""
+        return edge_key(*self.path[self.index - 1 : self.index + 1]) if self.index else None
+
+    def _at_end(self) -> bool:
+        return self.index == len(self.path) - 1
+
+    def _next_is_unclear(self, match: NodeMatch | None) -> bool:
+        """At a waypoint with no sight of free ground to the next: ask for another way, once."""
+        standing = not (self._strict or self._at_end()) and is_at(match, self._profile)
+        return standing and not self._next_is_known()
+
+    def _next_is_known(self) -> bool:
+        """Driven before, or there was no other way when it was unclear."""
+        edge = self._maps.graph.edge(*self.next_edge())
+        return self.next_edge() in self._unclear or (edge is not None and edge.traversals > 0)
+
+    def _compare(self, matcher: Matcher) -> dict[int, NodeMatch]:
+        ahead = self.path[self.index : self.index + WINDOW]
+        picture = self._destination.picture
+        return matcher.match([n for n in ahead if n != GOAL], targets=() if picture is None else (picture,))
+
+    def _advance(self, matches: dict[int, NodeMatch], ranges: Ranges) -> tuple[Note, ...]:
+        """Go on to the latest waypoint that may be headed for; by the thesis only to the next."""
+        here = matches.get(self.path[self.index])
+        reach = 1 if self._strict else WINDOW - 1
+        for later in range(min(self.index + reach, len(self.path) - 1), self.index, -1):
+            there = matches.get(self.path[later])
+            if there is None or not self._may_advance(here, there, later, ranges):
+                continue
+            learnt = self._mark_driven(here)
+            self.index, self._best_rad, self._stale = later, float("inf"), 0
+            s_here = similarity(here, self._profile) if here is not None else 0
+            s_there = similarity(there, self._profile)
+            values = {"s_cv": s_here, "s_nv": s_there, "via": self.path[later]}
+            return (*learnt, Note("via_advanced", f"next waypoint {_name(self.path[later])}", dict(values)))
+        return ()
+
+    def _may_advance(self, here: NodeMatch | None, there: NodeMatch, later: int, ranges: Ranges) -> bool:
+        beside = later == self.index + 1 and is_at(here, self._profile)
+        aliased_goal = self._destination.aliased and self.path[later] == GOAL
+        return may_advance(
+            here,
+            there,
+            ranges,
+            self._profile,
+            straight=beside or not aliased_goal,
+            beside=beside and self._next_is_known(),
+        )
+
+    def _mark_driven(self, match: NodeMatch | None) -> tuple[Note, ...]:
+        """The robot stands at a waypoint: the edge to it has been driven."""
+        edge = self._current_edge()
+        if edge is None or GOAL in edge or not is_at(match, self._profile):
+            return ()
+        note = self._experience.driven(edge, match)
+        return () if note is None else (note,)
+
+    def _steadied(self, waypoint: int, seen_rad: float, s_cv: int) -> float:
+        if self._strict:
+            return seen_rad
+        return self._steady.follow(waypoint, seen_rad, close=s_cv >= self._profile.mapping.s_node_max)
+
+    def _unseen(self, name: str, s_cv: int, notes: tuple[Note, ...]) -> tuple[Event | None, Decision]:
+        """The waypoint is not seen: keep going for a few frames, then it is lost."""
+        self._unseen_frames += 1
+        if self._unseen_frames >= self._profile.travel.suspend_after or self._heading_rad is None:
+            return Event.WAYPOINT_LOST, _hold(f"{name} not seen, S {s_cv}", notes)
+        why = f"{name} not seen for {self._unseen_frames} frames, keeping on"
+        return None, Decision("go", self._heading_rad, s_cv, 1.0, "previous", why, notes)
+
+    def _no_progress(self, match: NodeMatch) -> bool:
+        disparity = match.disparity_rad if match.disparity_rad is not None else 0.0
+        if disparity < self._best_rad * CLOSER:
+            self._best_rad, self._stale = disparity, 0
+        else:
+            self._stale += 1
+        return self._stale > (NEAREST_STEPS if self._near_end(match) else STUCK_STEPS)
+
+    def _waits_too_long(self, match: NodeMatch) -> bool:
+        """At a waypoint from which the next one does not show: what leads there is shut."""
+        standing = not (self._strict or self._at_end()) and is_at(match, self._profile)
+        self._waiting = self._waiting + 1 if standing else 0
+        return self._waiting > WAITING_STEPS
+
+    def _near_end(self, match: NodeMatch) -> bool:
+        return self._at_end() and is_near_end(match, self._profile, self._destination.arrival_rad)
+
+    def _report(self, waypoint: int, s_cv: int, match: NodeMatch | None) -> None:
+        disparity = match.disparity_rad if match is not None else None
+        nearest = waypoint if waypoint != GOAL else None
+        self.progress = Progress(tuple(self.path), self.index, nearest, s_cv, disparity)
+
+
+def _hold(why: str, notes: tuple[Note, ...]) -> Decision:
+    return Decision("hold", why=why, notes=notes)
+
+
+def _name(node_id: int) -> str:
+    return "the goal" if node_id == GOAL else f"node {node_id}"

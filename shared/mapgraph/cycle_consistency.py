@@ -1,0 +1,143 @@
+"""Which nodes that a frame resembles fit with one another: the edges between them judge. Pure.
+
+Perceptual aliasing gives matches that fit one motion of the camera towards a wrong node. A neighbour of that
+node must then fit as well: in the triangle of frame, node and neighbour the yaws add up and the bearings can
+close. A neighbour seen in the same frame whose triangle closes supports the node, one whose does not
+contradicts it.
+"""
+
+from collections.abc import Mapping, Set
+
+from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.triangle import Sight, triangle_closes
+from shared.messages.matching import NodeMatch
+
+NEAR_HOPS = 1
+"""Within so many edges of the node the robot came from an edge closes no loop."""
+
+FAR_HOPS = 3
+"""Beyond so many edges an aliased view is as likely as the node itself: of 153 such edges in a village of
+equal houses 58 were wrong, of 1195 nearer ones 11; none of the wrong had more than 106 inliers (decision
+0015)."""
+
+
+def unsupported_loop_closures(
+    graph: MapGraph, matches: Mapping[int, NodeMatch], driven_from: int | None, s_far: int = 0
+) -> dict[int, str]:
+    """Nodes far from where the robot came from that no neighbour of theirs supports.
+
+    Beyond FAR_HOPS at least `s_far` inliers are needed as well: the robot must nearly stand there.
+
+    Args:
+        graph: the map without the new node.
+        matches: trusted matches of the new frame that would become edges.
+        driven_from: node the robot came from; None (the first node, or carried) asks for no support.
+        s_far: inliers needed beyond FAR_HOPS.
+
+    Returns:
+        Node and reason.
+    """
+    if driven_from is None or driven_from not in graph.nodes:
+        return {}
+    near = graph.within(driven_from, NEAR_HOPS)
+    far = far_nodes(graph, matches, driven_from) if s_far else set()
+    refused = {}
+    for node in sorted(set(matches) - near):
+        if node in far and matches[node].inliers < s_far:
+            refused[node] = f"node {node} is far in the map, {matches[node].inliers} of {s_far} matches"
+            continue
+        seen = [n for n in graph.neighbours(node) if n in matches]
+        if not any(is_consistent(graph, matches, node, neighbour) for neighbour in seen):
+            refused[node] = f"{len(seen)} neighbours of node {node} seen, none agrees"
+    return refused
+
+
+def supported_by(graph: MapGraph, matches: Mapping[int, NodeMatch], sure: Set[int]) -> set[int]:
+    """Nodes of `matches` that a neighbour among the sure ones supports, or one so supported.
+
+    Args:
+        graph: the map.
+        matches: trusted matches of the current frame.
+        sure: nodes known to be in sight.
+
+    Returns:
+        The nodes, without the sure ones.
+    """
+    known, waiting = set(sure), sorted(set(sure))
+    while waiting:
+        neighbour = waiting.pop()
+        for node in graph.neighbours(neighbour):
+            if node in matches and node not in known and is_consistent(graph, matches, node, neighbour):
+                known.add(node)
+                waiting.append(node)
+    return known - sure
+
+
+def contradicted(
+    graph: MapGraph, matches: Mapping[int, NodeMatch], voters: Mapping[int, NodeMatch] | None = None
+) -> dict[int, str]:
+    """Nodes that their neighbours in the map outvote, weakest case first.
+
+    A wall whose pattern repeats gives a clear motion in a wrong direction; nodes seen beside it tell. Every
+    pair of matched nodes with an edge between them agrees or not; a vote weighs as many inliers as the voter
+    has.
+
+    Args:
+        graph: the map.
+        matches: the nodes to judge.
+        voters: all nodes whose matches count, also those too ambiguous for an edge; None: only the judged.
+
+    Returns:
+        Node and reason.
+    """
+    votes = _votes(graph, matches, voters if voters is not None else matches)
+    refused: dict[int, str] = {}
+    while True:
+        balance = {
+            node: sum(vote for neighbour, vote in seen.items() if neighbour not in refused)
+            for node, seen in votes.items()
+            if node not in refused
+        }
+        worst = min(balance, key=lambda node: (balance[node], node), default=None)
+        if worst is None or balance[worst] >= 0:
+            return refused
+        refused[worst] = f"{-balance[worst]} more matches of its neighbours speak against node {worst}"
+
+
+def _votes(
+    graph: MapGraph, matches: Mapping[int, NodeMatch], voters: Mapping[int, NodeMatch]
+) -> dict[int, dict[int, int]]:
+    """For each node the neighbours that can judge it: their inliers, negative against it."""
+    seen = {**voters, **matches}
+    return {
+        node: {
+            neighbour: seen[neighbour].inliers * (1 if is_consistent(graph, seen, node, neighbour) else -1)
+            for neighbour in graph.neighbours(node)
+            if neighbour in seen and _can_judge(graph, seen, node, neighbour)
+        }
+        for node in sorted(matches)
+    }
+
+
+def _can_judge(graph: MapGraph, matches: Mapping[int, NodeMatch], node: int, neighbour: int) -> bool:
+    edge = graph.edge(node, neighbour)
+    yaws = (edge.yaw_ab_rad if edge else None, matches[node].yaw_rad, matches[neighbour].yaw_rad)
+    return all(yaw is not None for yaw in yaws)
+
+
+def is_consistent(graph: MapGraph, matches: Mapping[int, NodeMatch], node: int, neighbour: int) -> bool:
+    """Whether the triangle of frame, node and neighbour closes."""
+    edge, to_node, to_neighbour = graph.edge(node, neighbour), matches[node], matches[neighbour]
+    if edge is None or edge.yaw_ab_rad is None:
+        return False
+    yaw_rad = edge.yaw_ab_rad if edge.a == node else -edge.yaw_ab_rad
+    return triangle_closes(
+        Sight(to_node.heading_rad, to_node.yaw_rad),
+        Sight(to_neighbour.heading_rad, to_neighbour.yaw_rad),
+        Sight(graph.heading(node, neighbour), yaw_rad),
+    )
+
+
+def far_nodes(graph: MapGraph, matches: Mapping[int, NodeMatch], driven_from: int) -> set[int]:
+    """Nodes of `matches` more than FAR_HOPS edges from where the robot came from."""
+    return {n for n in matches if n in graph.nodes} - graph.within(driven_from, FAR_HOPS)

@@ -1,0 +1,75 @@
+"""A topological map in memory: nodes, edges and who is joined to whom. Pure."""
+
+from collections.abc import Iterable
+
+import networkx as nx
+
+from shared.messages.maps import AddNode, DeleteEdge, DeleteNode, Edge, Node, Operation, PutEdge, UpdateNode
+
+EdgeKey = tuple[int, int]
+"""The two nodes of an edge, the lower id first."""
+
+
+def edge_key(first: int, second: int) -> EdgeKey:
+    """The key of the edge between two nodes, in either order."""
+    return (min(first, second), max(first, second))
+
+
+class MapGraph:
+    """Undirected graph of nodes (thesis section 4.2); once it was asked, only `apply` changes it."""
+
+    def __init__(self, nodes: Iterable[Node] = (), edges: Iterable[Edge] = ()) -> None:
+        self.nodes = {node.node_id: node for node in nodes}
+        self.edges = {(edge.a, edge.b): edge for edge in edges}
+        self._linked: nx.Graph[int] | None = None
+
+    def apply(self, operations: Iterable[Operation]) -> None:
+        """Change the graph as the map store does."""
+        self._linked = None
+        for operation in operations:
+            match operation:
+                case AddNode() | UpdateNode():
+                    self.nodes[operation.node.node_id] = operation.node
+                case DeleteNode():
+                    self.nodes.pop(operation.node_id, None)
+                    self.edges = {ends: e for ends, e in self.edges.items() if operation.node_id not in ends}
+                case PutEdge():
+                    self.edges[operation.edge.a, operation.edge.b] = operation.edge
+                case DeleteEdge():
+                    self.edges.pop((operation.a, operation.b), None)
+
+    def next_id(self) -> int:
+        """An id no node has had while the newest ones exist."""
+        return max(self.nodes, default=-1) + 1
+
+    def edge(self, first: int, second: int) -> Edge | None:
+        """The edge between two nodes, in either order."""
+        return self.edges.get(edge_key(first, second))
+
+    def neighbours(self, node_id: int) -> list[int]:
+        """Nodes an edge leads to, suspended ones excluded, in ascending order."""
+        links = self._links()
+        return sorted(links[node_id]) if node_id in links else []
+
+    def heading(self, node_id: int, neighbour: int) -> float | None:
+        """Bearing of a neighbour in the node's camera frame, radians; None when unknown."""
+        edge = self.edge(node_id, neighbour)
+        if edge is None:
+            return None
+        return edge.heading_ab_rad if edge.a == node_id else edge.heading_ba_rad
+
+    def within(self, start: int, hops: int) -> set[int]:
+        """Nodes at most so many edges from `start`, suspended ones excluded; `start` is one of them."""
+        return set(nx.single_source_shortest_path_length(self._links(), start, cutoff=hops))
+
+    def components(self) -> int:
+        """Number of connected parts, suspended edges excluded."""
+        return int(nx.number_connected_components(self._links()))
+
+    def _links(self) -> "nx.Graph[int]":
+        """The edges that may be used; built once between changes."""
+        if self._linked is None:
+            self._linked = nx.Graph()
+            self._linked.add_nodes_from(self.nodes)
+            self._linked.add_edges_from(ends for ends, edge in self.edges.items() if not edge.suspended)
+        return self._linked

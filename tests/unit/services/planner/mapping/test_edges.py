@@ -1,0 +1,104 @@
+"""Which matches become edges of a new place."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from services.planner.mapping.edges import judge_edges
+from services.planner.mapping.nodes import add_node
+from services.planner.ports import Observation
+from services.planner.profiles import DEFAULT, OUTDOOR
+from shared.mapgraph.graph import MapGraph
+from shared.messages.features import Features
+from shared.messages.maps import Edge, Node, PutEdge
+from shared.messages.matching import NodeMatch
+from shared.messages.sensors import Ranges
+
+
+class Memory:
+    def __init__(self):
+        self.graph = MapGraph([Node(node_id=n) for n in range(3)])
+
+    def commit(self, operations):
+        self.graph.apply(operations)
+
+
+def observation():
+    words = np.zeros((1, 2), np.float32), np.zeros(1, np.float32), np.zeros((1, 4), np.float32)
+    features = Features(pipeline="p", lonlat_rad=words[0], scores=words[1], descriptors=words[2])
+    ranges = Ranges(
+        robot="r1", angles_rad=tuple(np.arange(12) * 0.5), distances_m=(4.0,) * 12, max_range_m=4.0
+    )
+    return Observation(features, ranges)
+
+
+def match(node_id, inliers, raw):
+    return NodeMatch(
+        node_id=node_id,
+        raw_matches=raw,
+        inliers=inliers,
+        status="ok",
+        heading_rad=0.3,
+        heading_std_rad=0.01,
+        yaw_rad=0.0,
+        disparity_rad=0.1,
+        confidence=0.8,
+    )
+
+
+def edges_of(profile, *matches, driven_from=None):
+    maps = Memory()
+    edges = judge_edges(maps.graph, observation(), {m.node_id: m for m in matches}, profile, driven_from)
+    node, _ = add_node(maps, observation(), edges, profile, driven_from)
+    return maps.graph.neighbours(node)
+
+
+@pytest.mark.parametrize(("raw", "expected"), [(60, [0]), (80, [])])
+def test_outdoors_most_of_a_weak_edges_matches_must_agree(raw, expected):
+    assert edges_of(OUTDOOR, match(0, 35, raw)) == expected
+    assert edges_of(DEFAULT, match(0, 35, raw)) == [0]
+
+
+def test_a_strong_edge_needs_no_share():
+    assert edges_of(OUTDOOR, match(0, 60, 150)) == [0]
+
+
+def test_outdoors_a_place_behind_an_obstacle_must_agree_in_most():
+    blocked = Observation(
+        observation().features, observation().ranges.model_copy(update={"distances_m": (0.5,) * 12})
+    )
+    graph = Memory().graph
+    assert set(judge_edges(graph, blocked, {0: match(0, 71, 120)}, OUTDOOR, None).admitted) == {0}
+    assert judge_edges(graph, blocked, {0: match(0, 71, 160)}, OUTDOOR, None).admitted == {}
+
+
+def test_the_edge_the_robot_drove_is_kept():
+    assert edges_of(OUTDOOR, match(0, 35, 80), match(1, 30, 90), driven_from=0) == [0]
+
+
+def test_outdoors_a_weak_edge_needs_ground_seen_free_as_far_as_the_place_may_be():
+    """35 matches agree at 8 m, and at 14 m as well, beyond a hedge."""
+    matches = {0: match(0, 35, 60)}
+    seen = Observation(observation().features, observation().ranges.model_copy(update={"max_range_m": 10.0}))
+    near, far = (
+        replace(seen, ranges=seen.ranges.model_copy(update={"distances_m": (m,) * 12, "max_range_m": 25.0}))
+        for m in (16.0, 24.0)
+    )
+    graph = Memory().graph
+    assert judge_edges(graph, near, matches, OUTDOOR, None).admitted == {}
+    assert set(judge_edges(graph, far, matches, OUTDOOR, None).admitted) == {0}
+
+
+def test_a_place_too_uncertain_for_an_edge_leaves_nothing_unexplored_that_way():
+    maps = Memory()
+    maps.commit(
+        [PutEdge(edge=Edge(a=0, b=1, heading_ab_rad=0.3, heading_ba_rad=0.3 - math.pi, yaw_ab_rad=0.0))]
+    )
+    weak = match(1, 35, 80)
+    edges = judge_edges(maps.graph, observation(), {0: match(0, 90, 120), 1: weak}, OUTDOOR, 0)
+    assert set(edges.admitted) == {0}
+    assert set(edges.covered) == {1}, "its neighbour bears witness"
+    node, _ = add_node(maps, observation(), edges, OUTDOOR, 0)
+    assert maps.graph.neighbours(node) == [0]

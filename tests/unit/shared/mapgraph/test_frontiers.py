@@ -1,0 +1,59 @@
+"""Frontiers: open and unexplored directions, marked by edges to near places and by departures."""
+
+import math
+
+import numpy as np
+
+from services.planner.profiles import DEFAULT
+from services.planner.surroundings import openings
+from shared.mapgraph.frontiers import (
+    ExploredRules,
+    best_sector,
+    frontier_sectors,
+    mark_explored,
+    with_explored,
+)
+from shared.mapgraph.graph import MapGraph
+from shared.messages.maps import Edge, Node
+from shared.messages.sensors import Ranges
+
+ANGLES = tuple(i * math.tau / 12 for i in range(12))
+ALL_OPEN = (True,) * 12
+
+
+def test_opening_is_a_way_the_robot_fits_through():
+    distances = np.full(12, 4.0)
+    distances[3] = 0.5
+    ranges = Ranges(robot="r1", angles_rad=ANGLES, distances_m=tuple(distances), max_range_m=4.0)
+    open_ = openings(ranges, DEFAULT)
+    assert not open_[3]
+    assert open_[0]
+    assert open_[6]
+
+
+def test_edge_to_a_near_place_explores_its_direction_only():
+    near = Edge(a=0, b=1, heading_ab_rad=math.pi / 2, heading_ba_rad=-math.pi / 2, inliers=50)
+    nodes = [Node(node_id=0, open=ALL_OPEN), Node(node_id=1, open=ALL_OPEN)]
+    node = with_explored(nodes[0], MapGraph(nodes, [near]), ExploredRules())
+    assert [s for s in range(12) if node.explored[s]] == [3]
+
+
+def test_edge_to_a_very_near_place_explores_the_directions_beside_it():
+    near = Edge(a=0, b=1, heading_ab_rad=math.pi / 2, heading_ba_rad=-math.pi / 2, inliers=80)
+    nodes = [Node(node_id=0, open=ALL_OPEN), Node(node_id=1, open=ALL_OPEN)]
+    node = with_explored(nodes[0], MapGraph(nodes, [near]), ExploredRules())
+    assert [s for s in range(12) if node.explored[s]] == [2, 3, 4]
+
+
+def test_edge_to_a_far_place_leaves_the_ground_between_unexplored():
+    far = Edge(a=0, b=1, heading_ab_rad=0.0, heading_ba_rad=math.pi, inliers=35)
+    nodes = [Node(node_id=0, open=ALL_OPEN), Node(node_id=1)]
+    assert not any(with_explored(nodes[0], MapGraph(nodes, [far]), ExploredRules()).explored)
+
+
+def test_best_sector_is_nearest_to_the_wished_direction():
+    node = mark_explored(Node(node_id=0, open=ALL_OPEN), 0)
+    assert best_sector(node, 0.1) == 1
+    assert best_sector(node, -0.1) == 11
+    assert len(frontier_sectors(node)) == 11
+    assert best_sector(Node(node_id=0), 0.0) is None
