@@ -31,6 +31,10 @@ class MemoryMap:
             if isinstance(operation, AddNode):
                 self.features[operation.node.node_id] = operation.features
 
+    def features_of(self, node_id: int) -> Features:
+        """What a node looks like."""
+        return self.features[node_id]
+
     def words(self, node_id: int) -> FeatureSet:
         """Visual words of a node."""
         return feature_set(self.features[node_id])

@@ -1,7 +1,7 @@
 """Candidates that others bear out: the shortest loops through two of them, back to the start. Pure.
 
-The rule is the one by which exploration closes loops (`shared/mapgraph/cycle_consistency.py`): a neighbour of the
-place that is claimed must fit as well. Between two maps there are three such loops:
+The rule is the one by which exploration closes loops (`shared/mapgraph/cycle_consistency.py`): a neighbour of
+the place that is claimed must fit as well. Between two maps there are three such loops:
 
     one place of `other`, two neighbours of `base`     a triangle
     one place of `base`, two neighbours of `other`     a triangle

@@ -79,7 +79,7 @@ def test_a_robot_that_never_finds_anything_again_fails_as_lost(mapped):
     assert (decision.outcome, decision.failure) == ("failed", "lost")
 
 
-def test_exploration_travels_by_the_same_machine(mapped):
+def test_exploration_travels_by_the_same_machine():
     world, maps = PlaneWorld(START, np.random.default_rng(5)), PlaneMap()
     mission = FrontierExploration(DEFAULT, maps, PlaneMatcher(world, maps), np.random.default_rng(5))
     states, _, _ = states_of(mission, world, 400)
