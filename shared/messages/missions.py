@@ -25,7 +25,7 @@ def _portable(value: Any) -> Any:
     """Refuse, at any depth, numbers that JSON or msgpack has not."""
     if isinstance(value, float) and not math.isfinite(value):
         raise ValueError("numbers must be finite")
-    if isinstance(value, int) and not -(2**63) <= value < 2**63:
+    if isinstance(value, int) and not -(2**63) <= value < 2**64:
         raise ValueError("integers must fit into 64 bits")
     for inner in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
         _portable(inner)
