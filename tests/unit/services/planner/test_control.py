@@ -1,0 +1,80 @@
+"""The one mission of a robot: a stored one goes on or has failed by name; refusals change nothing."""
+
+import pytest
+
+from services.planner.control import MissionControl
+from services.planner.mission_kinds import MissionError, mission_kinds
+from services.planner.profiles import DEFAULT
+from services.planner.settings import PlannerSettings
+from shared.messages import MapReply, MapRequest, MissionRecord, MissionRecordRequest, MissionRequest
+from shared.messages.maps import Node
+
+
+class Store:
+    """A map store with one map of one node and one mission record."""
+
+    def __init__(self, record):
+        self.record = record
+
+    def ask(self, _query, request, _timeout_s, **_names):
+        if isinstance(request, MissionRecordRequest):
+            if request.action == "save":
+                self.record = request.record
+            return self.record
+        assert isinstance(request, MapRequest)
+        return MapReply(map="flat", revision=1, nodes=(Node(node_id=0),))
+
+
+def control_of(**record):
+    store = Store(MissionRecord(robot="r1", epoch=4, mission_id="m", map="flat", **record))
+    control = MissionControl(PlannerSettings(), DEFAULT, mission_kinds(), store)
+    control.claim()
+    return control, store
+
+
+def test_a_mission_is_gone_on_with_after_a_restart():
+    control, _ = control_of(action="explore")
+    assert (control.state, control.status().action) == ("running", "explore")
+    assert {figure.name for figure in control.status().figures} == {"nodes", "edges", "open_directions"}
+
+
+def test_a_mission_of_a_kind_that_is_not_known_here_has_failed_and_stays_readable():
+    control, store = control_of(action="patrol", parameters={"rounds": 2})
+    status = control.status()
+    assert (status.state, status.action, status.mission_id) == ("failed", "patrol", "m")
+    assert "unknown mission 'patrol', this planner knows explore, goto" in status.reason
+    assert (store.record.action, store.record.ended_action) == ("", "patrol")
+
+
+def test_the_end_of_a_mission_of_a_kind_that_is_not_known_here_is_told():
+    control, _ = control_of(ended_action="patrol", outcome="succeeded", reason="round done")
+    assert (control.state, control.status().action, control.status().reason) == (
+        "succeeded",
+        "patrol",
+        "round done",
+    )
+
+
+@pytest.mark.parametrize(
+    ("request_", "words", "code"),
+    [
+        (MissionRequest(action="patrol", map="flat"), "unknown mission 'patrol'", "invalid"),
+        (MissionRequest(action="goto", map="flat"), "exactly one of them", "invalid"),
+        (MissionRequest(action="goto", map="flat", goal_node=9), "no node 9", "missing"),
+        (MissionRequest(action="pause"), "pause needs a mission that is running", "conflict"),
+    ],
+)
+def test_what_cannot_be_followed_is_refused_and_changes_nothing(request_, words, code):
+    control, store = control_of(ended_action="explore", outcome="succeeded", reason="done")
+    before = control.status()
+    with pytest.raises(MissionError, match=words) as refused:
+        control.handle(request_)
+    assert refused.value.code == code
+    assert control.status() == before
+    assert store.record.ended_action == "explore"
+
+
+def test_the_goal_node_of_a_sender_that_knows_no_parameters_counts():
+    control, _ = control_of()
+    with pytest.raises(MissionError, match="no node 7"):
+        control.handle(MissionRequest(action="goto", map="flat", goal_node=7))
