@@ -2,7 +2,7 @@
 
 import sys
 
-from services.gateway.auth.book import open_book
+from services.gateway.auth.tokens import ValidTokens
 from services.gateway.service import run
 from services.gateway.settings import GatewaySettings
 from shared.lifecycle import run_service
@@ -12,7 +12,7 @@ def main() -> int:
     """Run until told to stop; 2 when the settings are wrong."""
     try:
         settings = GatewaySettings.from_environment()
-        open_book(settings)
+        ValidTokens.chosen(settings)
     except ValueError as error:
         sys.stderr.write(f"gateway: {error}\n")
         return 2

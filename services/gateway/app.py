@@ -6,15 +6,14 @@ from contextlib import asynccontextmanager
 
 from fastapi import Depends, FastAPI
 
-from services.gateway.auth.access import Access
-from services.gateway.auth.book import open_book
-from services.gateway.auth.guard import guard
+from services.gateway.auth.guard import Access, guard
+from services.gateway.auth.roles import with_roles
+from services.gateway.auth.tokens import ValidTokens
 from services.gateway.http import problems
 from services.gateway.http.asking import Asker
-from services.gateway.http.described import describing_roles
 from services.gateway.http.map_store_proxy import open_client
 from services.gateway.http.metrics import Metrics
-from services.gateway.http.response_headers import Edge
+from services.gateway.http.response_headers import ResponseHeaders
 from services.gateway.live.bridge import BEAT_S, Bridge
 from services.gateway.live.hub import Hub
 from services.gateway.live.mission_log import MissionLog
@@ -36,6 +35,7 @@ from services.gateway.routes import (
 from services.gateway.settings import GatewaySettings
 from services.gateway.state import Gateway
 from shared.bus import Bus
+from shared.web.openapi import describe
 
 
 def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
@@ -45,7 +45,7 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
         ValueError: the token file cannot be read or holds none.
     """
     metrics = Metrics(bus.counters.snapshot)
-    access = Access(settings, open_book(settings))
+    access = Access(settings, ValidTokens.chosen(settings))
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
@@ -53,7 +53,7 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
         hub = Hub(metrics, settings.max_robots, log.take)
         secret = settings.map_store_token.get_secret_value()
         store = open_client(str(settings.map_store_url), secret, settings.certs)
-        gateway = Gateway(settings, metrics, access, Asker(bus, metrics), hub, log, store)
+        gateway = Gateway(settings, metrics, Asker(bus, metrics), hub, log, store)
         app.state.gateway = gateway
         app.state.merges = merges = MergeDesk(gateway)
         bridge = Bridge(bus, hub, asyncio.get_running_loop(), settings.robot, settings.max_robots)
@@ -72,13 +72,14 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
     # No /docs: its scripts come from a CDN, which the page's policy and offline machines forbid.
     app = FastAPI(title="topnav gateway", version="1", lifespan=lifespan, docs_url=None, redoc_url=None)
     problems.install(app, metrics)
-    app.add_middleware(Edge, metrics=metrics)
+    app.state.access = access
+    app.add_middleware(ResponseHeaders, metrics=metrics)
     for resource in (estop, evidence, goals, missions, maps, merging, robots, runs, session):
         app.include_router(resource.router, dependencies=[Depends(guard)])
     for resource in (live, health, pages):
         app.include_router(resource.router)
     pages.mount_static(app)
-    app.openapi = describing_roles(app.openapi)  # type: ignore[method-assign]
+    describe(app, with_roles)
     return app
 
 

@@ -1,49 +1,62 @@
-"""The gateway as a process: uvicorn on its own thread, the main thread waits for the signal to stop."""
+"""The gateway as a process: the HTTP server on a thread, the main thread waits for the signal to stop."""
 
-import logging
 import resource
 import threading
 
-import uvicorn
-
 from services.gateway.app import create_app
 from services.gateway.settings import GatewaySettings
-from shared.bus import Bus, wait_until
-from shared.web.patience import Patience, patient_protocol
+from shared.bus import Bus
+from shared.web.connections import ConnectionLimits
+from shared.web.server import serving
 
-log = logging.getLogger(__name__)
-
-START_S = 30.0
 GRACE_S = 1
-STOP_S = 1.8
+"""For requests under way: with the rest of the shutdown less than the 2 s in which a signal must end it."""
+LOOK_S = 0.5
+"""How soon a server that ended by itself is noticed."""
 MAX_SOCKET_MESSAGE_BYTES = 4096
+"""Of a WebSocket's reader, of whom nothing is expected."""
 UNREAD_S = 30.0
+"""Like GATEWAY_UPLOAD_TIMEOUT_S: who takes nothing for that long has gone."""
 OTHER_FILES = 256
+"""Beside connections: the bus, pictures, scripts and libraries; a process with none has 60 open."""
 MAX_WAITING_CONNECTIONS = 256
+"""What one address may have open, as GATEWAY_MAX_CONNECTIONS_PER_CLIENT."""
 
 
 def run(settings: GatewaySettings, bus: Bus, stop: threading.Event) -> None:
     """Serve until `stop` is set; announces itself once it answers.
 
     Raises:
-        RuntimeError: the server did not start, for example because the port is taken.
+        RuntimeError: the server did not start, for example because the port is taken, or ended by itself.
     """
     _allow_files(settings.max_connections + OTHER_FILES)
-    server = uvicorn.Server(_config(settings, bus))
-    thread = threading.Thread(target=_serve, args=(server,), name="http", daemon=True)
-    thread.start()
-    wait_until(lambda: server.started or not thread.is_alive() or stop.is_set(), START_S)
-    if not server.started and not stop.is_set():
-        raise RuntimeError(f"no HTTP on {settings.host}:{settings.port}: see the log; is the port taken?")
-    bus.announce("gateway")
-    log.info("serving on http://%s:%d", settings.host, settings.port)
-    while thread.is_alive() and not stop.wait(0.5):
-        pass
-    ended_alone = not stop.is_set()
-    server.should_exit = True
-    thread.join(STOP_S)
-    if ended_alone:
-        raise RuntimeError("the HTTP server ended by itself: see the log")
+    limits = ConnectionLimits(
+        header_s=settings.header_timeout_s,
+        unread_s=UNREAD_S,
+        most_per_client=settings.max_connections_per_client,
+        unlimited=settings.proxies,
+    )
+    with serving(
+        create_app(settings, bus),
+        settings.host,
+        settings.port,
+        limits,
+        stop=stop,
+        grace_s=GRACE_S,
+        loop="asyncio",
+        ws="websockets-sansio",
+        ws_max_size=MAX_SOCKET_MESSAGE_BYTES,
+        ws_per_message_deflate=False,  # a compressor for each reader costs more than it saves
+        limit_concurrency=settings.max_connections,
+        backlog=MAX_WAITING_CONNECTIONS,
+        proxy_headers=bool(settings.proxies),
+        forwarded_allow_ips=list(settings.proxies),
+    ) as server:
+        bus.announce("gateway")
+        while server.is_alive() and not stop.wait(LOOK_S):
+            pass
+        if not stop.is_set():
+            raise RuntimeError("the HTTP server ended by itself: see the log")
 
 
 def _allow_files(count: int) -> None:
@@ -52,37 +65,3 @@ def _allow_files(count: int) -> None:
     if soft < count:
         most = count if hard == resource.RLIM_INFINITY else min(count, hard)
         resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
-
-
-def _serve(server: uvicorn.Server) -> None:
-    try:
-        server.run()
-    except SystemExit:  # uvicorn's way to say that it could not start; the reason is in the log
-        log.error("the HTTP server could not start")
-
-
-def _config(settings: GatewaySettings, bus: Bus) -> uvicorn.Config:
-    patience = Patience(
-        header_s=settings.header_timeout_s,
-        unread_s=UNREAD_S,
-        most_per_client=settings.max_connections_per_client,
-        unlimited=settings.proxies,
-    )
-    return uvicorn.Config(
-        create_app(settings, bus),
-        host=settings.host,
-        port=settings.port,
-        loop="asyncio",
-        http=patient_protocol(patience),
-        ws="websockets-sansio",
-        ws_max_size=MAX_SOCKET_MESSAGE_BYTES,
-        ws_per_message_deflate=False,  # a compressor for each reader costs more than it saves
-        limit_concurrency=settings.max_connections,
-        backlog=MAX_WAITING_CONNECTIONS,
-        proxy_headers=bool(settings.proxies),
-        forwarded_allow_ips=list(settings.proxies),
-        timeout_graceful_shutdown=GRACE_S,
-        log_config=None,
-        access_log=False,
-        server_header=False,
-    )

@@ -6,9 +6,9 @@ from typing import Self
 from pydantic import Field, HttpUrl, SecretStr, field_validator, model_validator
 from pydantic_settings import SettingsConfigDict
 
-from shared.access.token import check_chosen
+from shared.access.tokens import check_chosen
 from shared.settings import ServiceSettings
-from shared.web.loopback import is_loopback
+from shared.web.origins import is_loopback
 
 MB = 1_000_000
 

@@ -10,7 +10,6 @@ import httpx
 from fastapi import Depends, Path, Query
 from starlette.requests import HTTPConnection
 
-from services.gateway.auth.access import Access
 from services.gateway.http.asking import Asker
 from services.gateway.http.metrics import Metrics
 from services.gateway.http.slots import Slots
@@ -28,7 +27,6 @@ class Gateway:
     """Settings and everything that lives as long as the application.
 
     Attributes:
-        access: who may do what.
         missions: record of those that ended.
         store: client of the map store's REST interface.
         pictures: the one thread that decodes and encodes pictures: a large one needs 200 MB while it decodes.
@@ -38,7 +36,6 @@ class Gateway:
 
     settings: GatewaySettings
     metrics: Metrics
-    access: Access
     asker: Asker
     hub: Hub
     missions: MissionLog

@@ -6,7 +6,6 @@ import time
 from threading import Event
 
 from services.map_store.api.app import create_app
-from services.map_store.api.guard import LOOPBACK_NAMES
 from services.map_store.api.server import serve
 from services.map_store.errors import MapError
 from services.map_store.service import Deltas, run
@@ -14,9 +13,9 @@ from services.map_store.settings import MapStoreSettings
 from services.map_store.storage.database import Database
 from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
-from shared.access.credentials import credentials_in
 from shared.bus import Bus
 from shared.lifecycle import run_service
+from shared.web.origins import LOOPBACK_NAMES
 
 log = logging.getLogger(__name__)
 
@@ -53,7 +52,7 @@ def main() -> None:
             guard_reading=not settings.loopback,
         )
         try:
-            with serve(app, settings.host, settings.port, credentials_in(settings.certs)):
+            with serve(app, settings, stop):
                 run(bus, stop, store, MissionStore(database), deltas, announce)
         finally:
             database.close()

@@ -6,9 +6,9 @@ from pydantic import Field, SecretStr, model_validator
 from pydantic_settings import SettingsConfigDict
 
 from shared.access.credentials import credentials_in
-from shared.access.token import check_chosen
+from shared.access.tokens import check_chosen
 from shared.settings import ServiceSettings
-from shared.web.loopback import is_loopback
+from shared.web.origins import is_loopback
 
 
 class MapStoreSettings(ServiceSettings):

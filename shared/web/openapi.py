@@ -1,12 +1,14 @@
 """What REST descriptions say of errors: all of them are RFC 9457 problems. Pure, on the plain document."""
 
 import copy
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from typing import Any
 
+from fastapi import FastAPI
+
 MEDIA_TYPE = "application/problem+json"
-METHODS = ("get", "put", "post", "delete", "patch", "head", "options")
+METHODS = frozenset({"get", "put", "post", "delete", "patch", "head", "options"})
 FRAMEWORK_SCHEMAS = ("HTTPValidationError", "ValidationError")
 PROBLEM: dict[str, Any] = {
     "title": "Problem",
@@ -35,19 +37,28 @@ def with_problems(document: dict[str, Any]) -> dict[str, Any]:
     for name in FRAMEWORK_SCHEMAS:
         schemas.pop(name, None)
     schemas["Problem"] = PROBLEM
-    error = {
-        "description": "A problem: what was expected, what came, what to do next.",
-        "content": {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}},
-    }
-    for path in result.get("paths", {}).values():
-        for method in set(METHODS) & path.keys():
-            answers = path[method].setdefault("responses", {})
-            for status in [status for status in answers if status[0] in "45"]:
-                del answers[status]
-            answers |= {"4XX": error, "5XX": error}
+    error = problem_described("A problem: what was expected, what came, what to do next.")
+    for _, _, operation in operations(result):
+        answers = operation.setdefault("responses", {})
+        answers.pop("422", None)
+        answers |= {"4XX": error, "5XX": error}
     return result
 
 
-def describing_problems(plain: Callable[[], dict[str, Any]]) -> Callable[[], dict[str, Any]]:
-    """What an application's `openapi` is to be replaced by: `plain` with problems, made once."""
-    return cache(lambda: with_problems(plain()))
+def operations(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    """Method, path and description of every operation."""
+    for path, described in document.get("paths", {}).items():
+        for method in METHODS & described.keys():
+            yield method.upper(), path, described[method]
+
+
+def problem_described(why: str) -> dict[str, Any]:
+    """An answer that is a problem document, as OpenAPI describes it."""
+    content = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
+    return {"description": why, "content": content}
+
+
+def describe(app: FastAPI, change: Callable[[dict[str, Any]], dict[str, Any]]) -> None:
+    """Have `change` complete the REST description of `app`, once."""
+    plain = app.openapi
+    app.openapi = cache(lambda: change(plain()))  # type: ignore[method-assign]

@@ -6,17 +6,18 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Protocol, TypeVar
 
 from services.gateway.http.metrics import Metrics
-from services.gateway.http.problems import ProblemError
 from shared.messages.base import Message
 from shared.queries import AbsentError, RefusedError, TimedOutError
 from shared.topics import Query
+from shared.web.problems import ProblemError
 from shared.wire import WireError
 
 Q = TypeVar("Q", bound=Message)
 R = TypeVar("R", bound=Message)
 
 THREADS = 16
-MAX_WAITING = 48
+"""Questions asked at once; chosen: each waits on a thread, and several consoles ask few."""
+MAX_WAITING = 3 * THREADS
 """Questions on their way; more are refused at once instead of piling up behind a service that hangs."""
 
 
@@ -43,13 +44,8 @@ class Asker:
             ProblemError: 503 absent or busy, 504 too slow, 409 refused, 502 answered nonsense.
         """
         if self._waiting >= MAX_WAITING:
-            raise ProblemError(
-                503,
-                "gateway_busy",
-                expected=f"at most {MAX_WAITING} questions on their way",
-                got=str(self._waiting),
-                next_step="wait a second and try again",
-            )
+            expected, got = f"at most {MAX_WAITING} questions on their way", str(self._waiting)
+            raise ProblemError(503, "gateway_busy", expected, got, "wait a second and try again")
         self._waiting += 1
         try:
             with self._metrics.asked.labels(type(request).__name__).time():
@@ -57,8 +53,14 @@ class Asker:
                 return await loop.run_in_executor(
                     self._pool, lambda: self._call(query, request, timeout_s, names)
                 )
-        except (AbsentError, TimedOutError, RefusedError, WireError) as error:
-            raise _problem(service, error, timeout_s) from error
+        except AbsentError as error:
+            raise absent(service, f"the {service} service on the bus", "no such service") from error
+        except TimedOutError as error:
+            raise slow(service, f"an answer of {service} within {timeout_s:g} s", "none") from error
+        except RefusedError as error:
+            raise _refused(service, error) from error
+        except WireError as error:
+            raise bad_answer(service, f"a valid message from {service}", str(error)[:300]) from error
         finally:
             self._waiting -= 1
 
@@ -73,41 +75,25 @@ class Asker:
         return self._bus.ask(query, request, timeout_s, **names)
 
 
-def _problem(service: str, error: Exception, timeout_s: float) -> ProblemError:
-    got = str(error)[:300]
-    if isinstance(error, AbsentError):
-        return ProblemError(
-            503,
-            "service_absent",
-            expected=f"the {service} service on the bus",
-            got="no such service",
-            next_step=f"start {service} (see /readyz) and try again",
-            service=service,
-        )
-    if isinstance(error, TimedOutError):
-        return ProblemError(
-            504,
-            "service_slow",
-            expected=f"an answer of {service} within {timeout_s:g} s",
-            got="none",
-            next_step="try again; if it stays so, look at the service's log",
-            service=service,
-        )
-    if isinstance(error, RefusedError):
-        return ProblemError(
-            409,
-            "refused",
-            expected=f"a request {service} can carry out",
-            got=got,
-            next_step="change what the service objects to",
-            service=service,
-            reason=error.code,
-        )
-    return ProblemError(
-        502,
-        "bad_answer",
-        expected=f"a valid message from {service}",
-        got=got,
-        next_step="run the same version of every service",
-        service=service,
-    )
+def absent(service: str, expected: str, got: str) -> ProblemError:
+    """A service that cannot be reached."""
+    next_step = f"start {service} (see /readyz) and try again"
+    return ProblemError(503, "service_absent", expected, got, next_step, service=service)
+
+
+def slow(service: str, expected: str, got: str) -> ProblemError:
+    """A service that does not answer in time."""
+    next_step = "try again; if it stays so, look at the service's log"
+    return ProblemError(504, "service_slow", expected, got, next_step, service=service)
+
+
+def bad_answer(service: str, expected: str, got: str) -> ProblemError:
+    """A service that answers something else than it should."""
+    next_step = "see the service's log; run the same version of every service"
+    return ProblemError(502, "bad_answer", expected, got, next_step, service=service)
+
+
+def _refused(service: str, error: RefusedError) -> ProblemError:
+    expected, got = f"a request {service} can carry out", str(error)[:300]
+    next_step = "change what the service objects to"
+    return ProblemError(409, "refused", expected, got, next_step, service=service, reason=error.code)

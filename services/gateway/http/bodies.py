@@ -1,6 +1,5 @@
 """Bodies of requests: read with a length and a time limit, JSON strictly, pictures from either form."""
 
-import asyncio
 import json
 from typing import Any, NoReturn, TypeVar
 
@@ -10,16 +9,15 @@ from starlette.datastructures import UploadFile
 from starlette.formparsers import MultiPartException, MultiPartParser
 from starlette.requests import ClientDisconnect
 
-from services.gateway.http.problems import ProblemError, invalid
-from services.gateway.uploads.picture import PictureError
+from services.gateway.http.problems import invalid
+from shared.web.bodies import BodyLimit, limited
+from shared.web.problems import ProblemError
 
 B = TypeVar("B", bound=BaseModel)
 
 MAX_JSON_BYTES = 64_000
 MULTIPART_EXTRA_BYTES = 16_000
 """Room for boundaries and part headers around a picture."""
-DRAIN_BYTES = 64_000_000
-"""How much of a refused body is still read, so that the sender sees the answer and not a broken pipe."""
 PICTURE_TYPES = ("image/png", "image/jpeg", "image/webp")
 
 
@@ -29,36 +27,15 @@ async def read_body(request: Request, limit_bytes: int, timeout_s: float) -> byt
     Raises:
         ProblemError: 413 longer, 408 slower than `timeout_s`, 400 sender gone.
     """
-    body, length = bytearray(), 0
     try:
-        async with asyncio.timeout(timeout_s):
-            async for chunk in request.stream():
-                length += len(chunk)
-                if length <= limit_bytes:
-                    body += chunk
-                elif length > limit_bytes + DRAIN_BYTES:
-                    break
-    except TimeoutError:
-        raise ProblemError(
-            408,
-            "body_too_slow",
-            expected=f"the whole body within {timeout_s:g} s",
-            got=f"{length} bytes",
-            next_step="send it faster or smaller",
-        ) from None
+        return await body_of(request, BodyLimit(limit_bytes, timeout_s)).body()
     except ClientDisconnect:
-        raise ProblemError(
-            400, "disconnected", expected="a whole body", got=f"{length} bytes", next_step="send it again"
-        ) from None
-    if length > limit_bytes:
-        raise ProblemError(
-            413,
-            "body_too_large",
-            expected=f"at most {limit_bytes} bytes",
-            got=f"at least {length} bytes",
-            next_step="send less, for example a smaller picture",
-        )
-    return bytes(body)
+        raise ProblemError(400, "disconnected", "a whole body", "the sender's end", "send it again") from None
+
+
+def body_of(request: Request, limit: BodyLimit) -> Request:
+    """The request with a body that keeps to `limit`."""
+    return Request(request.scope, limited(request.receive, limit))
 
 
 async def read_json(request: Request, kind: type[B], timeout_s: float) -> B:
@@ -102,13 +79,13 @@ async def read_picture(request: Request, limit_bytes: int, timeout_s: float) -> 
         The file's bytes and the content type it was sent with.
 
     Raises:
-        PictureError, ProblemError: no picture, several, or another type.
+        ProblemError: no picture, several, or another type.
     """
     media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if media_type in PICTURE_TYPES:
         return await read_body(request, limit_bytes, timeout_s), media_type
     if media_type != "multipart/form-data":
-        raise PictureError(
+        raise ProblemError(
             415,
             "unsupported_type",
             f"one of {', '.join(PICTURE_TYPES)} or multipart/form-data",
@@ -131,7 +108,7 @@ async def _only_part(request: Request, body: bytes, limit_bytes: int) -> tuple[b
     try:
         form = await parser.parse()
     except (MultiPartException, ValueError, LookupError) as error:
-        raise PictureError(
+        raise ProblemError(
             422,
             "bad_form",
             "multipart/form-data with one file",
@@ -141,14 +118,14 @@ async def _only_part(request: Request, body: bytes, limit_bytes: int) -> tuple[b
     try:
         parts = [value for _, value in form.multi_items() if isinstance(value, UploadFile)]
         if len(parts) != 1:
-            raise PictureError(
+            raise ProblemError(
                 422, "bad_form", "one file in the form", f"{len(parts)} files", "send one file"
             )
         data = await parts[0].read()
     finally:
         await form.close()
     if len(data) > limit_bytes:
-        raise PictureError(
+        raise ProblemError(
             413, "too_large", f"at most {limit_bytes} bytes", f"{len(data)} bytes", "send it smaller"
         )
     return data, (parts[0].content_type or "").partition(";")[0].strip().lower()

@@ -1,9 +1,6 @@
 """Requests passed on to the map store's REST interface, answers and problems passed back."""
 
-import asyncio
 import ssl
-import time
-from collections.abc import AsyncIterator
 from http import HTTPStatus
 from pathlib import Path
 
@@ -13,20 +10,26 @@ from fastapi.responses import Response, StreamingResponse
 from starlette.background import BackgroundTask
 
 from services.gateway.auth.guard import person_of
-from services.gateway.http.problems import ProblemError
-from services.gateway.settings import GatewaySettings
+from services.gateway.http.asking import absent, bad_answer, slow
+from services.gateway.http.bodies import body_of
 from services.gateway.state import Gateway
 from shared.access.credentials import MAP_STORE_HOST, credentials_in, secured_url
+from shared.web.bodies import BodyLimit
 from shared.web.openapi import MEDIA_TYPE
+from shared.web.problems import ProblemError
 
 AUTHOR = "x-topnav-author"
 AUTHOR_CHARACTERS = 64
 SENT_ON = ("accept", "content-type", "if-match", "if-none-match", AUTHOR)
 SENT_BACK = ("content-type", "content-length", "content-disposition", "etag", "cache-control", "location")
 MAX_PROBLEM_BYTES = 64_000
+"""Of an error's body that may be passed back; the store's own have one."""
 TIMEOUTS = httpx.Timeout(10.0, connect=2.0)
+"""Seconds; chosen: twice what a question on the bus may take, GATEWAY_ASK_TIMEOUT_S."""
 STREAM_TIMEOUTS = httpx.Timeout(120.0, connect=2.0)
+"""Seconds; chosen: the store answers an import once all of an archive is written."""
 LEAST_BYTES_PER_S = 50_000
+"""Of an archive on its way in: the longest one, GATEWAY_MAX_IMPORT_BYTES, takes three hours at it."""
 
 
 def open_client(url: str, token: str, certs: Path | None = None) -> httpx.AsyncClient:
@@ -41,13 +44,12 @@ def open_client(url: str, token: str, certs: Path | None = None) -> httpx.AsyncC
     credentials = credentials_in(certs)
     if credentials is None:
         return httpx.AsyncClient(base_url=url, headers=headers, timeout=TIMEOUTS, trust_env=False)
-    trust = credentials.tls_context(ssl.Purpose.SERVER_AUTH)
     return httpx.AsyncClient(
         base_url=secured_url(url),
         headers=headers,
         timeout=TIMEOUTS,
         trust_env=False,
-        verify=trust,
+        verify=credentials.tls_context(ssl.Purpose.SERVER_AUTH),
         event_hooks={"request": [_expect_the_map_store]},
     )
 
@@ -63,21 +65,23 @@ async def forward(gateway: Gateway, request: Request, path: str, body: bytes = b
     Raises:
         ProblemError: 503 the store is down, 504 too slow, 502 its answer is no problem document.
     """
-    headers = _headers(request)
     wish = gateway.store.build_request(
-        request.method, path, params=request.url.query, headers=headers, content=body or None
+        request.method, path, params=request.url.query, headers=_headers(request), content=body or None
     )
     return await _answer(gateway, wish)
 
 
 async def forward_stream(gateway: Gateway, request: Request, path: str) -> Response:
     """Pass a request with a long body on while it arrives."""
+    settings = gateway.settings
+    next_step = "raise GATEWAY_MAX_IMPORT_BYTES or import at the map store"
+    limit = BodyLimit(settings.max_import_bytes, settings.upload_timeout_s, LEAST_BYTES_PER_S, next_step)
     wish = gateway.store.build_request(
         request.method,
         path,
         params=request.url.query,
         headers=_headers(request),
-        content=_limited(request, gateway.settings),
+        content=body_of(request, limit).stream(),
         timeout=STREAM_TIMEOUTS,
     )
     with gateway.imports.hold(person_of(request).client):
@@ -118,23 +122,9 @@ async def _send(store: httpx.AsyncClient, wish: httpx.Request) -> httpx.Response
     try:
         return await store.send(wish, stream=True)
     except (httpx.ConnectError, httpx.ConnectTimeout, httpx.RemoteProtocolError, httpx.WriteError) as error:
-        raise ProblemError(
-            503,
-            "service_absent",
-            expected=f"the map store at {store.base_url}",
-            got=_name(error),
-            next_step="start map_store (see /readyz) and try again",
-            service="map_store",
-        ) from error
+        raise absent("map_store", f"the map store at {store.base_url}", _name(error)) from error
     except httpx.TimeoutException as error:
-        raise ProblemError(
-            504,
-            "service_slow",
-            expected="an answer of the map store",
-            got=_name(error),
-            next_step="try again; if it stays so, look at its log",
-            service="map_store",
-        ) from error
+        raise slow("map_store", "an answer of the map store", _name(error)) from error
     except httpx.HTTPError as error:
         raise _nonsense(_name(error)) from error
 
@@ -150,40 +140,10 @@ async def _problem(answer: httpx.Response) -> Response:
         raise _nonsense(_name(error)) from error
     finally:
         await answer.aclose()
-    if answer.headers.get("content-type", "").startswith(MEDIA_TYPE) and len(body) <= MAX_PROBLEM_BYTES:
+    kind = answer.headers.get("content-type", "no content type")
+    if kind.startswith(MEDIA_TYPE) and len(body) <= MAX_PROBLEM_BYTES:
         return Response(body, answer.status_code, media_type=MEDIA_TYPE)
-    kind = answer.headers.get("content-type", "no content type")[:80]
-    raise _nonsense(f"status {answer.status_code} with {kind}")
-
-
-async def _limited(request: Request, settings: GatewaySettings) -> AsyncIterator[bytes]:
-    """A body while it arrives; it must flow, and at the least rate on average."""
-    length, stream, began_s = 0, request.stream(), time.monotonic()
-    while True:
-        left_s = settings.upload_timeout_s + length / LEAST_BYTES_PER_S - (time.monotonic() - began_s)
-        try:
-            async with asyncio.timeout(min(left_s, settings.upload_timeout_s)):
-                chunk = await anext(stream, None)
-        except TimeoutError:
-            raise ProblemError(
-                408,
-                "body_too_slow",
-                expected=f"{LEAST_BYTES_PER_S} bytes a second",
-                got=f"{length} bytes in {time.monotonic() - began_s:.0f} s",
-                next_step="send it over a faster link, or import at the map store",
-            ) from None
-        if chunk is None:
-            return
-        length += len(chunk)
-        if length > settings.max_import_bytes:
-            raise ProblemError(
-                413,
-                "body_too_large",
-                expected=f"at most {settings.max_import_bytes} bytes",
-                got=f"at least {length} bytes",
-                next_step="raise GATEWAY_MAX_IMPORT_BYTES or import at the map store",
-            )
-        yield chunk
+    raise _nonsense(f"status {answer.status_code} with {kind[:80]}")
 
 
 def author_of(request: Request) -> str:
@@ -199,14 +159,7 @@ def _headers(request: Request) -> dict[str, str]:
 
 
 def _nonsense(got: str) -> ProblemError:
-    return ProblemError(
-        502,
-        "bad_answer",
-        expected="an answer or a problem document of the map store",
-        got=got,
-        next_step="see its log; run the same version of every service",
-        service="map_store",
-    )
+    return bad_answer("map_store", "an answer or a problem document of the map store", got)
 
 
 def _name(error: Exception) -> str:

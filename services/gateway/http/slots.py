@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from services.gateway.http.problems import ProblemError
+from shared.web.problems import ProblemError
 
 
 class Slots:
@@ -43,10 +43,7 @@ class Slots:
                 del self._open[client]
 
     def _refusal(self, status: int, most: int, whose: str) -> ProblemError:
+        expected = f"at most {most} {self._what} at once {whose}"
         return ProblemError(
-            status,
-            f"too_many_{self._what}",
-            expected=f"at most {most} {self._what} at once {whose}",
-            got="one more",
-            next_step="wait a second and try again",
+            status, f"too_many_{self._what}", expected, "one more", "wait a second and try again"
         )

@@ -4,8 +4,9 @@ import io
 
 from PIL import Image
 
-from services.gateway.uploads.picture import PictureError, check_header, decode_bgr
+from services.gateway.uploads.picture import check_header, decode_bgr
 from shared.messages.sensors import Frame
+from shared.web.problems import ProblemError
 
 QUALITY = 80
 
@@ -14,14 +15,14 @@ def jpeg_of(frame: Frame, width_px: int | None) -> bytes:
     """Encode a frame, no wider than `width_px`; frames that are JPEG already pass unchanged when they fit.
 
     Raises:
-        PictureError: a JPEG frame that is damaged or not of the size it claims.
+        ProblemError: a JPEG frame that is damaged or not of the size it claims.
     """
     wanted_px = min(frame.width_px, width_px or frame.width_px) // 2 * 2
     if frame.encoding == "jpeg":
         header = check_header(frame.data, "image/jpeg")
         if (header.width_px, header.height_px) != (frame.width_px, frame.height_px):
             expected, got = f"{frame.width_px} px width", f"{header.width_px} px"
-            raise PictureError(502, "bad_frame", expected, got, "see the camera")
+            raise ProblemError(502, "bad_frame", expected, got, "see the camera")
         if wanted_px == frame.width_px:
             return frame.data
         bgr = decode_bgr(frame.data, header)

@@ -3,10 +3,10 @@
 import asyncio
 import logging
 
-from services.gateway.http.problems import ProblemError
 from services.gateway.merging.job import Merge, MergeAnswer
 from services.gateway.merging.reading import ReadMap
 from services.gateway.state import Gateway
+from shared.web.problems import ProblemError
 
 log = logging.getLogger(__name__)
 

@@ -6,7 +6,6 @@ from typing import Literal
 
 from pydantic import BaseModel
 
-from services.gateway.http.problems import ProblemError
 from services.gateway.merging.core.candidates import MergeRefusedError
 from services.gateway.merging.core.choice import choose
 from services.gateway.merging.core.operations import check_size, merged
@@ -16,6 +15,7 @@ from shared.messages.features import Features
 from shared.messages.maps import MapRequest
 from shared.messages.matching import MatchRequest, NodeMatch
 from shared.topics import MAP, MATCH
+from shared.web.problems import ProblemError
 
 BEST_K = 5
 CHUNK = 32

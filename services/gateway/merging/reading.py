@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from services.gateway.http.map_store_proxy import fetch
-from services.gateway.http.problems import ProblemError
 from services.gateway.merging.core.candidates import MergeRefusedError
 from services.gateway.merging.core.places import Places
 from services.gateway.state import Gateway
 from shared.messages.features import Features
 from shared.messages.maps import MapReply, MapRequest
 from shared.topics import MAP
+from shared.web.problems import ProblemError
 
 
 @dataclass(frozen=True)

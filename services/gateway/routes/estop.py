@@ -5,14 +5,14 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
-from services.gateway.auth.guard import person_of
+from services.gateway.auth.guard import access_of, person_of
 from services.gateway.http.bodies import read_json
-from services.gateway.http.problems import ProblemError
 from services.gateway.live.hub import estop_facts
 from services.gateway.routes.robots import known
 from services.gateway.state import Gateway, GatewayDep, RobotPath
 from shared.messages import EStopRequest, EStopState
 from shared.topics import ESTOP
+from shared.web.problems import ProblemError
 
 router = APIRouter(tags=["robots"])
 
@@ -69,7 +69,7 @@ async def engage_estop(request: Request, robot: RobotPath, gateway: GatewayDep) 
         wish = await read_json(request, Engage, gateway.settings.upload_timeout_s)
     who = _signed(wish.who, person_of(request).name)
     engage = EStopRequest(action="engage", who=who, why=wish.why[:LONGEST_WHY])
-    if gateway.access.limits.stop(robot):
+    if access_of(request).rates.stop(robot):
         return _answer(await _ask(gateway, robot, engage))
     return _answer(await gateway.stops.join(robot, lambda: _ask(gateway, robot, engage)))
 

@@ -4,13 +4,13 @@ import asyncio
 
 from fastapi import APIRouter
 
-from services.gateway.http.problems import ProblemError
 from services.gateway.routes.goals import NodeAnswer
 from services.gateway.routes.robots import newest_frame
 from services.gateway.state import Gateway, GatewayDep, MapPath, MapQuery, NodePath, NodeQuery, RobotPath
 from shared.messages.maps import MapRequest
 from shared.messages.matching import MatchRequest, NodeMatch
 from shared.topics import MAP, MATCH
+from shared.web.problems import ProblemError
 
 router = APIRouter(tags=["evidence"])
 

@@ -5,8 +5,8 @@ from typing import Any
 from fastapi import APIRouter, Depends, Response
 
 from services.gateway.auth.guard import guard
-from services.gateway.http.problems import ProblemError
 from services.gateway.state import GatewayDep
+from shared.web.problems import ProblemError
 
 router = APIRouter(tags=["health"])
 

@@ -5,13 +5,13 @@ import contextlib
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
-from services.gateway.auth.access import Person
-from services.gateway.auth.guard import admit_socket
-from services.gateway.http.limits import address_of
-from services.gateway.http.problems import ProblemError, problem_response
+from services.gateway.auth.guard import Person, access_of, admit_socket
+from services.gateway.http.problems import counted
+from services.gateway.http.rates import address_of
 from services.gateway.live.outbox import Outbox
 from services.gateway.state import Gateway, gateway_of
 from shared.topics import NAME
+from shared.web.problems import ProblemError
 
 router = APIRouter(tags=["live"])
 
@@ -34,7 +34,7 @@ async def live(socket: WebSocket, robot: str) -> None:
         _check_name(robot)
     except ProblemError as problem:
         gateway.metrics.sockets_refused.labels(problem.code).inc()
-        await socket.send_denial_response(problem_response(problem, socket.url.path, gateway.metrics))
+        await socket.send_denial_response(counted(problem, socket.url.path, gateway.metrics))
         return
     try:
         with gateway.sockets.hold(address_of(socket)):
@@ -98,7 +98,7 @@ async def _send(socket: WebSocket, outbox: Outbox, gateway: Gateway, person: Per
             for text in await outbox.take():
                 async with asyncio.timeout(gateway.settings.send_timeout_s):
                     await socket.send_text(text)
-            if not gateway.access.holds(person):
+            if not access_of(socket).holds(person):
                 return "token_removed"
             await asyncio.sleep(max(PACE_S, gateway.sockets.taken * PACE_PER_SOCKET_S))
     except TimeoutError:

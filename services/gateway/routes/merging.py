@@ -8,11 +8,11 @@ from starlette.requests import HTTPConnection
 
 from services.gateway.http.bodies import read_json
 from services.gateway.http.map_store_proxy import author_of
-from services.gateway.http.problems import ProblemError
 from services.gateway.merging.desk import MergeDesk
 from services.gateway.merging.job import MergeAnswer
 from services.gateway.merging.reading import ReadMap, read_map
 from services.gateway.state import GatewayDep, MapPath
+from shared.web.problems import ProblemError
 
 router = APIRouter(tags=["maps"])
 

@@ -9,7 +9,6 @@ from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from services.gateway.http.bodies import read_json
-from services.gateway.http.problems import ProblemError
 from services.gateway.live.hub import RobotView
 from services.gateway.routes.goals import PICTURE_BODY
 from services.gateway.routes.robots import known
@@ -17,6 +16,7 @@ from services.gateway.state import Gateway, GatewayDep, MapQuery, RobotPath
 from services.gateway.uploads.goal import goal_of
 from shared.messages.missions import MissionRequest, MissionStatus
 from shared.topics import MISSION
+from shared.web.problems import ProblemError
 
 router = APIRouter(tags=["missions"])
 
@@ -144,7 +144,7 @@ async def _ask_patiently(gateway: Gateway, robot: str, deadline_s: float) -> Mis
         try:
             return await _ask(gateway, robot, MissionRequest(action="status"))
         except ProblemError as problem:
-            gone = problem.status in (503, 504) and robot in gateway.hub.robots
+            gone = problem.status_code in (503, 504) and robot in gateway.hub.robots
             if not gone or time.monotonic() + 0.5 > deadline_s:
                 raise
         await asyncio.sleep(0.5)

@@ -6,7 +6,6 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel
 
-from services.gateway.http.problems import ProblemError
 from services.gateway.live.hub import RobotView, estop_facts, frame_facts
 from services.gateway.live.snapshot import jpeg_of
 from services.gateway.live.true_poses import Position
@@ -14,6 +13,7 @@ from services.gateway.state import Gateway, GatewayDep, MapQuery, RobotPath
 from shared.messages.maps import MapRequest
 from shared.messages.sensors import Frame
 from shared.topics import MAP
+from shared.web.problems import ProblemError
 
 router = APIRouter(tags=["robots"])
 

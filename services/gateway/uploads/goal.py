@@ -6,13 +6,13 @@ from fastapi import Request
 
 from services.gateway.auth.guard import person_of
 from services.gateway.http.bodies import read_picture
-from services.gateway.http.problems import ProblemError
 from services.gateway.state import Gateway
-from services.gateway.uploads.picture import PictureError, check_header, decode_bgr
+from services.gateway.uploads.picture import check_header, decode_bgr
 from services.gateway.uploads.picture_header import PictureHeader
 from shared.messages.features import ExtractRequest, Features
 from shared.messages.sensors import Frame
 from shared.topics import EXTRACT
+from shared.web.problems import ProblemError
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ async def goal_of(request: Request, gateway: Gateway, robot: str) -> Goal:
     """Read, check and decode the request's picture and have its features extracted.
 
     Raises:
-        PictureError, ProblemError: 4xx the picture cannot be a goal, 503/504 nobody extracts its features.
+        ProblemError: 4xx the picture cannot be a goal, 503/504 nobody extracts its features.
     """
     settings = gateway.settings
     try:
@@ -36,9 +36,6 @@ async def goal_of(request: Request, gateway: Gateway, robot: str) -> Goal:
             data, declared_type = await read_picture(request, limit_bytes, timeout_s)
             header = check_header(data, declared_type)
             frame = await gateway.work(lambda: _frame(data, header, robot))
-    except PictureError as error:
-        gateway.metrics.refused.labels(error.reason).inc()
-        raise
     except ProblemError as error:
         gateway.metrics.refused.labels(error.code).inc()
         raise

@@ -19,6 +19,7 @@ import numpy.typing as npt
 from PIL import Image, UnidentifiedImageError
 
 from services.gateway.uploads.picture_header import HeaderError, PictureHeader, read_header
+from shared.web.problems import ProblemError
 
 MAX_PIXELS: Final = {"jpeg": 64_000_000, "png": 34_000_000, "webp": 20_000_000}
 """A JPEG is shrunk while it is decoded; PNG is decoded whole, at 4 bytes a pixel, and WebP at 16."""
@@ -33,21 +34,6 @@ PILLOW_FORMATS: Final = {"png": ("PNG",), "jpeg": ("JPEG",), "webp": ("WEBP",)}
 Bgr = npt.NDArray[np.uint8]
 
 
-class PictureError(ValueError):
-    """A picture that cannot be a goal.
-
-    Attributes:
-        status: fitting HTTP status.
-        reason: short name, for the metrics.
-        expected, got, next_step: what the sender needs to know.
-    """
-
-    def __init__(self, status: int, reason: str, expected: str, got: str, next_step: str) -> None:
-        super().__init__(f"{reason}: expected {expected}, got {got}")
-        self.status, self.reason = status, reason
-        self.expected, self.got, self.next_step = expected, got, next_step
-
-
 def check_header(data: bytes, declared_type: str) -> PictureHeader:
     """Check format and size from the first bytes.
 
@@ -56,18 +42,18 @@ def check_header(data: bytes, declared_type: str) -> PictureHeader:
         declared_type: content type it was sent with.
 
     Raises:
-        PictureError: empty, another format, not the declared one, or a size a panorama cannot have.
+        ProblemError: empty, another format, not the declared one, or a size a panorama cannot have.
     """
     if not data:
-        raise PictureError(422, "empty", "a picture", "0 bytes", "send the file's content")
+        raise ProblemError(422, "empty", "a picture", "0 bytes", "send the file's content")
     try:
         header = read_header(data)
     except HeaderError as error:
-        raise PictureError(
+        raise ProblemError(
             415, "not_a_picture", "a PNG, JPEG or WebP picture", str(error), "convert it to one of the three"
         ) from None
     if declared_type != f"image/{header.format}":
-        raise PictureError(
+        raise ProblemError(
             415,
             "type_mismatch",
             f"content type image/{header.format} for these bytes",
@@ -76,7 +62,7 @@ def check_header(data: bytes, declared_type: str) -> PictureHeader:
         )
     _check_size(header)
     if header.format == "jpeg" and (scans := data.count(b"\xff\xda")) > MAX_SCANS:
-        raise PictureError(
+        raise ProblemError(
             422,
             "too_many_scans",
             f"a JPEG of at most {MAX_SCANS} scans",
@@ -93,11 +79,11 @@ def decode_bgr(data: bytes, header: PictureHeader) -> Bgr:
         (H, W, 3) uint8, blue first, W = 2 H, W <= 2048.
 
     Raises:
-        PictureError: damaged, animated, or not of the size its header claims.
+        ProblemError: damaged, animated, or not of the size its header claims.
     """
     image = _open(data, header)
     if getattr(image, "n_frames", 1) > 1 and image.format != "MPO":  # MPO: the first picture is the main one
-        raise PictureError(
+        raise ProblemError(
             422,
             "animated",
             "one still picture",
@@ -118,7 +104,7 @@ def _check_size(header: PictureHeader) -> None:
     got = f"{width_px} x {height_px} px"
     most = MAX_PIXELS[header.format]
     if width_px * height_px > most:
-        raise PictureError(
+        raise ProblemError(
             413,
             "too_many_pixels",
             f"at most {most // 1_000_000} megapixels as {header.format.upper()}",
@@ -126,7 +112,7 @@ def _check_size(header: PictureHeader) -> None:
             "send a smaller picture or, up to 64 megapixels, a JPEG",
         )
     if width_px != 2 * height_px:
-        raise PictureError(
+        raise ProblemError(
             422,
             "not_two_to_one",
             "an equirectangular panorama, exactly twice as wide as high",
@@ -134,7 +120,7 @@ def _check_size(header: PictureHeader) -> None:
             "export the whole sphere (360 x 180 degrees)",
         )
     if width_px < MIN_WIDTH_PX:
-        raise PictureError(
+        raise ProblemError(
             422,
             "too_small",
             f"at least {MIN_WIDTH_PX} x {MIN_WIDTH_PX // 2} px",
@@ -179,8 +165,8 @@ def _as_rgb(image: Image.Image) -> Image.Image:
     return image.convert("RGB")
 
 
-def _damaged(error: Exception) -> PictureError:
+def _damaged(error: Exception) -> ProblemError:
     got = f"a damaged file ({str(error)[:120]})"
-    return PictureError(
+    return ProblemError(
         422, "damaged", "a picture that decodes to its end", got, "send the file again or re-save it"
     )

@@ -9,9 +9,16 @@ from typing import Annotated
 import typer
 from pydantic import TypeAdapter, ValidationError
 
-from shared.access.roles import ROLES, Role
-from shared.access.token import Token, TokenName, digest_of, new_secret
-from shared.access.token_file import read_tokens, write_tokens
+from shared.access.tokens import (
+    ROLES,
+    Role,
+    Token,
+    TokenName,
+    digest_of,
+    new_secret,
+    read_tokens,
+    write_tokens,
+)
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, no_args_is_help=True)
 

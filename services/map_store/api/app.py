@@ -12,16 +12,19 @@ from services.map_store.api import (
     map_routes,
     problems,
 )
-from services.map_store.api.body_limit import BodyLimit
 from services.map_store.api.guard import reader_guard, writer_guard
 from services.map_store.api.schemas import Health
 from services.map_store.errors import UnavailableError
 from services.map_store.store import MapStore
-from shared.web.openapi import describing_problems
+from shared.web.bodies import BodyLimit, BodyLimits
 
 VERSION = "1"
 MAX_BODY_BYTES = 100_000
-"""Of every request but an import."""
+"""Of every request but an import: names, which take a hundred."""
+STALLED_S = 30.0
+"""The gateway ends stalled senders earlier; this is for those that come here directly."""
+LEAST_BYTES_PER_S = 1.0
+"""None worth the name: a body that flows may take its time."""
 
 DESCRIPTION = "Maps of places: their nodes, edges, pictures and history. Errors are RFC 9457 problems."
 
@@ -45,7 +48,10 @@ def create_app(
         guard_reading: reading needs the token as well.
     """
     app = FastAPI(title="topnav map store", version=VERSION, description=DESCRIPTION)
-    app.add_middleware(BodyLimit, most=MAX_BODY_BYTES, exceptions={"/maps/import": max_archive_bytes})
+    short, long = (
+        BodyLimit(most, STALLED_S, LEAST_BYTES_PER_S) for most in (MAX_BODY_BYTES, max_archive_bytes)
+    )
+    app.add_middleware(BodyLimits, most=short, exceptions={"/maps/import": long})
     problems.install(app)
     write = [Depends(writer_guard(token))]
     read = [Depends(reader_guard(token if guard_reading else "", names))]
@@ -58,7 +64,6 @@ def create_app(
     ):
         app.include_router(router, dependencies=read)
     app.include_router(_health(store, ready))
-    app.openapi = describing_problems(app.openapi)  # type: ignore[method-assign]
     return app
 
 

@@ -2,11 +2,10 @@
 
 import hmac
 from collections.abc import Callable, Collection
-from urllib.parse import urlsplit
 
 from fastapi import HTTPException, Request
 
-LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "::1"})
+from shared.web.origins import check_host, check_origin
 
 
 def reader_guard(token: str, names: Collection[str] | None) -> Callable[[Request], None]:
@@ -18,8 +17,8 @@ def reader_guard(token: str, names: Collection[str] | None) -> Callable[[Request
     """
 
     def check(request: Request) -> None:
-        if names is not None and _name(request.headers.get("host", "")) not in names:
-            raise HTTPException(403, f"one of {sorted(names)} is expected as Host: others may not lead here")
+        if names is not None:
+            check_host(request, names, "others may not lead here")
         _check_token(request, token, "this map store needs")
 
     return check
@@ -29,9 +28,7 @@ def writer_guard(token: str) -> Callable[[Request], None]:
     """A dependency for routes that write; an empty token lets everyone on this host write."""
 
     def check(request: Request) -> None:
-        origin = request.headers.get("origin")
-        if origin is not None and urlsplit(origin).netloc != request.headers.get("host"):
-            raise HTTPException(403, f"pages of {origin[:80]} may not write here")
+        check_origin(request, (), "write from a program")
         _check_token(request, token, "writes need")
 
     return check
@@ -40,11 +37,4 @@ def writer_guard(token: str) -> Callable[[Request], None]:
 def _check_token(request: Request, token: str, who: str) -> None:
     given, expected = request.headers.get("authorization", "").encode(), f"Bearer {token}".encode()
     if token and not hmac.compare_digest(given, expected):
-        raise HTTPException(401, f"{who} 'Authorization: Bearer <token>'", {"WWW-Authenticate": "Bearer"})
-
-
-def _name(host: str) -> str | None:
-    try:
-        return urlsplit(f"//{host}").hostname
-    except ValueError:
-        return None
+        raise HTTPException(401, f"{who} 'Authorization: Bearer <token>'")

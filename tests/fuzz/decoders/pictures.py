@@ -7,9 +7,10 @@ import numpy as np
 from PIL import Image
 
 from services.features.pipeline.decoding import BadPictureError, decode_picture
-from services.gateway.uploads.picture import PictureError, check_header, decode_bgr
+from services.gateway.uploads.picture import check_header, decode_bgr
 from services.gateway.uploads.picture_header import HeaderError, read_header
 from shared.messages.sensors import Frame
+from shared.web.problems import ProblemError
 from simulator.assets.model import AssetError
 from simulator.assets.picture_file import picture_from_bytes
 from tests.fuzz.decoder import Decoder
@@ -94,7 +95,7 @@ def _goal(kind: str) -> Decoder:
         assert bgr.shape[2] == 3
 
     name = f"pictures/goal-{kind.lower()}"
-    return Decoder(name, run, (PictureError,), saved(kind), TOKENS[kind], cpu_s=5.0, memory_mb=LARGEST_MB)
+    return Decoder(name, run, (ProblemError,), saved(kind), TOKENS[kind], cpu_s=5.0, memory_mb=LARGEST_MB)
 
 
 def _frame(data: bytes) -> None:

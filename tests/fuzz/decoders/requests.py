@@ -12,14 +12,13 @@ from pydantic import BaseModel
 from starlette.requests import Request
 
 from services.gateway.http.bodies import read_json, read_picture
-from services.gateway.http.problems import ProblemError
 from services.gateway.routes.estop import Clear
 from services.gateway.routes.merging import StartMerge
 from services.gateway.routes.missions import StartMission
-from services.gateway.uploads.picture import PictureError
 from services.map_store.api.app import create_app
 from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
+from shared.web.problems import ProblemError
 from tests.fuzz.decoder import Decoder, Shape
 
 TOKENS = (b"NaN", b"1e999", b"[" * 2000, b'{"a":' * 2000, b"\xed\xa0\x80", b'"\\ud800"', b'"map":"flat",')
@@ -74,7 +73,7 @@ def decoders(scratch: Path) -> list[Decoder]:
                     (_to_json(body),), TOKENS, shape)
             for kind, body in BODIES
         ),
-        Decoder("requests/form", _form_reader(loop), (PictureError, ProblemError), (FORM,), FORM_TOKENS),
+        Decoder("requests/form", _form_reader(loop), (ProblemError,), (FORM,), FORM_TOKENS),
         Decoder("requests/map-store", _map_store(loop, scratch), (_RefusedError,), PATHS, PATH_TOKENS),
     ]  # fmt: skip
 

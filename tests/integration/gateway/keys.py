@@ -2,9 +2,7 @@
 
 from pathlib import Path
 
-from shared.access.roles import ROLES
-from shared.access.token import Token, digest_of
-from shared.access.token_file import write_tokens
+from shared.access.tokens import ROLES, Token, digest_of, write_tokens
 
 SECRETS = {role: f"secret of the {role}" for role in ROLES}
 NAMES = {"viewer": "vera", "operator": "otto", "admin": "ada"}

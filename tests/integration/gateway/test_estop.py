@@ -10,7 +10,7 @@ import httpx
 import pytest
 from websockets.sync.client import connect
 
-from services.gateway.http.limits import Limits
+from services.gateway.http.rates import RateLimits
 from services.gateway.live.bridge import Bridge
 from shared.bus import Bus, wait_until
 from shared.estop.sides import StopDesk
@@ -97,7 +97,7 @@ def test_in_a_flood_of_stops_none_rests_on_what_was_true_before_a_clearance(
         return deliver(bridge, *news)  # type: ignore[arg-type]
 
     monkeypatch.setattr(Bridge, "_deliver", late)
-    monkeypatch.setattr(Limits, "stop", lambda *_: False)
+    monkeypatch.setattr(RateLimits, "stop", lambda *_: False)
     assert clear.post(PATH).json()["engaged"]
     for _ in range(3):
         assert wait_until(lambda: told(clear), WAIT_S)

@@ -13,9 +13,10 @@ import httpx
 import pytest
 from websockets.sync.client import connect
 
-from services.gateway.service import GRACE_S, STOP_S
+from services.gateway.service import GRACE_S
 from shared.bus import Bus, wait_until
 from shared.topics import MISSION
+from shared.web.server import CLOSING_S
 from tests.integration.gateway.corpus import Upload, bomb, broken, convertible
 from tests.integration.gateway.gateway_process import (
     ASK_S,
@@ -104,7 +105,7 @@ def test_an_absent_feature_service_is_named(tmp_path: Path) -> None:
 def test_sigterm_ends_it_although_sockets_are_open_and_a_question_waits(
     endpoint: str, robot_bus: Bus, tmp_path: Path
 ) -> None:
-    assert max(GRACE_S, STOP_S) < 2.0, "so long it may take at most; the clock tells little on a busy machine"
+    assert GRACE_S + CLOSING_S < 2.0, "so long it may take at most; the clock tells little on a busy machine"
     unanswered, held = robot_bus.requests(MISSION, robot="mute"), []
     robot_bus.announce("mute")
 

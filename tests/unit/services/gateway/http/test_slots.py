@@ -4,8 +4,8 @@ import contextlib
 
 import pytest
 
-from services.gateway.http.problems import ProblemError
 from services.gateway.http.slots import Slots
+from shared.web.problems import ProblemError
 
 
 def test_one_client_cannot_take_all_places() -> None:
@@ -13,11 +13,11 @@ def test_one_client_cannot_take_all_places() -> None:
     with slots.hold("a"), slots.hold("a"):
         with pytest.raises(ProblemError) as caught, slots.hold("a"):
             pass
-        assert (caught.value.status, caught.value.code) == (429, "too_many_uploads")
+        assert (caught.value.status_code, caught.value.code) == (429, "too_many_uploads")
         with slots.hold("b"):
             with pytest.raises(ProblemError) as caught, slots.hold("c"):
                 pass
-            assert caught.value.status == 503
+            assert caught.value.status_code == 503
     assert slots.taken == 0
 
 

@@ -7,8 +7,8 @@ import pytest
 from PIL import Image
 
 from services.gateway.live.snapshot import jpeg_of
-from services.gateway.uploads.picture import PictureError
 from shared.messages.sensors import Frame
+from shared.web.problems import ProblemError
 
 
 def raw(width: int = 256) -> Frame:
@@ -42,5 +42,5 @@ def test_a_jpeg_that_fits_passes_unchanged() -> None:
 
 
 def test_a_jpeg_that_lies_about_its_size_is_refused() -> None:
-    with pytest.raises(PictureError):
+    with pytest.raises(ProblemError):
         jpeg_of(packed(256, claimed=512), None)

@@ -9,7 +9,8 @@ import numpy.typing as npt
 import pytest
 from PIL import Image
 
-from services.gateway.uploads.picture import PictureError, check_header, decode_bgr
+from services.gateway.uploads.picture import check_header, decode_bgr
+from shared.web.problems import ProblemError
 
 SIZE = (256, 128)
 RED_BGR = [0, 0, 255]
@@ -125,9 +126,9 @@ def test_a_jpeg_of_very_many_scans_is_refused_unread() -> None:
     data = saved(Image.new("RGB", SIZE), "JPEG", progressive=True)
     at = data.rindex(b"\xff\xda")
     assert check_header(data, "image/jpeg").width_px == SIZE[0]
-    with pytest.raises(PictureError) as caught:
+    with pytest.raises(ProblemError) as caught:
         check_header(data[:at] + data[at:-2] * 200 + data[-2:], "image/jpeg")
-    assert (caught.value.status, caught.value.reason) == (422, "too_many_scans")
+    assert (caught.value.status_code, caught.value.code) == (422, "too_many_scans")
 
 
 @pytest.mark.parametrize(
@@ -139,9 +140,9 @@ def test_only_jpegs_may_be_of_64_megapixels(kind: str, size: tuple[int, int], fi
     if fits:
         assert check_header(data, f"image/{kind}")[1:] == size
         return
-    with pytest.raises(PictureError) as caught:
+    with pytest.raises(ProblemError) as caught:
         check_header(data, f"image/{kind}")
-    assert (caught.value.status, caught.value.reason) == (413, "too_many_pixels")
+    assert (caught.value.status_code, caught.value.code) == (413, "too_many_pixels")
 
 
 @pytest.mark.parametrize(
@@ -149,30 +150,30 @@ def test_only_jpegs_may_be_of_64_megapixels(kind: str, size: tuple[int, int], fi
     [((1, 1), "not_two_to_one"), ((100_000, 1), "not_two_to_one"), ((300, 128), "not_two_to_one")],
 )
 def test_shapes_that_are_no_panorama_are_refused(size: tuple[int, int], reason: str) -> None:
-    with pytest.raises(PictureError) as caught:
+    with pytest.raises(ProblemError) as caught:
         check_header(saved(Image.new("1", size)), "image/png")
-    assert caught.value.reason == reason
+    assert caught.value.code == reason
 
 
 def test_a_tiny_panorama_is_refused() -> None:
-    with pytest.raises(PictureError) as caught:
+    with pytest.raises(ProblemError) as caught:
         check_header(saved(Image.new("1", (126, 63))), "image/png")
-    assert caught.value.reason == "too_small"
+    assert caught.value.code == "too_small"
 
 
 def test_the_declared_type_must_fit() -> None:
-    with pytest.raises(PictureError) as caught:
+    with pytest.raises(ProblemError) as caught:
         check_header(saved(Image.new("1", SIZE)), "image/jpeg")
-    assert (caught.value.status, caught.value.reason) == (415, "type_mismatch")
+    assert (caught.value.status_code, caught.value.code) == (415, "type_mismatch")
 
 
 @pytest.mark.parametrize("kind", ["PNG", "WEBP"])
 def test_animations_are_refused(kind: str) -> None:
     frames = [Image.new("RGB", SIZE, (shade, 0, 0)) for shade in (0, 99, 200)]
     data = saved(frames[0], kind, save_all=True, append_images=frames[1:])
-    with pytest.raises(PictureError) as caught:
+    with pytest.raises(ProblemError) as caught:
         decoded(data, kind.lower())
-    assert caught.value.reason == "animated"
+    assert caught.value.code == "animated"
 
 
 @pytest.mark.parametrize("kind", ["PNG", "JPEG", "WEBP"])
@@ -180,18 +181,18 @@ def test_a_picture_cut_short_is_damaged_wherever_it_is_cut(kind: str) -> None:
     rng = np.random.default_rng(5)
     data = saved(Image.fromarray(rng.integers(0, 255, (128, 256, 3), np.uint8)), kind)
     for part in (0.1, 0.5, 0.9):
-        with pytest.raises(PictureError) as caught:
+        with pytest.raises(ProblemError) as caught:
             decoded(data[: int(len(data) * part)], kind.lower())
-        assert caught.value.status in (415, 422)
+        assert caught.value.status_code in (415, 422)
 
 
 def test_a_wrong_checksum_is_damaged() -> None:
     data = bytearray(saved(Image.new("RGB", SIZE, (9, 9, 9))))
     at = data.index(b"IDAT")
     data[at + 12] ^= 0xFF
-    with pytest.raises(PictureError) as caught:
+    with pytest.raises(ProblemError) as caught:
         decoded(bytes(data))
-    assert caught.value.reason == "damaged"
+    assert caught.value.code == "damaged"
 
 
 def test_flipped_bytes_never_escape_as_another_error() -> None:
@@ -205,6 +206,6 @@ def test_flipped_bytes_never_escape_as_another_error() -> None:
                 data[at] = rng.integers(0, 256)
             try:
                 bgr = decoded(bytes(data), kind.lower())
-            except PictureError:
+            except ProblemError:
                 continue
             assert bgr.shape[1] == 2 * bgr.shape[0]

@@ -4,8 +4,7 @@ import pytest
 from typer.testing import CliRunner
 
 from services.launcher.commands.token import app
-from shared.access.token import find
-from shared.access.token_file import read_tokens
+from shared.access.tokens import find, read_tokens
 
 
 @pytest.fixture

@@ -5,9 +5,9 @@ from fastapi.testclient import TestClient
 from pydantic import ValidationError
 
 from services.map_store.api.app import create_app
-from services.map_store.api.guard import LOOPBACK_NAMES
 from services.map_store.settings import MapStoreSettings
 from services.map_store.store import MapStore
+from shared.web.origins import LOOPBACK_NAMES
 
 SECRET = "a long enough secret"
 BEARER = {"Authorization": f"Bearer {SECRET}"}

@@ -4,10 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from services.gateway.auth.book import TokenBook, open_book
+from services.gateway.auth.tokens import ValidTokens
 from services.gateway.settings import GatewaySettings
-from shared.access.token import Token, digest_of
-from shared.access.token_file import write_tokens
+from shared.access.tokens import Token, digest_of, write_tokens
 
 ANNA = Token(name="anna", role="operator", sha256=digest_of("s1"))
 BERT = Token(name="bert", role="viewer", sha256=digest_of("s2"))
@@ -28,48 +27,48 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "tokens.json"
 
 
-def role(book: TokenBook, secret: str) -> str | None:
-    token = book.find(secret)
+def role(tokens: ValidTokens, secret: str) -> str | None:
+    token = tokens.find(secret)
     return token.role if token else None
 
 
 def test_added_and_removed_tokens_count_at_once(path: Path) -> None:
-    book = TokenBook("", path, Clock())
-    assert (role(book, "s1"), role(book, "s2")) == ("operator", None)
+    tokens = ValidTokens("", path, Clock())
+    assert (role(tokens, "s1"), role(tokens, "s2")) == ("operator", None)
     write_tokens(path, [ANNA, BERT])
-    assert role(book, "s2") == "viewer"
+    assert role(tokens, "s2") == "viewer"
     write_tokens(path, [BERT])
-    assert role(book, "s1") is None
-    assert not book.holds(ANNA)
-    assert book.holds(BERT)
+    assert role(tokens, "s1") is None
+    assert ANNA not in tokens
+    assert BERT in tokens
 
 
 @pytest.mark.parametrize("content", [None, "{", "[]"])
 def test_a_file_that_breaks_opens_nothing_but_the_single_token(path: Path, content: str | None) -> None:
-    book = TokenBook("single", path, Clock())
-    assert role(book, "s1") == "operator"
+    tokens = ValidTokens("single", path, Clock())
+    assert role(tokens, "s1") == "operator"
     if content is None:
         path.unlink()
     else:
         path.write_text(content)
-    assert role(book, "s1") is None
-    assert role(book, "single") == "admin"
-    assert book.guards
+    assert role(tokens, "s1") is None
+    assert role(tokens, "single") == "admin"
+    assert tokens.required
     write_tokens(path, [ANNA])
-    assert role(book, "s1") == "operator"
+    assert role(tokens, "s1") == "operator"
 
 
 def test_tokens_are_asked_for_when_there_is_a_secret_or_a_file(path: Path) -> None:
-    assert not TokenBook("", None).guards
-    assert TokenBook("x", None).guards
+    assert not ValidTokens("", None).required
+    assert ValidTokens("x", None).required
     write_tokens(path, [])
-    assert TokenBook("", path).guards
+    assert ValidTokens("", path).required
 
 
 def test_a_gateway_into_which_nobody_could_come_does_not_start(path: Path, tmp_path: Path) -> None:
-    open_book(GatewaySettings(tokens_file=path))
+    ValidTokens.chosen(GatewaySettings(tokens_file=path))
     write_tokens(path, [])
     with pytest.raises(ValueError, match="holds no token: make one"):
-        open_book(GatewaySettings(tokens_file=path))
+        ValidTokens.chosen(GatewaySettings(tokens_file=path))
     with pytest.raises(ValueError, match="cannot be read"):
-        open_book(GatewaySettings(tokens_file=tmp_path / "none.json"))
+        ValidTokens.chosen(GatewaySettings(tokens_file=tmp_path / "none.json"))

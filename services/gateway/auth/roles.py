@@ -1,6 +1,10 @@
 """Which role a request needs. Pure. Unless listed here, reading is for viewers and writing for admins."""
 
-from shared.access.roles import Role
+import copy
+from typing import Any
+
+from shared.access.tokens import Role
+from shared.web.openapi import operations, problem_described
 
 READS = frozenset({"GET", "HEAD", "OPTIONS"})
 
@@ -27,6 +31,12 @@ UPLOADS = frozenset(
 )
 """What takes long bodies and costs computing time: limited more tightly than other writes."""
 
+REFUSALS = {
+    "401": "No token that this gateway takes.",
+    "403": "The token's role is too low, or the request comes from another site's page.",
+    "429": "Too often: `Retry-After` says when to come again.",
+}
+
 
 def role_for(method: str, path: str) -> Role | None:
     """The least role that may send this.
@@ -43,3 +53,13 @@ def role_for(method: str, path: str) -> Role | None:
     if method in READS or (method, path) in VIEWER:
         return "viewer"
     return "operator" if (method, path) in OPERATOR else "admin"
+
+
+def with_roles(document: dict[str, Any]) -> dict[str, Any]:
+    """The OpenAPI document with role and refusals at every operation that asks for a token."""
+    result = copy.deepcopy(document)
+    for method, path, operation in operations(result):
+        if "security" in operation:
+            operation["x-topnav-role"] = role_for(method, path) or "anybody"
+            operation["responses"] |= {status: problem_described(why) for status, why in REFUSALS.items()}
+    return result

@@ -4,19 +4,19 @@ import logging
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Self
 
 from services.gateway.settings import GatewaySettings
-from shared.access.token import Token, digest_of, find
-from shared.access.token_file import read_tokens
+from shared.access.tokens import Token, digest_of, find, read_tokens
 
 log = logging.getLogger(__name__)
 
 LOOK_S = 1.0
-"""So often at most the file is looked at."""
+"""So often at most the file is looked at: `topnav token` promises that a change counts within seconds."""
 
 
-class TokenBook:
-    """The tokens. Lives in the asyncio thread.
+class ValidTokens:
+    """The tokens of now. Lives in the asyncio thread.
 
     Args:
         secret: of the one unnamed admin token, empty for none.
@@ -31,8 +31,23 @@ class TokenBook:
         self._seen: tuple[int, int, int] | None = None
         self._looked_s = float("-inf")
 
+    @classmethod
+    def chosen(cls, settings: GatewaySettings) -> Self:
+        """The tokens of these settings.
+
+        Raises:
+            ValueError: the file named cannot be read, or nobody could come in.
+        """
+        secret, path = settings.token.get_secret_value(), settings.tokens_file
+        if path is not None and not read_tokens(path) and not secret:
+            raise ValueError(
+                f"GATEWAY_TOKENS_FILE {path} holds no token: make one with "
+                f"'topnav token add NAME --role admin {path}'"
+            )
+        return cls(secret, path)
+
     @property
-    def guards(self) -> bool:
+    def required(self) -> bool:
         """Whether tokens are asked for: one was set, or a file was named, be it empty by now."""
         return bool(self._single) or self._path is not None
 
@@ -44,8 +59,7 @@ class TokenBook:
         """The token of a name; "" is that of GATEWAY_TOKEN."""
         return next((token for token in self._now() if token.name == name), None)
 
-    def holds(self, token: Token) -> bool:
-        """Whether a token that was found is still valid."""
+    def __contains__(self, token: Token) -> bool:
         return token in self._now()
 
     def _now(self) -> tuple[Token, ...]:
@@ -67,18 +81,3 @@ class TokenBook:
             if self._tokens != self._single or self._seen is None:
                 log.error("no token of the file is taken any more: %s", error)
             self._tokens, self._seen = self._single, (0, 0, 0)
-
-
-def open_book(settings: GatewaySettings) -> TokenBook:
-    """The tokens of these settings.
-
-    Raises:
-        ValueError: the file named cannot be read, or nobody could come in.
-    """
-    secret, path = settings.token.get_secret_value(), settings.tokens_file
-    if path is not None and not read_tokens(path) and not secret:
-        raise ValueError(
-            f"GATEWAY_TOKENS_FILE {path} holds no token: make one with "
-            f"'topnav token add NAME --role admin {path}'"
-        )
-    return TokenBook(secret, path)

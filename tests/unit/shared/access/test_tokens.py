@@ -5,9 +5,17 @@ import stat
 
 import pytest
 
-from shared.access.roles import ROLES, includes
-from shared.access.token import Token, check_chosen, digest_of, find, new_secret
-from shared.access.token_file import read_tokens, write_tokens
+from shared.access.tokens import (
+    ROLES,
+    Token,
+    check_chosen,
+    digest_of,
+    find,
+    includes,
+    new_secret,
+    read_tokens,
+    write_tokens,
+)
 
 
 def token(name="anna", role="operator", secret="s1"):

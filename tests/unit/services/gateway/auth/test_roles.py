@@ -5,8 +5,7 @@ from typing import Any
 import pytest
 from fastapi import FastAPI
 
-from services.gateway.auth.rules import role_for
-from services.gateway.http.described import with_roles
+from services.gateway.auth.roles import role_for, with_roles
 from services.gateway.settings import GatewaySettings
 from shared.bus import open_bus
 
