@@ -1,10 +1,14 @@
-"""The application: assembles state, routes and error handling."""
+"""The application: assembles state, routes, error handling and the web console."""
 
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from pathlib import Path
 
 from fastapi import Depends, FastAPI
+from fastapi.responses import FileResponse
+from fastapi.staticfiles import StaticFiles
+from starlette.middleware.gzip import GZipMiddleware
 
 from services.gateway.auth.guard import Access, guard
 from services.gateway.auth.roles import with_roles
@@ -27,7 +31,6 @@ from services.gateway.routes import (
     maps,
     merging,
     missions,
-    pages,
     robots,
     runs,
     session,
@@ -37,6 +40,8 @@ from services.gateway.state import Gateway
 from shared.bus import Bus
 from shared.web.openapi import describe
 
+CONSOLE = Path(__file__).resolve().parent / "console"
+
 
 def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
     """Build the application; the bridge to `bus` runs from its start to its end.
@@ -45,7 +50,6 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
         ValueError: the token file cannot be read or holds none.
     """
     metrics = Metrics(bus.counters.snapshot)
-    access = Access(settings, ValidTokens.chosen(settings))
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
@@ -71,16 +75,25 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
 
     # No /docs: its scripts come from a CDN, which the page's policy and offline machines forbid.
     app = FastAPI(title="topnav gateway", version="1", lifespan=lifespan, docs_url=None, redoc_url=None)
+    app.state.access = Access(settings, ValidTokens.chosen(settings))
     problems.install(app, metrics)
-    app.state.access = access
     app.add_middleware(ResponseHeaders, metrics=metrics)
     for resource in (estop, evidence, goals, missions, maps, merging, robots, runs, session):
         app.include_router(resource.router, dependencies=[Depends(guard)])
-    for resource in (live, health, pages):
-        app.include_router(resource.router)
-    pages.mount_static(app)
+    for open_to_all in (live, health):
+        app.include_router(open_to_all.router)
+    _serve_console(app)
     describe(app, with_roles)
     return app
+
+
+def _serve_console(app: FastAPI) -> None:
+    @app.get("/", include_in_schema=False)
+    async def index() -> FileResponse:
+        """The page; asks again each time so that an update shows at once."""
+        return FileResponse(CONSOLE / "index.html", headers={"Cache-Control": "no-cache"})
+
+    app.mount("/static", GZipMiddleware(StaticFiles(directory=CONSOLE)), name="static")
 
 
 async def _beat(hub: Hub) -> None:

@@ -13,7 +13,7 @@ from starlette.requests import HTTPConnection
 from services.gateway.http.asking import Asker
 from services.gateway.http.metrics import Metrics
 from services.gateway.http.slots import Slots
-from services.gateway.live.gathered_stops import GatheredStops
+from services.gateway.live.coalescing import Coalescer
 from services.gateway.live.hub import Hub
 from services.gateway.live.mission_log import MissionLog
 from services.gateway.settings import GatewaySettings
@@ -44,7 +44,7 @@ class Gateway:
 
     def __post_init__(self) -> None:
         chosen = self.settings
-        self.stops: GatheredStops[EStopState] = GatheredStops()
+        self.stops: Coalescer[EStopState] = Coalescer()
         self.uploads = Slots("uploads", chosen.max_uploads, chosen.max_uploads_per_client)
         self.imports = Slots("imports", chosen.max_imports, chosen.max_imports)
         self.sockets = Slots("sockets", chosen.max_sockets, chosen.max_sockets_per_client)

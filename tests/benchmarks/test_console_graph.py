@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from services.gateway.routes.pages import STATIC
+from services.gateway.app import CONSOLE
 from tests.browser import chromium, needs_chromium
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(300), needs_chromium]
@@ -52,7 +52,7 @@ DRAW = """async ({ nodes, edges }) => {
 @pytest.fixture(scope="module")
 def address() -> Iterator[str]:
     """The page's files, without a gateway."""
-    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(SimpleHTTPRequestHandler, directory=str(STATIC)))
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(SimpleHTTPRequestHandler, directory=str(CONSOLE)))
     threading.Thread(target=server.serve_forever, daemon=True).start()
     yield f"http://127.0.0.1:{server.server_address[1]}"
     server.shutdown()

@@ -1,8 +1,6 @@
 """Which tokens this gateway takes: GATEWAY_TOKEN and a file that is read again when it changes."""
 
 import logging
-import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Self
 
@@ -11,9 +9,6 @@ from shared.access.tokens import Token, digest_of, find, read_tokens
 
 log = logging.getLogger(__name__)
 
-LOOK_S = 1.0
-"""So often at most the file is looked at: `topnav token` promises that a change counts within seconds."""
-
 
 class ValidTokens:
     """The tokens of now. Lives in the asyncio thread.
@@ -21,15 +16,12 @@ class ValidTokens:
     Args:
         secret: of the one unnamed admin token, empty for none.
         path: token file, None for none.
-        clock: monotonic seconds.
     """
 
-    def __init__(self, secret: str, path: Path | None, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, secret: str, path: Path | None) -> None:
         self._single = (Token(role="admin", sha256=digest_of(secret)),) if secret else ()
-        self._path, self._clock = path, clock
-        self._tokens: tuple[Token, ...] = self._single
-        self._seen: tuple[int, int, int] | None = None
-        self._looked_s = float("-inf")
+        self._path, self._tokens = path, self._single
+        self._seen: tuple[int, ...] | None = None
 
     @classmethod
     def chosen(cls, settings: GatewaySettings) -> Self:
@@ -63,21 +55,22 @@ class ValidTokens:
         return token in self._now()
 
     def _now(self) -> tuple[Token, ...]:
-        if self._path is not None and self._clock() - self._looked_s >= LOOK_S:
-            self._looked_s = self._clock()
-            self._look(self._path)
+        """Read the file if it changed. One that cannot be read opens nothing: who was removed stays out."""
+        if self._path is not None and (seen := _state_of(self._path)) != self._seen:
+            self._seen = seen
+            try:
+                self._tokens = (*self._single, *read_tokens(self._path))
+                log.info("token file read: %d tokens", len(self._tokens) - len(self._single))
+            except ValueError as error:
+                self._tokens = self._single
+                log.error("no token of the file is taken any more: %s", error)
         return self._tokens
 
-    def _look(self, path: Path) -> None:
-        """Read the file if it changed. One that cannot be read opens nothing: who was removed stays out."""
-        try:
-            stat = path.stat()
-            seen = (stat.st_mtime_ns, stat.st_size, stat.st_ino)
-            if seen == self._seen:
-                return
-            self._tokens, self._seen = (*self._single, *read_tokens(path)), seen
-            log.info("token file read: %d tokens", len(self._tokens) - len(self._single))
-        except (OSError, ValueError) as error:
-            if self._tokens != self._single or self._seen is None:
-                log.error("no token of the file is taken any more: %s", error)
-            self._tokens, self._seen = self._single, (0, 0, 0)
+
+def _state_of(path: Path) -> tuple[int, ...]:
+    """What changes with a file; nothing where there is none."""
+    try:
+        stat = path.stat()
+    except OSError:
+        return ()
+    return stat.st_ctime_ns, stat.st_mtime_ns, stat.st_size, stat.st_ino

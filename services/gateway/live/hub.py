@@ -20,8 +20,29 @@ from shared.messages.sensors import Frame, Ranges
 from shared.messages.simulation import Truth
 
 EVENTS_KEPT = 200
-STATES: dict[type[Message], str] = {Ranges: "ranges", Heading: "heading", Command: "command"}
-"""What is kept and told as it is: the field of `RobotView`, and the name towards pages."""
+"""As many as the console's timeline shows at once."""
+
+
+def facts_of(message: Message) -> dict[str, Any]:
+    """A message as pages want it: a frame without its pixels, the time of an emergency stop as text."""
+    if isinstance(message, Frame):
+        return message.model_dump(include={"seq", "stamp_ns", "width_px", "height_px", "lockstep"})
+    if isinstance(message, EStopState):
+        since = datetime.fromtimestamp(message.since_ns / 1e9, UTC).isoformat(timespec="milliseconds")
+        facts = message.model_dump(include={"robot", "engaged", "who", "why"})
+        return facts | {"since": since if message.since_ns else None}  # there never was a change
+    return message.model_dump(mode="json")
+
+
+NEWEST: dict[type[Message], str] = {
+    MissionStatus: "status",
+    Heading: "heading",
+    Ranges: "ranges",
+    Command: "command",
+    EStopState: "estop",
+    Frame: "frame",
+}
+"""What is kept and told as it stands now: the field of `RobotView`, and its name towards pages."""
 
 
 @dataclass
@@ -53,7 +74,7 @@ class Hub:
     """
 
     def __init__(
-        self, metrics: Metrics, max_robots: int, on_status: Callable[[MissionStatus], None] | None = None
+        self, metrics: Metrics, max_robots: int, on_status: Callable[[MissionStatus], None] = lambda _: None
     ) -> None:
         self._metrics, self._max_robots, self._on_status = metrics, max_robots, on_status
         self.robots: dict[str, RobotView] = {}
@@ -77,7 +98,7 @@ class Hub:
 
     def beat(self) -> None:
         """Tell every WebSocket which services live; also the sign that the gateway itself does."""
-        text = json.dumps({"type": "services", "data": self.services})
+        text = _text("services", self.services)
         for view in self.robots.values():
             for outbox in view.outboxes:
                 outbox.offer_newest("services", text)
@@ -94,22 +115,12 @@ class Hub:
         if view is None:
             return None
         outbox = Outbox()
-        outbox.offer_newest("services", json.dumps({"type": "services", "data": self.services}))
-        known = {
-            "status": view.status,
-            "heading": view.heading,
-            "ranges": view.ranges,
-            "command": view.command,
-        }
-        for kind, message in known.items():
-            if message is not None:
-                outbox.offer_newest(kind, _text(kind, message.model_dump(mode="json")))
-        if view.estop is not None:
-            outbox.offer_newest("estop", _text("estop", estop_facts(view.estop)))
-        if view.frame is not None:
-            outbox.offer_newest("frame", _text("frame", frame_facts(view.frame)))
+        outbox.offer_newest("services", _text("services", self.services))
+        for kind in NEWEST.values():
+            if (message := getattr(view, kind)) is not None:
+                outbox.offer_newest(kind, _text(kind, facts_of(message)))
         for event in view.events:
-            outbox.offer(_text("event", event.model_dump(mode="json")))
+            outbox.offer(_text("event", facts_of(event)))
         view.outboxes.add(outbox)
         return outbox
 
@@ -119,65 +130,28 @@ class Hub:
             self.robots[robot].outboxes.discard(outbox)
 
     def _store(self, robot: str, view: RobotView, message: Message) -> None:
-        if (kind := STATES.get(type(message))) is not None:
+        if (kind := NEWEST.get(type(message))) is not None:
             setattr(view, kind, message)
-            _tell(view, kind, message.model_dump(mode="json"))
-            return
+            if view.outboxes:
+                text = _text(kind, facts_of(message))
+                for outbox in view.outboxes:
+                    outbox.offer_newest(kind, text)
         match message:
             case Frame():
-                view.frame, view.frame_s = message, view.seen_s
+                view.frame_s = view.seen_s
                 self._metrics.frames.labels(robot).inc()
-                _tell(view, "frame", frame_facts(message))
-            case EStopState():
-                view.estop = message
-                _tell(view, "estop", estop_facts(message))
             case MissionStatus():
-                view.status = message
-                _tell(view, "status", message.model_dump(mode="json"))
                 view.changed.set()
                 view.changed = asyncio.Event()
-                if self._on_status is not None:
-                    self._on_status(message)
+                self._on_status(message)
             case Event():
                 view.events.append(message)
-                text = _text("event", message.model_dump(mode="json"))
+                text = _text("event", facts_of(message))
                 for outbox in view.outboxes:
                     outbox.offer(text)
             case Truth():
                 view.truth = message
                 view.true_poses.take(message)
-            case _:
-                raise TypeError(f"message must be one the gateway follows, got {type(message).__name__}")
-
-
-def frame_facts(frame: Frame) -> dict[str, Any]:
-    """A frame without its pixels."""
-    return {
-        "seq": frame.seq,
-        "stamp_ns": frame.stamp_ns,
-        "width_px": frame.width_px,
-        "height_px": frame.height_px,
-        "lockstep": frame.lockstep,
-    }
-
-
-def estop_facts(state: EStopState) -> dict[str, Any]:
-    """An emergency stop as pages want it: the time as text, null while there never was a change."""
-    since = datetime.fromtimestamp(state.since_ns / 1e9, UTC).isoformat(timespec="milliseconds")
-    return {
-        "robot": state.robot,
-        "engaged": state.engaged,
-        "who": state.who,
-        "why": state.why,
-        "since": since if state.since_ns else None,
-    }
-
-
-def _tell(view: RobotView, kind: str, data: dict[str, Any]) -> None:
-    if view.outboxes:
-        text = _text(kind, data)
-        for outbox in view.outboxes:
-            outbox.offer_newest(kind, text)
 
 
 def _text(kind: str, data: dict[str, Any]) -> str:

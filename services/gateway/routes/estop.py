@@ -1,23 +1,26 @@
 """The emergency stop: anybody engages it, without a token; an operator who gives a name clears it."""
 
-from typing import Annotated, Any
+from typing import Annotated, TypeVar
 
 from fastapi import APIRouter, Query, Request
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
 from services.gateway.auth.guard import access_of, person_of
-from services.gateway.http.bodies import read_json
-from services.gateway.live.hub import estop_facts
+from services.gateway.http.bodies import json_body, read_json
+from services.gateway.live.hub import facts_of
 from services.gateway.routes.robots import known
 from services.gateway.state import Gateway, GatewayDep, RobotPath
 from shared.messages import EStopRequest, EStopState
 from shared.topics import ESTOP
 from shared.web.problems import ProblemError
 
+B = TypeVar("B", bound=BaseModel)
 router = APIRouter(tags=["robots"])
 
 TIMEOUT_S = 2.0
+"""Chosen: drive answers within one of its steps; a person waits no longer before they press again."""
 LONGEST_WHO, LONGEST_WHY = 64, 400
+"""Characters, as `EStopRequest` has them."""
 
 Who = Annotated[str, Query(max_length=LONGEST_WHO, description="name of the person who looked")]
 
@@ -50,23 +53,16 @@ class EStopAnswer(BaseModel):
     since: AwareDatetime | None
 
 
-def _body(kind: type[BaseModel]) -> dict[str, Any]:
-    content = {"application/json": {"schema": kind.model_json_schema()}}
-    return {"requestBody": {"required": False, "content": content}}
-
-
 @router.get("/api/robots/{robot}/estop")
 async def show_estop(robot: RobotPath, gateway: GatewayDep) -> EStopAnswer:
     """Whether the emergency stop is engaged, by whom and why."""
     return _answer(await _ask(gateway, robot, EStopRequest(action="status")))
 
 
-@router.post("/api/robots/{robot}/estop", openapi_extra=_body(Engage))
+@router.post("/api/robots/{robot}/estop", openapi_extra=json_body(Engage, required=False))
 async def engage_estop(request: Request, robot: RobotPath, gateway: GatewayDep) -> EStopAnswer:
     """Stop the robot now; it stands until a person clears the stop, whatever restarts."""
-    wish = Engage()
-    if "content-type" in request.headers:
-        wish = await read_json(request, Engage, gateway.settings.upload_timeout_s)
+    wish = await _wish(request, gateway, Engage())
     who = _signed(wish.who, person_of(request).name)
     engage = EStopRequest(action="engage", who=who, why=wish.why[:LONGEST_WHY])
     if access_of(request).rates.stop(robot):
@@ -74,23 +70,24 @@ async def engage_estop(request: Request, robot: RobotPath, gateway: GatewayDep) 
     return _answer(await gateway.stops.join(robot, lambda: _ask(gateway, robot, engage)))
 
 
-@router.delete("/api/robots/{robot}/estop", openapi_extra=_body(Clear))
+@router.delete("/api/robots/{robot}/estop", openapi_extra=json_body(Clear, required=False))
 async def clear_estop(request: Request, robot: RobotPath, gateway: GatewayDep, who: Who = "") -> EStopAnswer:
     """Let the robot go: `who` names the person who saw that it may. A paused mission stays paused."""
-    wish = Clear(who=who)
-    if "content-type" in request.headers:
-        wish = await read_json(request, Clear, gateway.settings.upload_timeout_s)
+    wish = await _wish(request, gateway, Clear())
     name = (wish.who or who).strip()
     if not name:
-        raise ProblemError(
-            422,
-            "who_required",
-            expected="the name of the person who clears the stop, in the body or as ?who=",
-            got="none",
-            next_step="look whether the robot may move, then clear it in your name",
-        )
+        expected = "the name of the person who clears the stop, in the body or as ?who="
+        next_step = "look whether the robot may move, then clear it in your name"
+        raise ProblemError(422, "who_required", expected, "none", next_step)
     signed = _signed(name, person_of(request).name)
     return _answer(await _ask(gateway, robot, EStopRequest(action="clear", who=signed, why=wish.why)))
+
+
+async def _wish(request: Request, gateway: Gateway, default: B) -> B:
+    """The body, or `default` where none was announced."""
+    if "content-type" not in request.headers:
+        return default
+    return await read_json(request, type(default), gateway.settings.upload_timeout_s)
 
 
 def _signed(who: str, token: str) -> str:
@@ -109,4 +106,4 @@ async def _ask(gateway: Gateway, robot: str, request: EStopRequest) -> EStopStat
 
 
 def _answer(state: EStopState) -> EStopAnswer:
-    return EStopAnswer(**estop_facts(state))
+    return EStopAnswer(**facts_of(state))

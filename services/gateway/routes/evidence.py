@@ -1,14 +1,15 @@
-"""Evidence for people: the matches behind an edge, and those between the live picture and a place."""
+"""Evidence for people: the matches behind an edge, and those between the live picture and a node."""
 
 import asyncio
 
 from fastapi import APIRouter
 
+from services.gateway.http.asking import bad_answer
 from services.gateway.routes.goals import NodeAnswer
 from services.gateway.routes.robots import newest_frame
 from services.gateway.state import Gateway, GatewayDep, MapPath, MapQuery, NodePath, NodeQuery, RobotPath
 from shared.messages.maps import MapRequest
-from shared.messages.matching import MatchRequest, NodeMatch
+from shared.messages.matching import MatchRequest
 from shared.topics import MAP, MATCH
 from shared.web.problems import ProblemError
 
@@ -34,18 +35,13 @@ class Matches(NodeAnswer):
 
 @router.get("/api/maps/{map_name}/edges/{a:int}/{b:int}/matches")
 async def show_edge_matches(map_name: MapPath, a: NodePath, b: NodePath, gateway: GatewayDep) -> Matches:
-    """Compare the pictures of two places again: what speaks for an edge between them."""
+    """Compare the pictures of two nodes again: what speaks for an edge between them."""
     settings = gateway.settings
     wish = MapRequest(action="read_features", node_ids=(a,))
     reply = await gateway.asker.ask("map_store", MAP, wish, settings.compute_timeout_s, map=map_name)
     if not reply.features:
-        raise ProblemError(
-            404,
-            "no_features",
-            expected=f"node {a} of {map_name} with its features",
-            got="none",
-            next_step="see /api/maps/{map}/nodes",
-        )
+        expected = f"node {a} of {map_name} with its features"
+        raise ProblemError(404, "no_features", expected, "none", "see /api/maps/{map}/nodes")
     question = MatchRequest(map=map_name, features=reply.features[0].features, node_ids=(b,))
     return await _matches(gateway, settings.robot, question, f"node {a}")
 
@@ -54,7 +50,7 @@ async def show_edge_matches(map_name: MapPath, a: NodePath, b: NodePath, gateway
 async def show_live_matches(
     robot: RobotPath, map_name: MapQuery, node: NodeQuery, gateway: GatewayDep
 ) -> Matches:
-    """Compare the newest picture with a place."""
+    """Compare the newest picture with a node."""
     left = LIVE_TRIES
     while True:
         left -= 1
@@ -73,19 +69,10 @@ async def _matches(gateway: Gateway, robot: str, question: MatchRequest, picture
     reply = await gateway.asker.ask("features", MATCH, question, timeout_s, robot=robot)
     match = next((found for found in reply.results if found.node_id in question.node_ids), None)
     if match is None:
-        raise ProblemError(
-            502,
-            "bad_answer",
-            expected=f"matches of node {question.node_ids[0]}",
-            got=f"{len(reply.results)} others",
-            next_step="see the log of the feature service; run the same version of every service",
-            service="features",
-        )
-    return _answer(match, picture)
-
-
-def _answer(match: NodeMatch, picture: str) -> Matches:
+        expected = f"matches of node {question.node_ids[0]}"
+        raise bad_answer("features", expected, f"{len(reply.results)} others")
     bearings = [] if match.matches_rad is None else match.matches_rad.astype(float).round(5).tolist()
     inlier = [] if match.inlier_mask is None else match.inlier_mask.astype(bool).tolist()
-    fields = {name: getattr(match, name) for name in NodeAnswer.model_fields}
-    return Matches(**fields, picture=picture, matches_rad=bearings, inlier=inlier)
+    return Matches(
+        **vars(NodeAnswer.model_validate(match)), picture=picture, matches_rad=bearings, inlier=inlier
+    )

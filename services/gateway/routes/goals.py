@@ -3,8 +3,9 @@
 from typing import Any, Literal
 
 from fastapi import APIRouter, Request
-from pydantic import BaseModel
+from pydantic import BaseModel, ConfigDict
 
+from services.gateway.http.bodies import PICTURE_TYPES
 from services.gateway.state import GatewayDep, MapQuery, RobotPath
 from services.gateway.uploads.goal import Goal, goal_of
 from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
@@ -16,21 +17,14 @@ BEST_K = 5
 SURE = 0.5
 """Confidence from which on the answer says "found": advice to people, the planner decides itself."""
 
+FILE = {"type": "string", "format": "binary"}
 PICTURE_BODY: dict[str, Any] = {
     "requestBody": {
         "required": True,
         "description": "an equirectangular panorama, exactly 2:1",
         "content": {
-            **{
-                kind: {"schema": {"type": "string", "format": "binary"}}
-                for kind in ("image/png", "image/jpeg", "image/webp")
-            },
-            "multipart/form-data": {
-                "schema": {
-                    "type": "object",
-                    "properties": {"picture": {"type": "string", "format": "binary"}},
-                }
-            },
+            **{kind: {"schema": FILE} for kind in PICTURE_TYPES},
+            "multipart/form-data": {"schema": {"type": "object", "properties": {"picture": FILE}}},
         },
     }
 }
@@ -38,6 +32,8 @@ PICTURE_BODY: dict[str, Any] = {
 
 class NodeAnswer(BaseModel):
     """How the picture relates to one node; radians, counter-clockwise, 0 at the picture's centre."""
+
+    model_config = ConfigDict(from_attributes=True)
 
     node_id: int
     raw_matches: int
@@ -85,7 +81,6 @@ async def check_goal(
 
 
 def _answer(robot: str, goal: Goal, reply: MatchReply) -> GoalAnswer:
-    fields = NodeAnswer.model_fields.keys()
     nodes = sorted(reply.results, key=lambda node: (node.inliers, node.confidence), reverse=True)
     return GoalAnswer(
         robot=robot,
@@ -95,7 +90,7 @@ def _answer(robot: str, goal: Goal, reply: MatchReply) -> GoalAnswer:
         picture=PictureAnswer(**goal.header._asdict(), keypoints=len(goal.features.lonlat_rad)),
         verdict=_verdict(nodes),
         max_similarity=reply.max_similarity,
-        nodes=[NodeAnswer(**{name: getattr(node, name) for name in fields}) for node in nodes],
+        nodes=[NodeAnswer.model_validate(node) for node in nodes],
     )
 
 

@@ -23,15 +23,9 @@ async def readyz(gateway: GatewayDep) -> dict[str, Any]:
     services = gateway.hub.services
     missing = [name for name in gateway.settings.required_services if not services.get(name)]
     if missing:
-        raise ProblemError(
-            503,
-            "not_ready",
-            expected=f"living processes of {', '.join(gateway.settings.required_services)}",
-            got=f"none of {', '.join(missing)}",
-            next_step="start what is missing",
-            services=services,
-            missing=missing,
-        )
+        expected = f"living processes of {', '.join(gateway.settings.required_services)}"
+        got, next_step = f"none of {', '.join(missing)}", "start what is missing"
+        raise ProblemError(503, "not_ready", expected, got, next_step, services=services, missing=missing)
     return {"status": "ready", "services": services}
 
 

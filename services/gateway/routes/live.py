@@ -51,13 +51,8 @@ async def live(socket: WebSocket, robot: str) -> None:
 
 def _check_name(robot: str) -> None:
     if not NAME.match(robot):
-        raise ProblemError(
-            422,
-            "invalid_request",
-            expected="a robot's name of a-z, 0-9, _ and -",
-            got=repr(robot[:80]),
-            next_step="see /api/robots",
-        )
+        expected = "a robot's name of a-z, 0-9, _ and -"
+        raise ProblemError(422, "invalid_request", expected, repr(robot[:80]), "see /api/robots")
 
 
 async def _serve(socket: WebSocket, gateway: Gateway, robot: str, person: Person) -> None:

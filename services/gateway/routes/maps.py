@@ -1,122 +1,74 @@
 """Maps: passed through to the map store, so that a browser needs one address only."""
 
+from collections.abc import Callable
 from typing import Any
 
-from fastapi import APIRouter, Request
-from fastapi.responses import Response
+from fastapi import APIRouter, Depends, Request
+from fastapi.responses import JSONResponse, Response
 
 from services.gateway.http.bodies import MAX_JSON_BYTES, read_body
 from services.gateway.http.map_store_proxy import forward, forward_stream
-from services.gateway.state import Gateway, GatewayDep, MapPath
+from services.gateway.state import GatewayDep, MapPath, NodePath
 
-router = APIRouter(tags=["maps"])
-
-ZIP: dict[int | str, dict[str, Any]] = {200: {"content": {"application/zip": {}}}}
-JPEG: dict[int | str, dict[str, Any]] = {200: {"content": {"image/jpeg": {}}}}
-
-
-@router.get("/api/maps")
-async def list_maps(request: Request, gateway: GatewayDep) -> Response:
-    """All maps."""
-    return await forward(gateway, request, "/maps")
-
-
-@router.post("/api/maps", status_code=201)
-async def create_map(request: Request, gateway: GatewayDep) -> Response:
-    """Make an empty map."""
-    return await _with_body(gateway, request, "/maps")
-
-
-@router.post("/api/maps/import", status_code=201)
-async def import_map(request: Request, gateway: GatewayDep) -> Response:
-    """Add a map from an archive made by export."""
-    return await forward_stream(gateway, request, "/maps/import")
-
-
-@router.get("/api/maps/{map_name}")
-async def show_map(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
-    """One map: its counts and revision."""
-    return await forward(gateway, request, f"/maps/{map_name}")
+API, IMPORT = "/api", "/maps/import"
+MAP, NODE, EDGE = "/maps/{map_name}", "/nodes/{node_id:int}", "/edges/{a:int}/{b:int}"
+OPERATIONS = (
+    ("GET", "/maps", "list_maps", "All maps."),
+    ("POST", "/maps", "create_map", "Make an empty map."),
+    ("POST", IMPORT, "import_map", "Add a map from an archive made by export."),
+    ("GET", MAP, "show_map", "One map: its counts and revision."),
+    ("PATCH", MAP, "rename_map", "Rename a map."),
+    ("DELETE", MAP, "delete_map", "Delete a map."),
+    ("GET", f"{MAP}/nodes", "list_nodes", "Nodes of a map."),
+    ("GET", MAP + NODE, "show_node", "One node."),
+    ("DELETE", MAP + NODE, "delete_node", "Delete a node and its edges."),
+    ("GET", f"{MAP}{NODE}/thumbnail", "show_thumbnail", "What a node looks like."),
+    ("GET", f"{MAP}{NODE}/keypoints", "show_keypoints", "Where a node's features are, and how strong."),
+    ("GET", f"{MAP}/edges", "list_edges", "Edges of a map with their evidence."),
+    ("DELETE", MAP + EDGE, "delete_edge", "Delete an edge."),
+    ("GET", f"{MAP}/revisions", "list_revisions", "How a map came to be."),
+    ("GET", f"{MAP}/compare", "compare_revisions", "Changes from revision `from` to `to`, or to now."),
+    ("POST", f"{MAP}/undo", "undo", "Take a map's newest change back."),
+    ("GET", f"{MAP}/export", "export_map", "A map as one archive."),
+)
+STATUS = {"create_map": 201, "import_map": 201, "delete_map": 204}
+MEDIA = {"show_thumbnail": "image/jpeg", "export_map": "application/zip"}
 
 
-@router.patch("/api/maps/{map_name}")
-async def rename_map(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
-    """Rename a map."""
-    return await _with_body(gateway, request, f"/maps/{map_name}")
-
-
-@router.delete("/api/maps/{map_name}", status_code=204)
-async def delete_map(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
-    """Delete a map."""
-    return await forward(gateway, request, f"/maps/{map_name}")
-
-
-@router.get("/api/maps/{map_name}/nodes")
-async def list_nodes(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
-    """Places of a map."""
-    return await forward(gateway, request, f"/maps/{map_name}/nodes")
-
-
-@router.get("/api/maps/{map_name}/nodes/{node_id:int}")
-async def show_node(request: Request, map_name: MapPath, node_id: int, gateway: GatewayDep) -> Response:
-    """One place."""
-    return await forward(gateway, request, f"/maps/{map_name}/nodes/{node_id}")
-
-
-@router.delete("/api/maps/{map_name}/nodes/{node_id:int}")
-async def delete_node(request: Request, map_name: MapPath, node_id: int, gateway: GatewayDep) -> Response:
-    """Delete a place and its edges."""
-    return await forward(gateway, request, f"/maps/{map_name}/nodes/{node_id}")
-
-
-@router.get("/api/maps/{map_name}/nodes/{node_id:int}/thumbnail", response_class=Response, responses=JPEG)
-async def show_thumbnail(request: Request, map_name: MapPath, node_id: int, gateway: GatewayDep) -> Response:
-    """What a place looks like."""
-    return await forward(gateway, request, f"/maps/{map_name}/nodes/{node_id}/thumbnail")
-
-
-@router.get("/api/maps/{map_name}/nodes/{node_id:int}/keypoints")
-async def show_keypoints(request: Request, map_name: MapPath, node_id: int, gateway: GatewayDep) -> Response:
-    """Where the features of a place are, and how strong."""
-    return await forward(gateway, request, f"/maps/{map_name}/nodes/{node_id}/keypoints")
-
-
-@router.get("/api/maps/{map_name}/edges")
-async def list_edges(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
-    """Connections of a map with their evidence."""
-    return await forward(gateway, request, f"/maps/{map_name}/edges")
-
-
-@router.delete("/api/maps/{map_name}/edges/{a:int}/{b:int}")
-async def delete_edge(request: Request, map_name: MapPath, a: int, b: int, gateway: GatewayDep) -> Response:
-    """Delete a connection."""
-    return await forward(gateway, request, f"/maps/{map_name}/edges/{a}/{b}")
-
-
-@router.get("/api/maps/{map_name}/revisions")
-async def list_revisions(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
-    """How a map came to be."""
-    return await forward(gateway, request, f"/maps/{map_name}/revisions")
-
-
-@router.get("/api/maps/{map_name}/compare")
-async def compare_revisions(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
-    """What changed between two revisions, `?from=3&to=9`; `to` is the newest when left out."""
-    return await forward(gateway, request, f"/maps/{map_name}/compare")
-
-
-@router.post("/api/maps/{map_name}/undo")
-async def undo(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
-    """Take a map's newest change back."""
-    return await _with_body(gateway, request, f"/maps/{map_name}/undo")
-
-
-@router.get("/api/maps/{map_name}/export", response_class=Response, responses=ZIP)
-async def export_map(request: Request, map_name: MapPath, gateway: GatewayDep) -> Response:
-    """A map as one archive."""
-    return await forward(gateway, request, f"/maps/{map_name}/export")
-
-
-async def _with_body(gateway: Gateway, request: Request, path: str) -> Response:
-    body = await read_body(request, MAX_JSON_BYTES, gateway.settings.upload_timeout_s)
+async def pass_on(request: Request, gateway: GatewayDep) -> Response:
+    """Answer as the map store does."""
+    path = request.url.path.removeprefix(API)
+    if path == IMPORT:
+        return await forward_stream(gateway, request, path)
+    body = b""
+    if request.method in ("POST", "PATCH"):
+        body = await read_body(request, MAX_JSON_BYTES, gateway.settings.upload_timeout_s)
     return await forward(gateway, request, path, body)
+
+
+async def _names_a_map(map_name: MapPath) -> None:
+    """What the path says, checked."""
+
+
+async def _names_a_node(node_id: NodePath) -> None:
+    """What the path says, checked."""
+
+
+async def _names_an_edge(a: NodePath, b: NodePath) -> None:
+    """What the path says, checked."""
+
+
+NAMED: dict[str, Callable[..., Any]] = {MAP: _names_a_map, NODE: _names_a_node, EDGE: _names_an_edge}
+router = APIRouter(tags=["maps"])
+for _method, _path, _name, _description in OPERATIONS:
+    router.add_api_route(
+        API + _path,
+        pass_on,
+        methods=[_method],
+        name=_name,
+        description=_description,
+        status_code=STATUS.get(_name),
+        dependencies=[Depends(check) for part, check in NAMED.items() if part in _path],
+        response_class=Response if _name in MEDIA else JSONResponse,
+        responses={200: {"content": {MEDIA[_name]: {}}}} if _name in MEDIA else None,
+    )

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, Self
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from services.gateway.http.bodies import read_json
+from services.gateway.http.bodies import json_body, read_json
 from services.gateway.live.hub import RobotView
 from services.gateway.routes.goals import PICTURE_BODY
 from services.gateway.routes.robots import known
@@ -54,11 +54,7 @@ class WaitAnswer(BaseModel):
     mission: dict[str, Any]
 
 
-_CONTENT = {"application/json": {"schema": StartMission.model_json_schema()}}
-BODY: dict[str, Any] = {"requestBody": {"required": True, "content": _CONTENT}}
-
-
-@router.post("/api/robots/{robot}/missions", status_code=202, openapi_extra=BODY)
+@router.post("/api/robots/{robot}/missions", status_code=202, openapi_extra=json_body(StartMission))
 async def start(
     request: Request, robot: RobotPath, gateway: GatewayDep, response: Response
 ) -> dict[str, Any]:

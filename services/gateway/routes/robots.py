@@ -6,10 +6,11 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel
 
-from services.gateway.live.hub import RobotView, estop_facts, frame_facts
+from services.gateway.live.hub import RobotView, facts_of
 from services.gateway.live.snapshot import jpeg_of
 from services.gateway.live.true_poses import Position
 from services.gateway.state import Gateway, GatewayDep, MapQuery, RobotPath
+from shared.messages.base import Message
 from shared.messages.maps import MapRequest
 from shared.messages.sensors import Frame
 from shared.topics import MAP
@@ -67,13 +68,8 @@ async def show_truth(robot: RobotPath, gateway: GatewayDep) -> dict[str, Any]:
     """Debug view of the simulation: where the robot really is. No service steers by it."""
     truth = known(gateway, robot).truth
     if truth is None:
-        raise ProblemError(
-            404,
-            "no_truth",
-            expected="a simulated robot",
-            got=f"no true pose of {robot}",
-            next_step="only the simulator publishes true poses",
-        )
+        got, next_step = f"no true pose of {robot}", "only the simulator publishes true poses"
+        raise ProblemError(404, "no_truth", "a simulated robot", got, next_step)
     return truth.model_dump(mode="json")
 
 
@@ -93,13 +89,8 @@ def newest_frame(gateway: Gateway, robot: str) -> Frame:
     """
     frame = known(gateway, robot).frame
     if frame is None:
-        raise ProblemError(
-            404,
-            "no_frame",
-            expected=f"a frame of {robot}",
-            got="none since the gateway started",
-            next_step="see whether its camera or the simulator runs (/readyz)",
-        )
+        got, next_step = "none since the gateway started", "see whether its camera or the simulator runs"
+        raise ProblemError(404, "no_frame", f"a frame of {robot}", got, f"{next_step} (/readyz)")
     return frame
 
 
@@ -112,26 +103,16 @@ def known(gateway: Gateway, robot: str) -> RobotView:
     view = gateway.hub.robots.get(robot)
     if view is None or view.seen_s == 0.0:
         names = sorted(name for name, other in gateway.hub.robots.items() if other.seen_s > 0.0)
-        raise ProblemError(
-            404,
-            "unknown_robot",
-            expected=f"one of {names}" if names else "a robot that was heard of",
-            got=robot,
-            next_step="see /api/robots",
-        )
+        expected = f"one of {names}" if names else "a robot that was heard of"
+        raise ProblemError(404, "unknown_robot", expected, robot, "see /api/robots")
     return view
 
 
 def _facts(robot: str, view: RobotView) -> dict[str, Any]:
     now_s = time.monotonic()
-    return {
-        "robot": robot,
-        "seen_age_s": round(now_s - view.seen_s, 3),
-        "frame": None
-        if view.frame is None
-        else {**frame_facts(view.frame), "age_s": round(now_s - view.frame_s, 3)},
-        "estop": None if view.estop is None else estop_facts(view.estop),
-        "mission": None if view.status is None else view.status.model_dump(mode="json"),
-        "heading": None if view.heading is None else view.heading.model_dump(mode="json"),
-        "ranges": None if view.ranges is None else view.ranges.model_dump(mode="json"),
-    }
+    shown: dict[str, Message | None] = {"frame": view.frame, "estop": view.estop, "mission": view.status}
+    shown |= {"heading": view.heading, "ranges": view.ranges}
+    facts = {name: None if message is None else facts_of(message) for name, message in shown.items()}
+    if facts["frame"] is not None:
+        facts["frame"]["age_s"] = round(now_s - view.frame_s, 3)
+    return {"robot": robot, "seen_age_s": round(now_s - view.seen_s, 3), **facts}

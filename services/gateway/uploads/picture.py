@@ -49,26 +49,16 @@ def check_header(data: bytes, declared_type: str) -> PictureHeader:
     try:
         header = read_header(data)
     except HeaderError as error:
-        raise ProblemError(
-            415, "not_a_picture", "a PNG, JPEG or WebP picture", str(error), "convert it to one of the three"
-        ) from None
+        expected, next_step = "a PNG, JPEG or WebP picture", "convert it to one of the three"
+        raise ProblemError(415, "not_a_picture", expected, str(error), next_step) from None
     if declared_type != f"image/{header.format}":
-        raise ProblemError(
-            415,
-            "type_mismatch",
-            f"content type image/{header.format} for these bytes",
-            declared_type[:80] or "no content type",
-            "send the content type that fits the file",
-        )
+        expected, got = f"content type image/{header.format} for these bytes", declared_type[:80]
+        next_step = "send the content type that fits the file"
+        raise ProblemError(415, "type_mismatch", expected, got or "no content type", next_step)
     _check_size(header)
     if header.format == "jpeg" and (scans := data.count(b"\xff\xda")) > MAX_SCANS:
-        raise ProblemError(
-            422,
-            "too_many_scans",
-            f"a JPEG of at most {MAX_SCANS} scans",
-            f"{scans}",
-            "save it as a baseline JPEG",
-        )
+        expected, next_step = f"a JPEG of at most {MAX_SCANS} scans", "save it as a baseline JPEG"
+        raise ProblemError(422, "too_many_scans", expected, f"{scans}", next_step)
     return header
 
 
@@ -82,14 +72,9 @@ def decode_bgr(data: bytes, header: PictureHeader) -> Bgr:
         ProblemError: damaged, animated, or not of the size its header claims.
     """
     image = _open(data, header)
-    if getattr(image, "n_frames", 1) > 1 and image.format != "MPO":  # MPO: the first picture is the main one
-        raise ProblemError(
-            422,
-            "animated",
-            "one still picture",
-            f"{getattr(image, 'n_frames', 1)} pictures",
-            "send one of them",
-        )
+    pictures = getattr(image, "n_frames", 1)
+    if pictures > 1 and image.format != "MPO":  # MPO: the first picture is the main one
+        raise ProblemError(422, "animated", "one still picture", f"{pictures} pictures", "send one of them")
     target = (min(header.width_px, MAX_WIDTH_PX), min(header.height_px, MAX_WIDTH_PX // 2))
     try:
         image.draft("RGB", target)  # JPEG only: decodes at 1/2, 1/4 or 1/8 of the size
@@ -100,33 +85,19 @@ def decode_bgr(data: bytes, header: PictureHeader) -> Bgr:
 
 
 def _check_size(header: PictureHeader) -> None:
-    width_px, height_px = header.width_px, header.height_px
+    width_px, height_px, most = header.width_px, header.height_px, MAX_PIXELS[header.format]
     got = f"{width_px} x {height_px} px"
-    most = MAX_PIXELS[header.format]
     if width_px * height_px > most:
-        raise ProblemError(
-            413,
-            "too_many_pixels",
-            f"at most {most // 1_000_000} megapixels as {header.format.upper()}",
-            got,
-            "send a smaller picture or, up to 64 megapixels, a JPEG",
-        )
+        expected = f"at most {most // 1_000_000} megapixels as {header.format.upper()}"
+        next_step = "send a smaller picture or, up to 64 megapixels, a JPEG"
+        raise ProblemError(413, "too_many_pixels", expected, got, next_step)
     if width_px != 2 * height_px:
-        raise ProblemError(
-            422,
-            "not_two_to_one",
-            "an equirectangular panorama, exactly twice as wide as high",
-            got,
-            "export the whole sphere (360 x 180 degrees)",
-        )
+        expected = "an equirectangular panorama, exactly twice as wide as high"
+        next_step = "export the whole sphere (360 x 180 degrees)"
+        raise ProblemError(422, "not_two_to_one", expected, got, next_step)
     if width_px < MIN_WIDTH_PX:
-        raise ProblemError(
-            422,
-            "too_small",
-            f"at least {MIN_WIDTH_PX} x {MIN_WIDTH_PX // 2} px",
-            got,
-            "send a larger picture",
-        )
+        expected = f"at least {MIN_WIDTH_PX} x {MIN_WIDTH_PX // 2} px"
+        raise ProblemError(422, "too_small", expected, got, "send a larger picture")
 
 
 def _open(data: bytes, header: PictureHeader) -> Image.Image:
@@ -166,7 +137,5 @@ def _as_rgb(image: Image.Image) -> Image.Image:
 
 
 def _damaged(error: Exception) -> ProblemError:
-    got = f"a damaged file ({str(error)[:120]})"
-    return ProblemError(
-        422, "damaged", "a picture that decodes to its end", got, "send the file again or re-save it"
-    )
+    expected, next_step = "a picture that decodes to its end", "send the file again or re-save it"
+    return ProblemError(422, "damaged", expected, f"a damaged file ({str(error)[:120]})", next_step)

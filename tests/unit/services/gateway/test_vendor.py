@@ -5,9 +5,9 @@ import json
 
 import pytest
 
-from services.gateway.routes.pages import STATIC
+from services.gateway.app import CONSOLE
 
-VENDOR = STATIC / "vendor"
+VENDOR = CONSOLE / "vendor"
 VERSIONS = json.loads((VENDOR / "versions.json").read_text())
 
 

@@ -12,14 +12,6 @@ ANNA = Token(name="anna", role="operator", sha256=digest_of("s1"))
 BERT = Token(name="bert", role="viewer", sha256=digest_of("s2"))
 
 
-class Clock:
-    now_s = 0.0
-
-    def __call__(self) -> float:
-        self.now_s += 10.0
-        return self.now_s
-
-
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
     """A file with one token."""
@@ -33,7 +25,7 @@ def role(tokens: ValidTokens, secret: str) -> str | None:
 
 
 def test_added_and_removed_tokens_count_at_once(path: Path) -> None:
-    tokens = ValidTokens("", path, Clock())
+    tokens = ValidTokens("", path)
     assert (role(tokens, "s1"), role(tokens, "s2")) == ("operator", None)
     write_tokens(path, [ANNA, BERT])
     assert role(tokens, "s2") == "viewer"
@@ -45,7 +37,7 @@ def test_added_and_removed_tokens_count_at_once(path: Path) -> None:
 
 @pytest.mark.parametrize("content", [None, "{", "[]"])
 def test_a_file_that_breaks_opens_nothing_but_the_single_token(path: Path, content: str | None) -> None:
-    tokens = ValidTokens("single", path, Clock())
+    tokens = ValidTokens("single", path)
     assert role(tokens, "s1") == "operator"
     if content is None:
         path.unlink()

@@ -7,7 +7,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from services.gateway.live.runs import list_runs
+from services.gateway.routes.runs import list_runs
 from services.launcher.client.run_record import (
     explore_figures,
     keep_run,

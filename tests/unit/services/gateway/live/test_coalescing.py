@@ -4,7 +4,7 @@ import asyncio
 
 import pytest
 
-from services.gateway.live.gathered_stops import GatheredStops
+from services.gateway.live.coalescing import Coalescer
 
 
 def test_stops_of_one_robot_that_come_together_are_sent_once():
@@ -15,7 +15,7 @@ def test_stops_of_one_robot_that_come_together_are_sent_once():
         return len(sent)
 
     async def flood() -> list[int]:
-        stops = GatheredStops()
+        stops = Coalescer()
         return await asyncio.gather(*(stops.join("r1", send) for _ in range(50)))
 
     assert asyncio.run(flood()) == [1] * 50
@@ -26,7 +26,7 @@ def test_a_stop_that_comes_while_one_is_on_its_way_is_sent_after_it():
     sent = []
 
     async def two() -> None:
-        stops, on_its_way, answered = GatheredStops(), asyncio.Event(), asyncio.Event()
+        stops, on_its_way, answered = Coalescer(), asyncio.Event(), asyncio.Event()
 
         async def slow() -> None:
             sent.append("first")
@@ -48,7 +48,7 @@ def test_a_stop_that_comes_while_one_is_on_its_way_is_sent_after_it():
 
 def test_robots_do_not_share_stops():
     async def both() -> list[str]:
-        stops = GatheredStops()
+        stops = Coalescer()
 
         async def send(robot: str) -> str:
             return robot
@@ -61,7 +61,7 @@ def test_robots_do_not_share_stops():
 
 def test_who_leaves_takes_nobody_s_stop_along_and_all_hear_why_one_failed():
     async def run() -> None:
-        stops = GatheredStops()
+        stops = Coalescer()
 
         async def fail() -> None:
             raise ConnectionError("drive is absent")

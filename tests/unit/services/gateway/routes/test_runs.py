@@ -9,7 +9,7 @@ import pytest
 
 from services.gateway.live.mission_log import FILE
 from services.gateway.live.mission_watch import MissionEntry
-from services.gateway.live.runs import MAX_FILE_BYTES, from_command, from_mission, list_runs, newest
+from services.gateway.routes.runs import MAX_FILE_BYTES, from_command, from_mission, list_runs, newest
 from shared.runs import CommandRun
 
 NOON = datetime(2026, 3, 1, 12, 0, tzinfo=UTC)
