@@ -9,8 +9,8 @@ import sys
 from pathlib import Path
 
 from shared.access.rules import robot_names
+from shared.certificates.holders import everyone
 from shared.certificates.issuing import make
-from shared.certificates.layout import another_robot, everyone
 
 
 def main(arguments: list[str]) -> int:
@@ -18,9 +18,8 @@ def main(arguments: list[str]) -> int:
     if len(arguments) != 1:
         sys.stderr.write("usage: python -m shared.certificates FOLDER\n")
         return 2
-    first, *others = robot_names(os.environ)
     try:
-        holders = [*everyone(first), *(holder for robot in others for holder in another_robot(robot))]
+        holders = everyone(*robot_names(os.environ))
         made = make(Path(arguments[0]), holders, dt.datetime.now(dt.UTC), keep=True)
     except (ValueError, OSError) as error:
         sys.stderr.write(f"certificates: {error}\n")

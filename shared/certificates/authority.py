@@ -2,6 +2,7 @@
 
 import datetime as dt
 import ipaddress
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,19 +13,21 @@ from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from shared.access.credentials import AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE, MAP_STORE_HOST
 from shared.access.rules import Role
-from shared.certificates.files import private_folder, write, write_key
-from shared.certificates.layout import AUTHORITY, Holder
+from shared.certificates.holders import AUTHORITY, CertificatesError, Holder, read_certificate
 
 AUTHORITY_DAYS = 3650
+"""Ten years: who renews it must visit every robot."""
 CERTIFICATE_DAYS = 397
+"""The CA/Browser Forum's limit of 398 days, less one for clocks."""
 ROUTER_HOSTS = ("router", "localhost", "127.0.0.1")
 """Where services find the router: among containers, and on one machine."""
 CLOCKS_DIFFER = dt.timedelta(hours=1)
 """Certificates hold from a little before they were made: robots' clocks are not exact."""
-
-
-class CertificatesError(ValueError):
-    """What was asked would overwrite a certificate, or needs one that is not there."""
+USAGES = (
+    "digital_signature", "content_commitment", "key_encipherment", "data_encipherment", "key_agreement",
+    "key_cert_sign", "crl_sign", "encipher_only", "decipher_only",
+)  # fmt: skip
+"""Of a key, by RFC 5280, 4.2.1.3."""
 
 
 @dataclass(frozen=True)
@@ -41,20 +44,19 @@ class Authority:
         Raises:
             CertificatesError: there is one.
         """
-        home = folder / AUTHORITY
         if has_authority(folder):
-            raise CertificatesError(f"{home}: there is an authority, and all certificates rest on it")
+            raise CertificatesError(
+                f"{folder / AUTHORITY}: there is an authority, and all certificates rest on it"
+            )
         key = ec.generate_private_key(ec.SECP256R1())
         name = _name("topnav authority")
         certificate = (
             _unsigned(name, name, key, now, AUTHORITY_DAYS)
             .add_extension(x509.BasicConstraints(ca=True, path_length=0), critical=True)
-            .add_extension(_usage(signs_certificates=True), critical=True)
+            .add_extension(_usage("key_cert_sign", "crl_sign"), critical=True)
             .sign(key, hashes.SHA256())
         )
-        private_folder(home)
-        write_key(home / KEY_FILE, key)
-        write(home / AUTHORITY_FILE, _pem(certificate), 0o644)
+        _write(folder / AUTHORITY, key, {AUTHORITY_FILE: certificate})
         return cls(certificate, key)
 
     @classmethod
@@ -66,7 +68,7 @@ class Authority:
         """
         home = folder / AUTHORITY
         try:
-            certificate = x509.load_pem_x509_certificate((home / AUTHORITY_FILE).read_bytes())
+            certificate = read_certificate(home / AUTHORITY_FILE)
             key = serialization.load_pem_private_key((home / KEY_FILE).read_bytes(), password=None)
         except (OSError, ValueError) as error:
             raise CertificatesError(f"{home}: no authority that can sign: {error}") from error
@@ -90,18 +92,15 @@ class Authority:
         names = _server_names(holder.role, hosts)
         if names:
             kinds.append(ExtendedKeyUsageOID.SERVER_AUTH)
-            builder = builder.add_extension(x509.SubjectAlternativeName(_hosts(names)), critical=False)
+            builder = builder.add_extension(x509.SubjectAlternativeName(names), critical=False)
         certificate = (
             builder.add_extension(x509.BasicConstraints(ca=False, path_length=None), critical=True)
-            .add_extension(_usage(signs_certificates=False), critical=True)
+            .add_extension(_usage("digital_signature"), critical=True)
             .add_extension(x509.ExtendedKeyUsage(kinds), critical=False)
             .sign(self.key, hashes.SHA256())
         )
-        home = folder / holder.name
-        private_folder(home)
-        write(home / AUTHORITY_FILE, _pem(self.certificate), 0o644)
-        write_key(home / KEY_FILE, key)
-        write(home / CERTIFICATE_FILE, _pem(certificate), 0o644)
+        files = {AUTHORITY_FILE: self.certificate, CERTIFICATE_FILE: certificate}
+        _write(folder / holder.name, key, files)
 
 
 def has_authority(folder: Path) -> bool:
@@ -110,11 +109,18 @@ def has_authority(folder: Path) -> bool:
     return (home / AUTHORITY_FILE).exists() or (home / KEY_FILE).exists()
 
 
-def _server_names(role: Role, hosts: tuple[str, ...]) -> tuple[str, ...]:
+def _server_names(role: Role, hosts: tuple[str, ...]) -> list[x509.GeneralName]:
     """Names of those who are connected to. No two share one: a stolen map store is no router."""
     if role is Role.ROUTER:
-        return tuple(dict.fromkeys((*ROUTER_HOSTS, *hosts)))
-    return (MAP_STORE_HOST,) if role is Role.MAP_STORE else ()
+        return [_host(name) for name in dict.fromkeys((*ROUTER_HOSTS, *hosts))]
+    return [_host(MAP_STORE_HOST)] if role is Role.MAP_STORE else []
+
+
+def _host(name: str) -> x509.GeneralName:
+    try:
+        return x509.IPAddress(ipaddress.ip_address(name))
+    except ValueError:
+        return x509.DNSName(name)
 
 
 def _unsigned(
@@ -135,29 +141,24 @@ def _name(common_name: str) -> x509.Name:
     return x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, common_name)])
 
 
-def _hosts(names: tuple[str, ...]) -> list[x509.GeneralName]:
-    found: list[x509.GeneralName] = []
-    for name in names:
-        try:
-            found.append(x509.IPAddress(ipaddress.ip_address(name)))
-        except ValueError:
-            found.append(x509.DNSName(name))
-    return found
+def _usage(*allowed: str) -> x509.KeyUsage:
+    return x509.KeyUsage(**{usage: usage in allowed for usage in USAGES})
 
 
-def _usage(signs_certificates: bool) -> x509.KeyUsage:
-    return x509.KeyUsage(
-        digital_signature=not signs_certificates,
-        content_commitment=False,
-        key_encipherment=False,
-        data_encipherment=False,
-        key_agreement=False,
-        key_cert_sign=signs_certificates,
-        crl_sign=signs_certificates,
-        encipher_only=False,
-        decipher_only=False,
-    )
+def _write(home: Path, key: ec.EllipticCurvePrivateKey, certificates: dict[str, x509.Certificate]) -> None:
+    """Write a key for its owner only and certificates, into a folder that nobody else may look into."""
+    pem = serialization.Encoding.PEM
+    encoded = key.private_bytes(pem, serialization.PrivateFormat.PKCS8, serialization.NoEncryption())
+    home.mkdir(mode=0o700, parents=True, exist_ok=True)
+    _replace(home / KEY_FILE, encoded, 0o600)
+    for name, certificate in certificates.items():
+        _replace(home / name, certificate.public_bytes(pem), 0o644)
 
 
-def _pem(certificate: x509.Certificate) -> bytes:
-    return certificate.public_bytes(serialization.Encoding.PEM)
+def _replace(path: Path, content: bytes, mode: int) -> None:
+    """Replace the file in one step; it never has more than these permissions, not even for a moment."""
+    new = path.with_name(f"{path.name}.new")
+    new.unlink(missing_ok=True)
+    with os.fdopen(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as file:
+        file.write(content)
+    new.replace(path)

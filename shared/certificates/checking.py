@@ -15,11 +15,10 @@ from shared.access.credentials import (
     CredentialsError,
     credentials_in,
 )
-from shared.certificates.authority import CertificatesError
-from shared.certificates.layout import AUTHORITY
-from shared.certificates.reading import UnreadableError, holder_of, read_certificate
+from shared.certificates.holders import AUTHORITY, CertificatesError, holder_of, read_certificate
 
 SOON = dt.timedelta(days=30)
+"""Chosen: time for a visit to every robot."""
 
 
 @dataclass(frozen=True)
@@ -45,19 +44,12 @@ def check(folder: Path, now: dt.datetime) -> list[Finding]:
     Raises:
         CertificatesError: there is none at all.
     """
-    authority = _authority(folder)
-    homes = (
-        sorted(p for p in folder.iterdir() if p.is_dir() and p.name != AUTHORITY) if folder.is_dir() else []
-    )
+    homes = sorted(path for path in folder.glob("*/") if path.name != AUTHORITY)
     if not homes:
         raise CertificatesError(f"{folder}: certificates expected, found none; make them with 'topnav certs'")
-    return [_check(home, authority, now) for home in homes]
-
-
-def _authority(folder: Path) -> x509.Certificate | None:
-    """The authority's own certificate; a folder may have been brought here without it."""
     path = folder / AUTHORITY / AUTHORITY_FILE
-    return read_certificate(path) if path.exists() else None
+    authority = read_certificate(path) if path.exists() else None  # the folder may have come without it
+    return [_check(home, authority, now) for home in homes]
 
 
 def _check(home: Path, authority: x509.Certificate | None, now: dt.datetime) -> Finding:
@@ -66,7 +58,7 @@ def _check(home: Path, authority: x509.Certificate | None, now: dt.datetime) -> 
         certificate = read_certificate(home / CERTIFICATE_FILE)
         name = holder_of(home.name, certificate).common_name
         chain = authority or read_certificate(home / AUTHORITY_FILE)
-    except (CredentialsError, UnreadableError) as error:
+    except (CredentialsError, CertificatesError) as error:
         return Finding(home.name, "", None, (str(error),), ())
     assert credentials is not None  # an empty folder has no certificate to read
     faults, warnings = _validity(certificate, now)

@@ -4,12 +4,16 @@ import datetime as dt
 from collections.abc import Iterable
 from pathlib import Path
 
-from cryptography import x509
-
 from shared.access.credentials import CERTIFICATE_FILE
-from shared.certificates.authority import Authority, CertificatesError, has_authority
-from shared.certificates.layout import AUTHORITY, Holder
-from shared.certificates.reading import holder_of, hosts_of, read_certificate
+from shared.certificates.authority import Authority, has_authority
+from shared.certificates.holders import (
+    AUTHORITY,
+    CertificatesError,
+    Holder,
+    holder_of,
+    hosts_of,
+    read_certificate,
+)
 
 
 def make(
@@ -70,10 +74,8 @@ def renew(folder: Path, now: dt.datetime, hosts: tuple[str, ...] = ()) -> list[H
 
 
 def _require_plain(name: str) -> None:
-    parts = name.split(".")
-    if name == AUTHORITY or not all(
-        part and part.replace("-", "").replace("_", "").isalnum() for part in parts
-    ):
+    words = name.replace("-", "").replace("_", "").split(".")
+    if name == AUTHORITY or not all(word.isalnum() for word in words):
         raise CertificatesError(
             f"a holder's name is a plain word other than {AUTHORITY!r}, got {name[:80]!r}"
         )
@@ -81,7 +83,7 @@ def _require_plain(name: str) -> None:
 
 def _require_same(folder: Path, holder: Holder) -> None:
     """What is kept must be what was asked for: another robot's certificate would be refused by the router."""
-    certificate: x509.Certificate = read_certificate(folder / holder.name / CERTIFICATE_FILE)
+    certificate = read_certificate(folder / holder.name / CERTIFICATE_FILE)
     found = holder_of(holder.name, certificate).common_name
     if found != holder.common_name:
         raise CertificatesError(

@@ -16,8 +16,8 @@ import pytest
 
 from services.launcher.processes.free_ports import free_ports
 from shared.bus import open_bus, wait_until
+from shared.certificates.holders import everyone
 from shared.certificates.issuing import make
-from shared.certificates.layout import everyone
 from shared.messages import EStopRequest, EStopState
 from shared.topics import ESTOP, FRAME
 

@@ -15,7 +15,7 @@ from services.launcher.processes.compose_file import COMPOSE_FILE, load_compose
 from services.launcher.processes.interpolate import interpolate_tree
 from services.launcher.processes.local import LocalMachine, local_process
 from services.launcher.processes.stack_settings import Ports, StackSettings
-from shared.certificates.layout import AUTHORITY, everyone
+from shared.certificates.holders import AUTHORITY, everyone
 from shared.settings import ServiceSettings
 
 RAW = yaml.safe_load(COMPOSE_FILE.read_text(encoding="utf-8"))

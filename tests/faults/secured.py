@@ -11,8 +11,8 @@ from types import TracebackType
 from typing import Self
 
 from shared.bus import Bus, UnreachableError, open_bus, wait_until
+from shared.certificates.holders import everyone
 from shared.certificates.issuing import make
-from shared.certificates.layout import everyone
 
 START_S = 60.0
 

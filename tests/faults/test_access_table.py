@@ -15,8 +15,8 @@ from services.launcher.processes.free_ports import free_ports
 from shared.access.credentials import credentials_in
 from shared.access.rules import QUESTIONS, STREAMS, Role
 from shared.bus import wait_until
+from shared.certificates.holders import Holder, another_robot
 from shared.certificates.issuing import make
-from shared.certificates.layout import Holder, another_robot
 from shared.topics import alive_key, robot_key
 from shared.transport.session_config import client_config
 from tests.faults.secured import SecuredBus

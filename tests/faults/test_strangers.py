@@ -13,8 +13,8 @@ import zenoh
 from services.launcher.processes.free_ports import free_ports
 from shared.access.credentials import FILES, Credentials, credentials_in
 from shared.bus import UnreachableError, open_bus
+from shared.certificates.holders import everyone
 from shared.certificates.issuing import make
-from shared.certificates.layout import everyone
 from shared.topics import alive_key
 from shared.transport.session_config import client_config, peer_config, secured_router_config
 from tests.faults.secured import SecuredBus

@@ -11,8 +11,8 @@ from rich.table import Table
 
 from shared.access.rules import Role
 from shared.certificates.checking import Finding, check
+from shared.certificates.holders import AUTHORITY, Holder, another_robot, everyone
 from shared.certificates.issuing import make, renew
-from shared.certificates.layout import AUTHORITY, Holder, another_robot, everyone
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 

@@ -18,12 +18,11 @@ def prepare(folder: Path, robots: Sequence[str]) -> None:
     """
     # Only a secured stack needs the library behind these.
     from shared.certificates.checking import check
+    from shared.certificates.holders import everyone
     from shared.certificates.issuing import make
-    from shared.certificates.layout import another_robot, everyone
 
     now = dt.datetime.now(dt.UTC)
-    holders = [*everyone(robots[0]), *(h for robot in robots[1:] for h in another_robot(robot))]
-    make(folder, holders, now, keep=True)
+    make(folder, everyone(*robots), now, keep=True)
     for finding in check(folder, now):
         if finding.faults:
             raise LaunchError(f"certificate of {finding.name}: {finding.faults[0]}")

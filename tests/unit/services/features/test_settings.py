@@ -11,8 +11,8 @@ from services.features.pipeline.pipeline import Pipeline
 from services.features.pipeline.plugins import PLUGINS
 from services.features.pipeline.registry import create
 from services.features.settings import FeaturesSettings
+from shared.certificates.holders import everyone
 from shared.certificates.issuing import make
-from shared.certificates.layout import everyone
 
 
 def test_the_default_pipeline_exists():

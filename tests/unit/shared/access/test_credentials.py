@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from shared.access.credentials import CredentialsError, credentials_in, secured_endpoint, secured_url
+from shared.certificates.holders import everyone
 from shared.certificates.issuing import make
-from shared.certificates.layout import everyone
 from shared.settings import ServiceSettings
 from shared.transport.session_config import peer_config, router_config
 

@@ -11,11 +11,18 @@ from typer.testing import CliRunner
 
 from services.launcher.commands.certs import app
 from shared.access.rules import Role
-from shared.certificates.authority import CERTIFICATE_DAYS, CertificatesError
+from shared.certificates.authority import CERTIFICATE_DAYS
 from shared.certificates.checking import check
+from shared.certificates.holders import (
+    AUTHORITY,
+    CertificatesError,
+    Holder,
+    another_robot,
+    everyone,
+    hosts_of,
+    read_certificate,
+)
 from shared.certificates.issuing import make, renew
-from shared.certificates.layout import AUTHORITY, Holder, another_robot, everyone
-from shared.certificates.reading import hosts_of, read_certificate
 
 NOW = dt.datetime(2030, 1, 1, tzinfo=dt.UTC)
 DAY = dt.timedelta(days=1)
