@@ -19,8 +19,8 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(300), needs_chromium]
 
 DRAG_MOVES = 150
 DRAW = """async ({ nodes, edges }) => {
-    const { place } = await import("/layout.js");
-    const { look } = await import("/graph_style.js");
+    const { place } = await import("/map/layout.js");
+    const { look } = await import("/map/graph_style.js");
     const { default: cytoscape } = await import("/vendor/cytoscape.esm.min.js");
     const before = performance.now();
     const spots = place(nodes, edges);

@@ -1,24 +1,24 @@
 // The page: connects the parts.
 
-import { get } from "./api.js";
-import { $, html } from "./dom.js";
-import { EStop } from "./estop.js";
-import { Events } from "./events.js";
-import { Goal } from "./goal.js";
-import { Graph } from "./graph.js";
-import { History } from "./history.js";
-import { Inspector } from "./inspector.js";
-import { Live } from "./live.js";
-import { MapTable } from "./map_table.js";
-import { Maps } from "./maps.js";
-import { Matches } from "./matches.js";
-import { Mission } from "./mission.js";
-import { Panorama } from "./panorama.js";
-import { Polar } from "./polar.js";
-import { Runs } from "./runs.js";
-import { locked } from "./session.js";
-import { TEXT } from "./text.js";
-import { Views } from "./views.js";
+import { get } from "./page/api.js";
+import { $, html } from "./page/dom.js";
+import { EStop } from "./page/estop.js";
+import { Events } from "./record/events.js";
+import { Goal } from "./drive/goal.js";
+import { Graph } from "./map/graph.js";
+import { History } from "./record/history.js";
+import { Inspector } from "./map/inspector.js";
+import { Live } from "./page/live.js";
+import { MapTable } from "./map/map_table.js";
+import { Maps } from "./map/maps.js";
+import { Matches } from "./drive/matches.js";
+import { Mission } from "./drive/mission.js";
+import { Panorama } from "./drive/panorama.js";
+import { Polar } from "./drive/polar.js";
+import { Runs } from "./record/runs.js";
+import { locked } from "./page/session.js";
+import { TEXT } from "./page/text.js";
+import { Views } from "./page/views.js";
 
 const SERVICES = ["simulator", "features", "map_store", "planner", "drive", "gateway"];
 const DEFAULT_ROBOT = "r1";

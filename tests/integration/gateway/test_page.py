@@ -141,7 +141,7 @@ def test_positions_follow_the_headings(page: "Page") -> None:
     """An L of three places: ahead, then left, though the second camera looks backwards."""
     spots = page.evaluate(
         """async () => {
-            const { place } = await import("/static/layout.js");
+            const { place } = await import("/static/map/layout.js");
             const edge = (a, b, ab, ba, yaw) =>
                 ({ a, b, heading_ab_rad: ab, heading_ba_rad: ba, yaw_ab_rad: yaw, confidence: 1 });
             const nodes = [0, 1, 2].map((node_id) => ({ node_id }));

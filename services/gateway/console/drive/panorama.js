@@ -1,8 +1,8 @@
 // The live panorama. A new picture is fetched when the last one has arrived, so slow links just see fewer.
 
-import { $, svg } from "./dom.js";
+import { $, svg } from "../page/dom.js";
 import { LookAround } from "./look_around.js";
-import { TEXT } from "./text.js";
+import { TEXT } from "../page/text.js";
 
 const WIDTH_PX = 1280;
 const STALE_MS = 4000;

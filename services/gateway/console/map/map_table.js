@@ -1,9 +1,9 @@
 // The view of all maps: make, rename, bring in and out, delete, merge; and the history of the chosen one.
 
-import { call, get, post } from "./api.js";
-import { asked, confirmed } from "./ask.js";
-import { $, html, table } from "./dom.js";
-import { TEXT } from "./text.js";
+import { call, get, post } from "../page/api.js";
+import { asked, confirmed } from "../page/ask.js";
+import { $, html, table } from "../page/dom.js";
+import { TEXT } from "../page/text.js";
 
 const MERGE_MS = 1000;
 const DONE = ["done", "refused", "failed"];

@@ -1,8 +1,8 @@
 // Explorations, drives and evaluations, newest first, with their figures.
 
-import { get } from "./api.js";
-import { $, html, table } from "./dom.js";
-import { TEXT } from "./text.js";
+import { get } from "../page/api.js";
+import { $, html, table } from "../page/dom.js";
+import { TEXT } from "../page/text.js";
 
 const number = (value) => (typeof value === "number" ? String(+value.toFixed(3)) : String(value ?? "–"));
 

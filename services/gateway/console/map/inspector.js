@@ -1,10 +1,10 @@
 // What is known of one place or one connection: pictures, evidence, and what can be done with it.
 
-import { call, get } from "./api.js";
-import { confirmed } from "./ask.js";
-import { $, html, side, table } from "./dom.js";
+import { call, get } from "../page/api.js";
+import { confirmed } from "../page/ask.js";
+import { $, html, side, table } from "../page/dom.js";
 import { drawPair } from "./pair.js";
-import { TEXT } from "./text.js";
+import { TEXT } from "../page/text.js";
 
 export class Inspector {
   /** `goThere(node)` starts a mission, `changed()` hears that the map was edited, `say(text)` of refusals. */

@@ -1,8 +1,8 @@
 // The mission: what it is, how it stands, and the buttons that steer it.
 
-import { post } from "./api.js";
-import { $, html } from "./dom.js";
-import { TEXT } from "./text.js";
+import { post } from "../page/api.js";
+import { $, html } from "../page/dom.js";
+import { TEXT } from "../page/text.js";
 
 const BUSY = ["running", "paused"];
 

@@ -1,8 +1,8 @@
 // Keypoints of the live picture that match the place nearest to the robot, once a second while somebody looks.
 
-import { get } from "./api.js";
-import { $, svg } from "./dom.js";
-import { TEXT } from "./text.js";
+import { get } from "../page/api.js";
+import { $, svg } from "../page/dom.js";
+import { TEXT } from "../page/text.js";
 
 const EACH_MS = 1000;
 

@@ -1,7 +1,7 @@
 // Which maps there are and which one is shown.
 
-import { get } from "./api.js";
-import { $, html } from "./dom.js";
+import { get } from "../page/api.js";
+import { $, html } from "../page/dom.js";
 
 const POLL_MS = 5000;
 

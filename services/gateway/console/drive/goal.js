@@ -1,8 +1,8 @@
 // Goal pictures: choose or drop one, see how well the map knows it, drive there.
 
-import { upload } from "./api.js";
-import { $, html, side, table } from "./dom.js";
-import { TEXT } from "./text.js";
+import { upload } from "../page/api.js";
+import { $, html, side, table } from "../page/dom.js";
+import { TEXT } from "../page/text.js";
 
 export class Goal {
   /** `where()` gives robot and map, `found(ids)` hears which places match, `started(status)` of the mission. */

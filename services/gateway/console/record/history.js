@@ -1,7 +1,7 @@
 // S, heading and speed over the last steps, for the charts; and the charts (uPlot), loaded when first wanted.
 
-import { $, script, style } from "./dom.js";
-import { TEXT } from "./text.js";
+import { $, script, style } from "../page/dom.js";
+import { TEXT } from "../page/text.js";
 
 const KEPT = 4000;
 const EACH_MS = 500;

@@ -1,7 +1,7 @@
 // The timeline of decisions, newest first. Headings come every step and are hidden unless asked for.
 
-import { $, html } from "./dom.js";
-import { TEXT } from "./text.js";
+import { $, html } from "../page/dom.js";
+import { TEXT } from "../page/text.js";
 
 const KEPT = 2000;
 const SHOWN = 200;

@@ -1,6 +1,6 @@
 // Looking around in the live panorama by dragging: pannellum, loaded when first wanted.
 
-import { $, script, style } from "./dom.js";
+import { $, script, style } from "../page/dom.js";
 
 const FIELD_DEG = 100;
 

@@ -1,11 +1,11 @@
 // The map as a drawing (cytoscape): drag to pan, wheel to zoom, click a place or a connection.
 
-import { get } from "./api.js";
-import { $ } from "./dom.js";
+import { get } from "../page/api.js";
+import { $ } from "../page/dom.js";
 import { look } from "./graph_style.js";
 import { place } from "./layout.js";
-import { TEXT } from "./text.js";
-import cytoscape from "./vendor/cytoscape.esm.min.js";
+import { TEXT } from "../page/text.js";
+import cytoscape from "../vendor/cytoscape.esm.min.js";
 
 const GOAL = -1;
 const POLL_MS = 5000;
@@ -146,7 +146,7 @@ export class Graph {
   layOut(nodes, edges) {
     if (nodes.length <= MANY) return place(nodes, edges, this.spots);
     this.worker?.terminate();
-    this.worker = new Worker("/static/layout_worker.js", { type: "module" });
+    this.worker = new Worker("/static/map/layout_worker.js", { type: "module" });
     return new Promise((resolve) => {
       this.worker.addEventListener("message", ({ data }) => resolve(data), { once: true });
       this.worker.postMessage({ nodes, edges, before: this.spots });

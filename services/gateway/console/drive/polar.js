@@ -1,7 +1,7 @@
 // Twelve distances seen from above, ahead is up, counter-clockwise is left; the arrow is the heading. Outside: where
 // the bearings point that match the nearest place.
 
-import { $, degrees, side, svg } from "./dom.js";
+import { $, degrees, side, svg } from "../page/dom.js";
 
 const RADIUS = 92;
 const NEAR_M = 0.5;
