@@ -30,7 +30,7 @@ class Gateway:
         missions: record of those that ended.
         store: client of the map store's REST interface.
         pictures: the one thread that decodes and encodes pictures: a large one needs 200 MB while it decodes.
-        uploads, imports, sockets: places for pictures and archives on their way in, and for WebSockets.
+        uploads, imports, sockets: slots for pictures and archives on their way in, and for WebSockets.
         stops: emergency stops that come faster than the service that drives should hear them.
     """
 

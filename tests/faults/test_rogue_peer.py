@@ -205,7 +205,7 @@ def test_rest_is_for_those_who_may_write_maps(secured):
     for holder in ("viewer", "planner", "drive"):
         with client(holder) as rest, pytest.raises(httpx.TransportError):
             rest.delete(f"/maps/{FLAT}")
-    stranger = httpx.Client(base_url=secured.rest_url, verify=False, trust_env=False)
-    with stranger as rest, pytest.raises(httpx.TransportError):
+    uncertified = httpx.Client(base_url=secured.rest_url, verify=False, trust_env=False)
+    with uncertified as rest, pytest.raises(httpx.TransportError):
         rest.get("/maps")
     assert write(secured.bus("planner"), action="read").revision == 1

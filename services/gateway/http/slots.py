@@ -1,4 +1,4 @@
-"""Places for what goes on at once, so many in all and so many for one client."""
+"""Slots for what goes on at once: so many in all, and so many for one client."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -12,8 +12,8 @@ class Slots:
 
     Args:
         what: name in refusals.
-        most: places in all.
-        most_per_client: places of one client, so that one cannot take them all.
+        most: slots in all.
+        most_per_client: slots of one client, so that one cannot take them all.
     """
 
     def __init__(self, what: str, most: int, most_per_client: int) -> None:
@@ -23,7 +23,7 @@ class Slots:
 
     @contextmanager
     def hold(self, client: str) -> Iterator[None]:
-        """Hold a place while the block runs.
+        """Hold a slot while the block runs.
 
         Raises:
             ProblemError: 503 all are taken, 429 this client has its share.

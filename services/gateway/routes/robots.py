@@ -75,7 +75,7 @@ async def show_truth(robot: RobotPath, gateway: GatewayDep) -> dict[str, Any]:
 
 @router.get("/api/robots/{robot}/true-positions")
 async def show_true_positions(robot: RobotPath, map_name: MapQuery, gateway: GatewayDep) -> TruePositions:
-    """Debug view of the simulation: where a map's places really are, as far as this gateway saw them made."""
+    """Debug view of the simulation: where a map's nodes really are, as far as this gateway saw them made."""
     view, timeout_s = known(gateway, robot), gateway.settings.compute_timeout_s
     reply = await gateway.asker.ask("map_store", MAP, MapRequest(action="read"), timeout_s, map=map_name)
     return TruePositions(map=map_name, positions=view.true_poses.of_nodes(reply.nodes))

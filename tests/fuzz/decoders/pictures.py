@@ -1,4 +1,4 @@
-"""Pictures of strangers: goal uploads, frames of cameras, textures of worlds."""
+"""Pictures as untrusted input: goal uploads, frames of cameras, textures of worlds."""
 
 import io
 from pathlib import Path

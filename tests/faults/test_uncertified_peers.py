@@ -46,7 +46,7 @@ def admitted(config):
     return not refused(config, ADMITTED_MS)
 
 
-def test_strangers_do_not_get_in(secured, tmp_path):
+def test_peers_without_a_certificate_of_ours_do_not_get_in(secured, tmp_path):
     ours = secured.certs / "drive"
     assert admitted(client_config(secured.endpoint, credentials_in(ours)))
     make(tmp_path / "foreign", everyone("r1"), dt.datetime.now(dt.UTC))
