@@ -5,6 +5,7 @@ reserves its canvas as soon as it is opened. Layouts: PNG (W3C, 11.2.2 IHDR), JP
 header), WebP (RFC 9649, 2.5 to 2.7).
 """
 
+import struct
 from typing import Literal, NamedTuple
 
 Format = Literal["png", "jpeg", "webp"]
@@ -40,15 +41,16 @@ def read_header(data: bytes) -> PictureHeader:
             return _jpeg(data)
         if data[:4] == b"RIFF" and data[8:12] == b"WEBP":
             return _webp(data)
-    except IndexError:
+    except (IndexError, struct.error):
         raise HeaderError("the picture ends within its header") from None
     raise HeaderError(f"the first bytes are {data[:8]!r}, not those of a PNG, JPEG or WebP")
 
 
 def _png(data: bytes) -> PictureHeader:
-    if data[12:16] != b"IHDR":
+    kind, width_px, height_px = struct.unpack_from(">4sII", data, 12)
+    if kind != b"IHDR":
         raise HeaderError("PNG without an IHDR chunk at its start")
-    return PictureHeader("png", _big(data, 16, 4), _big(data, 20, 4))
+    return PictureHeader("png", width_px, height_px)
 
 
 def _jpeg(data: bytes) -> PictureHeader:
@@ -62,34 +64,24 @@ def _jpeg(data: bytes) -> PictureHeader:
         marker = data[at]
         at += 1
         if marker in SOF_MARKERS:
-            return PictureHeader("jpeg", _big(data, at + 5, 2), _big(data, at + 3, 2))
+            height_px, width_px = struct.unpack_from(">HH", data, at + 3)
+            return PictureHeader("jpeg", width_px, height_px)
         if marker in (0xD9, 0xDA):
             raise HeaderError("JPEG without a frame header before its data")
         if marker not in BARE_MARKERS:
-            at += max(2, _big(data, at, 2))
+            (length,) = struct.unpack_from(">H", data, at)
+            at += max(2, length)
 
 
 def _webp(data: bytes) -> PictureHeader:
     kind = data[12:16]
-    if kind == b"VP8X":
-        return PictureHeader("webp", 1 + _little(data, 24, 3), 1 + _little(data, 27, 3))
+    if kind == b"VP8X":  # 24 bits each, less one
+        width, more_width, height, more_height = struct.unpack_from("<HBHB", data, 24)
+        return PictureHeader("webp", 1 + (more_width << 16 | width), 1 + (more_height << 16 | height))
     if kind == b"VP8L":
-        bits = _little(data, 21, 4)
+        (bits,) = struct.unpack_from("<I", data, 21)
         return PictureHeader("webp", 1 + (bits & 0x3FFF), 1 + (bits >> 14 & 0x3FFF))
     if kind == b"VP8 ":
-        return PictureHeader("webp", _little(data, 26, 2) & 0x3FFF, _little(data, 28, 2) & 0x3FFF)
+        width, height = struct.unpack_from("<HH", data, 26)
+        return PictureHeader("webp", width & 0x3FFF, height & 0x3FFF)
     raise HeaderError(f"WebP chunk VP8, VP8L or VP8X expected first, got {kind!r}")
-
-
-def _big(data: bytes, at: int, length: int) -> int:
-    return int.from_bytes(_slice(data, at, length), "big")
-
-
-def _little(data: bytes, at: int, length: int) -> int:
-    return int.from_bytes(_slice(data, at, length), "little")
-
-
-def _slice(data: bytes, at: int, length: int) -> bytes:
-    if at + length > len(data):
-        raise IndexError
-    return data[at : at + length]

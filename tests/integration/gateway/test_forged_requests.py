@@ -25,7 +25,7 @@ def guarded(endpoint: str, planner: Planner, tmp_path_factory: pytest.TempPathFa
 
 @pytest.fixture
 def page(guarded: str) -> Iterator[httpx.Client]:
-    """A browser in which an operator is signed in: it sends the pass along, whoever makes it ask."""
+    """A browser in which an operator is signed in: it sends the cookie along, whoever makes it ask."""
     with httpx.Client(base_url=guarded, trust_env=False, timeout=WAIT_S) as client:
         assert client.post("/api/session", headers=bearer("operator")).status_code == 200
         yield client
@@ -36,7 +36,7 @@ def page(guarded: str) -> Iterator[httpx.Client]:
 def test_a_form_of_another_site_starts_nothing(
     page: httpx.Client, planner: Planner, kind: str, origin: str | None
 ) -> None:
-    """Without Origin, as very old browsers send it, the missing token refuses what the pass cannot do."""
+    """Without Origin, as very old browsers send it, the missing token refuses what the session cannot do."""
     asked = len(planner.asked)
     headers = {"Content-Type": kind} | ({"Origin": origin} if origin else {})
     answer = page.post(START, content=b'{"action":"explore","map":"flat"}', headers=headers)
@@ -63,7 +63,7 @@ def test_no_page_elsewhere_may_read_answers(page: httpx.Client) -> None:
 
 
 @pytest.mark.parametrize("origin", ["http://evil.example", "null", "http://127.0.0.1:1"])
-def test_websockets_of_other_pages_are_refused_though_the_browser_sends_the_pass(
+def test_websockets_of_other_pages_are_refused_though_the_browser_sends_the_cookie(
     page: httpx.Client, guarded: str, origin: str
 ) -> None:
     cookie = "; ".join(f"{name}={value}" for name, value in page.cookies.items())

@@ -1,4 +1,4 @@
-"""Roles over real sockets: who may read, move robots, change maps; passes, authors, what a removal ends."""
+"""Roles over real sockets: who may read, move robots, change maps; sessions, authors, what a removal ends."""
 
 import contextlib
 import json
@@ -144,7 +144,7 @@ def test_a_map_is_changed_in_the_tokens_name(guarded: str, authors: tuple[str, l
     assert authors[1][-1] == NAMES["admin"]
 
 
-def test_a_pass_opens_reading_and_nothing_else(guarded: str) -> None:
+def test_a_session_opens_reading_and_nothing_else(guarded: str) -> None:
     with httpx.Client(base_url=guarded, trust_env=False, timeout=WAIT_S) as page:
         opened = page.post("/api/session", headers=bearer("admin"))
         assert opened.json() == {"guarded": True, "name": "ada", "role": "admin", "pass_s": 43200.0}
@@ -160,7 +160,7 @@ def test_a_pass_opens_reading_and_nothing_else(guarded: str) -> None:
         assert page.get("/api/robots").status_code == 401
 
 
-def test_a_websocket_wants_a_token_in_its_header_or_a_pass(guarded: str) -> None:
+def test_a_websocket_wants_a_token_in_its_header_or_a_session(guarded: str) -> None:
     for headers in ({}, {"Authorization": "Bearer wrong"}, {"Cookie": "topnav_pass=x"}):
         with pytest.raises(InvalidStatus) as caught:
             follow(guarded, **headers)
@@ -168,11 +168,11 @@ def test_a_websocket_wants_a_token_in_its_header_or_a_pass(guarded: str) -> None
         assert json.loads(caught.value.response.body)["title"] == "token required"
     with follow(guarded, **bearer("viewer")) as live:
         assert live.recv(timeout=WAIT_S)
-    pass_ = ask(guarded, "viewer", "POST", "/api/session").headers["set-cookie"].partition(";")[0]
-    with follow(guarded, Cookie=pass_, Origin=guarded) as live:
+    session = ask(guarded, "viewer", "POST", "/api/session").headers["set-cookie"].partition(";")[0]
+    with follow(guarded, Cookie=session, Origin=guarded) as live:
         assert live.recv(timeout=WAIT_S)
     with pytest.raises(InvalidStatus) as caught:
-        follow(guarded, Cookie=pass_, Origin="http://evil.example")
+        follow(guarded, Cookie=session, Origin="http://evil.example")
     assert caught.value.response.status_code == 403
 
 

@@ -1,4 +1,4 @@
-// Who sits here: the token of this tab, and the pass with which the page reads pictures and opens its WebSocket.
+// Who sits here: the token of this tab, and the cookie with which the page reads pictures and opens its WebSocket.
 
 import { $ } from "./dom.js";
 import { TEXT } from "./text.js";
@@ -16,7 +16,7 @@ export let locked = false;
 const session = (method, secret) =>
   fetch("/api/session", { method, headers: secret ? { Authorization: `Bearer ${secret}` } : {}, cache: "no-store" });
 
-/** Get a pass, and show who sits here; resolves to whether this page may read. */
+/** Get a session cookie, and show who sits here; resolves to whether this page may read. */
 export async function enter() {
   try {
     let answer = token() ? await session("POST", token()) : await session("GET");
