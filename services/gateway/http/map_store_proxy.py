@@ -20,6 +20,7 @@ from shared.web.problems import ProblemError
 
 AUTHOR = "x-topnav-author"
 AUTHOR_CHARACTERS = 64
+"""Twice what the map store takes, so that it says what is wrong."""
 SENT_ON = ("accept", "content-type", "if-match", "if-none-match", AUTHOR)
 SENT_BACK = ("content-type", "content-length", "content-disposition", "etag", "cache-control", "location")
 MAX_PROBLEM_BYTES = 64_000

@@ -1,23 +1,30 @@
 """From the bus's threads to asyncio: one thread waits on the bus and hands batches to the hub."""
 
 import asyncio
-import logging
 import threading
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 from services.gateway.live.hub import Hub
 from shared.bus import Bus
 from shared.messages.base import Message
-from shared.topics import COMMAND, EVENT, FRAME, HEADING, NAME, RANGES, STATUS, STOPPED, TRUTH
-
-log = logging.getLogger(__name__)
+from shared.topics import COMMAND, EVENT, FRAME, HEADING, NAME, RANGES, STATUS, STOPPED, TRUTH, Topic
 
 PERIOD_S = 0.25
+"""Chosen: the bus wakes the thread for whatever it carries; this is for what does not."""
 DELIVERY_S = 5.0
+"""As GATEWAY_SEND_TIMEOUT_S: asyncio's thread is never busy for longer."""
 BEAT_S = 2.0
+"""A third of the silence after which the console connects again, less what a beat may be late."""
 
-Follow = Callable[[], Sequence[Message]]
+QUEUED: tuple[Topic[Any], ...] = (STATUS, EVENT, TRUTH)
+NEWEST: tuple[Topic[Any], ...] = (FRAME, RANGES, HEADING, COMMAND, STOPPED)
+"""Of these an inbox keeps the newest only: under '*' robots would displace each other."""
+TELLING: tuple[Topic[Any], ...] = (RANGES, STOPPED)
+"""Of these enough arrives under '*' to tell that there is another robot."""
+
+Inbox = Callable[[], Sequence[Message]]
 """Takes all that waits in one inbox."""
 
 
@@ -50,13 +57,8 @@ class Bridge:
         self._max_robots = max_robots
         self._stop = threading.Event()
         self._alive = Alive(bus.wake)
-        self._followed: dict[str, tuple[Follow, ...]] = {}
-        self._everyone: tuple[Follow, ...] = (
-            bus.subscribe(STATUS, robot="*").take_all,
-            bus.subscribe(EVENT, robot="*").take_all,
-            bus.subscribe(TRUTH, robot="*").take_all,
-        )
-        self._sensing, self._stopping = bus.subscribe(RANGES, robot="*"), bus.subscribe(STOPPED, robot="*")
+        self._followed: dict[str, tuple[Inbox, ...]] = {}
+        self._queued, self._telling = self._subscribed(QUEUED, "*"), self._subscribed(TELLING, "*")
         self._follow(robot)
         bus.watch_alive(self._alive.change)
         self._thread = threading.Thread(target=self._run, name="bridge", daemon=True)
@@ -82,28 +84,19 @@ class Bridge:
                 self._deliver(messages, None)
 
     def _collect(self) -> list[Message]:
-        for ranges in self._sensing.take_all():
-            self._follow(ranges.robot)
-        for stopped in self._stopping.take_all():
-            self._follow(stopped.robot)
-        messages = [message for take in self._everyone for message in take()]
-        for message in messages:
+        messages = _all_of(self._queued)
+        for message in (*_all_of(self._telling), *messages):
             self._follow(str(getattr(message, "robot", "")))
-        for streams in self._followed.values():
-            messages += [message for take in streams for message in take()]
+        for inboxes in self._followed.values():
+            messages += _all_of(inboxes)
         return messages
 
     def _follow(self, robot: str) -> None:
-        """Subscribe to what keeps the newest only: under '*' robots would displace each other."""
-        if robot in self._followed or len(self._followed) >= self._max_robots or not NAME.match(robot):
-            return
-        self._followed[robot] = (
-            self._bus.subscribe(FRAME, robot=robot).take_all,
-            self._bus.subscribe(RANGES, robot=robot).take_all,
-            self._bus.subscribe(HEADING, robot=robot).take_all,
-            self._bus.subscribe(COMMAND, robot=robot).take_all,
-            self._bus.subscribe(STOPPED, robot=robot).take_all,
-        )
+        if robot not in self._followed and len(self._followed) < self._max_robots and NAME.match(robot):
+            self._followed[robot] = self._subscribed(NEWEST, robot)
+
+    def _subscribed(self, topics: Iterable[Topic[Any]], robot: str) -> tuple[Inbox, ...]:
+        return tuple(self._bus.subscribe(topic, robot=robot).take_all for topic in topics)
 
     def _deliver(self, messages: list[Message], services: dict[str, int] | None) -> bool:
         """Hand over and wait until taken: under load the bounded inboxes fill, not asyncio's queue."""
@@ -123,3 +116,7 @@ class Bridge:
             self._stop.set()
             return False
         return taken.wait(DELIVERY_S)
+
+
+def _all_of(inboxes: Iterable[Inbox]) -> list[Message]:
+    return [message for take_all in inboxes for message in take_all()]

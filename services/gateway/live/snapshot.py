@@ -9,6 +9,7 @@ from shared.messages.sensors import Frame
 from shared.web.problems import ProblemError
 
 QUALITY = 80
+"""Chosen: of JPEG, for the eye."""
 
 
 def jpeg_of(frame: Frame, width_px: int | None) -> bytes:

@@ -10,6 +10,7 @@ Position = tuple[float, float, float]
 """x and y in metres, yaw in radians, frame of the simulated world."""
 
 FRAMES_KEPT = 50_000
+"""Nearly three hours of the simulator's five frames a second, in 14 MB."""
 
 
 class TruePoses:

@@ -14,8 +14,9 @@ from shared.topics import MATCH
 router = APIRouter(tags=["goals"])
 
 BEST_K = 5
+"""Nodes in an answer; chosen: as many as fit beside the picture in the console."""
 SURE = 0.5
-"""Confidence from which on the answer says "found": advice to people, the planner decides itself."""
+"""Confidence from which on the answer says "found": advice to people (chosen), the planner decides itself."""
 
 FILE = {"type": "string", "format": "binary"}
 PICTURE_BODY: dict[str, Any] = {

@@ -16,9 +16,13 @@ from shared.web.problems import ProblemError
 router = APIRouter(tags=["live"])
 
 CLOSE_S = 1.0
+"""Chosen: how long a reader that has to leave may take to say goodbye."""
 POLICY, TRY_LATER = 1008, 1013
+"""Close codes, RFC 6455, 7.4, and IANA's registry."""
 PACE_S = 0.04
+"""Between two batches of news: 25 a second look like motion."""
 PACE_PER_SOCKET_S = 0.002
+"""500 readers get a batch a second each, and drive does not notice (tests/benchmarks/test_gateway_load.py)."""
 
 
 @router.websocket("/api/robots/{robot}/live")

@@ -17,8 +17,9 @@ from shared.runs import CommandRun, Figure
 router = APIRouter(tags=["runs"])
 
 MAX_FILE_BYTES = 64_000
+"""Chosen: the record of a command has a few hundred."""
 MAX_BROKEN = 1000
-"""After so many files that cannot be read no further one is tried."""
+"""After so many files that cannot be read no further one is tried; chosen."""
 FINISHED = "finished"
 
 

@@ -28,7 +28,9 @@ MAX_SCANS: Final = 100
 BAND_ROWS: Final = 64
 """Rows of the result converted at a time: a large picture shall not be there in several modes at once."""
 MIN_WIDTH_PX: Final = 128
+"""Chosen: 3 degrees a pixel; less shows no place."""
 MAX_WIDTH_PX: Final = 2048
+"""Twice the width of the simulated camera's pictures, with which the pipelines' figures were measured."""
 PILLOW_FORMATS: Final = {"png": ("PNG",), "jpeg": ("JPEG",), "webp": ("WEBP",)}
 
 Bgr = npt.NDArray[np.uint8]
