@@ -132,7 +132,7 @@ def test_an_edge_shows_both_pictures_and_its_matches(page: Any, explored: Explor
     page.wait_for_selector("#pair-answer[data-drawn]", timeout=WAIT_MS)
     assert re.search(r"\d+ of \d+ matches agree", page.inner_text("#pair-answer"))
     assert page.evaluate(COLOURS) > 100
-    page.click("#inspector button:text-is('Place 1')")
+    page.click("#inspector button:text-is('Node 1')")
     page.wait_for_selector("#inspector figure canvas", timeout=WAIT_MS)
     with page.expect_response(lambda answer: "/true-positions" in answer.url, timeout=WAIT_MS):
         page.check("#true-positions")
@@ -167,7 +167,7 @@ def test_a_deleted_place_comes_back_by_undo_and_the_history_says_who(copy_of_map
     page.locator("#revisions input[type=checkbox]").nth(0).check()
     page.locator("#revisions input[type=checkbox]").nth(1).check()
     page.click("#compare")
-    page.wait_for_selector("#comparison:has-text('1 places added')", timeout=WAIT_MS)
+    page.wait_for_selector("#comparison:has-text('1 nodes added')", timeout=WAIT_MS)
 
 
 def test_the_stop_button_stops_until_a_person_lets_the_robot_go(page: Any) -> None:

@@ -64,7 +64,7 @@ function showMap(name) {
   if (name) goal.check();
 }
 
-/** A decision in the timeline: its step in the charts, its places in the map. */
+/** A decision in the timeline: its step in the charts, its nodes in the map. */
 function showMoment(event) {
   if (views.name !== "why") views.go("why");
   history.mark(event.step);

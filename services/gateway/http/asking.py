@@ -3,9 +3,10 @@
 import asyncio
 import threading
 from concurrent.futures import ThreadPoolExecutor
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
 from services.gateway.http.metrics import Metrics
+from shared.bus import Bus
 from shared.messages.base import Message
 from shared.queries import AbsentError, RefusedError, TimedOutError
 from shared.topics import Query
@@ -21,17 +22,10 @@ MAX_WAITING = 3 * THREADS
 """Questions on their way; more are refused at once instead of piling up behind a service that hangs."""
 
 
-class Asks(Protocol):
-    """The part of the bus that asks."""
-
-    def ask(self, query: Query[Q, R], request: Q, timeout_s: float, **names: str) -> R:
-        """Ask and wait."""
-
-
 class Asker:
     """Asks on threads; raises `ProblemError` where the bus raises its own errors."""
 
-    def __init__(self, bus: Asks, metrics: Metrics) -> None:
+    def __init__(self, bus: Bus, metrics: Metrics) -> None:
         self._bus, self._metrics = bus, metrics
         self._pool = ThreadPoolExecutor(THREADS, thread_name_prefix="ask")
         self._waiting = 0

@@ -98,7 +98,7 @@ def test_picture_status_and_decisions_are_live(page: "Page", robot_bus: Bus, pla
         via_points=(0, 1, -1),
         nearest_node=1,
     )
-    path = page.locator("#path-text:text-is('path 0 → 1 → goal; robot near place 1')")
+    path = page.locator("#path-text:text-is('path 0 → 1 → goal; robot near node 1')")
 
     def drawn() -> bool:
         statuses.put(planner.status)

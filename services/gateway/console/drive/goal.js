@@ -5,7 +5,7 @@ import { $, html, side, table } from "../page/dom.js";
 import { TEXT } from "../page/text.js";
 
 export class Goal {
-  /** `where()` gives robot and map, `found(ids)` hears which places match, `started(status)` of the mission. */
+  /** `where()` gives robot and map, `found(ids)` hears which nodes match, `started(status)` of the mission. */
   constructor(where, found, started) {
     this.where = where;
     this.found = found;
@@ -97,7 +97,7 @@ export class Goal {
     });
     $("goal-answer").replaceChildren(
       html("p", { class: `verdict ${answer.verdict}` }, TEXT.verdict[answer.verdict]),
-      rows.length ? table(TEXT.goalColumns, rows) : html("p", { class: "answer" }, TEXT.noPlace),
+      rows.length ? table(TEXT.goalColumns, rows) : html("p", { class: "answer" }, TEXT.noNode),
     );
     $("go").disabled = false;
     this.found(answer.nodes.filter((node) => node.status === "ok" || node.status === "no_baseline").map((node) => node.node_id));

@@ -1,4 +1,4 @@
-// Keypoints of the live picture that match the place nearest to the robot, once a second while somebody looks.
+// Keypoints of the live picture that match the node nearest to the robot, once a second while somebody looks.
 
 import { get } from "../page/api.js";
 import { $, svg } from "../page/dom.js";
@@ -36,7 +36,7 @@ export class Matches {
     try {
       this.show(await get(`/api/robots/${robot}/matches?map=${this.map}&node=${this.nearest}`));
     } catch {
-      this.show(null); // the frame is gone, or the place: the next one may do
+      this.show(null); // the frame is gone, or the node: the next one may do
     } finally {
       this.asking = false;
     }

@@ -1,5 +1,5 @@
 // Twelve distances seen from above, ahead is up, counter-clockwise is left; the arrow is the heading. Outside: where
-// the bearings point that match the nearest place.
+// the bearings point that match the nearest node.
 
 import { $, degrees, side, svg } from "../page/dom.js";
 

@@ -1,4 +1,4 @@
-// The map as a drawing (cytoscape): drag to pan, wheel to zoom, click a place or a connection.
+// The map as a drawing (cytoscape): drag to pan, wheel to zoom, click a node or an edge.
 
 import { get } from "../page/api.js";
 import { $ } from "../page/dom.js";
@@ -85,13 +85,13 @@ export class Graph {
     if (changed && status.map === this.map) this.loadSoon();
   }
 
-  /** Halo the places a goal picture resembles. */
+  /** Halo the nodes a goal picture resembles. */
   highlight(ids) {
     this.seen = new Set(ids);
     this.paint();
   }
 
-  /** Mark a place or a connection and bring it into sight. */
+  /** Mark a node or an edge and bring it into sight. */
   choose({ node, edge }) {
     this.cy.elements(".chosen").removeClass("chosen");
     const id = node !== undefined ? `n${node}` : edge ? `e${edge[0]}-${edge[1]}` : null;
@@ -190,7 +190,7 @@ export class Graph {
     }));
   }
 
-  /** Colours of the path, the robot's nearest place and the goal. */
+  /** Colours of the path, the robot's nearest node and the goal. */
   paint() {
     const path = this.path();
     this.cy.getElementById("goal").remove();

@@ -1,4 +1,4 @@
-// How places and connections look; the colours are those of the style sheet, light or dark.
+// How nodes and edges look; the colours are those of the style sheet, light or dark.
 
 export function look() {
   const colours = getComputedStyle(document.documentElement);

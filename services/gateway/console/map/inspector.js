@@ -1,4 +1,4 @@
-// What is known of one place or one connection: pictures, evidence, and what can be done with it.
+// What is known of one node or one edge: pictures, evidence, and what can be done with it.
 
 import { call, get } from "../page/api.js";
 import { confirmed } from "../page/ask.js";
@@ -21,14 +21,14 @@ export class Inspector {
     document.body.classList.remove("inspecting");
   }
 
-  /** "12" is a place, "3-12" a connection. A map that is still on its way is waited for. */
+  /** "12" is a node, "3-12" an edge. A map that is still on its way is waited for. */
   async find(text) {
     if (this.graph.revision === null) await this.graph.load();
     const [a, b] = text.split(/[\s,-]+/).map(Number);
     const edge = b !== undefined && this.graph.edges.find((one) => one.a === Math.min(a, b) && one.b === Math.max(a, b));
     if (edge) this.open({ edge: [edge.a, edge.b] });
     else if (b === undefined && this.graph.nodes.some((node) => node.node_id === a)) this.open({ node: a });
-    else this.say(TEXT.unknownPlace(text));
+    else this.say(TEXT.unknown(text));
   }
 
   open(what) {
@@ -36,7 +36,7 @@ export class Inspector {
     this.graph.choose(what);
     const content = what.edge ? this.edge(...what.edge) : this.node(what.node);
     if (!content) return this.close();
-    const title = what.edge ? TEXT.edge(...what.edge) : TEXT.place(what.node);
+    const title = what.edge ? TEXT.edge(...what.edge) : TEXT.node(what.node);
     const close = html("button", { type: "button", "aria-label": TEXT.close, onclick: () => this.close() }, "✕");
     $("inspector").replaceChildren(html("div", { class: "head" }, html("h2", { id: "inspector-title" }, title), close), ...content);
     $("inspector").hidden = false;
@@ -52,7 +52,7 @@ export class Inspector {
     this.overlay(picture, id);
     return [
       picture,
-      html("p", { class: "quiet" }, TEXT.placeFacts(node.keypoints ?? 0, open)),
+      html("p", { class: "quiet" }, TEXT.nodeFacts(node.keypoints ?? 0, open)),
       this.edgesOf(id),
       html("div", { class: "row" },
         html("button", { type: "button", class: "primary", id: "go-there", onclick: () => this.goThere(id) }, TEXT.goThere),
@@ -82,7 +82,7 @@ export class Inspector {
 
   edgesOf(id) {
     const edges = this.graph.edges.filter((edge) => edge.a === id || edge.b === id);
-    if (!edges.length) return html("p", { class: "quiet" }, TEXT.noConnections);
+    if (!edges.length) return html("p", { class: "quiet" }, TEXT.noEdges);
     const rows = edges.sort((one, two) => two.inliers - one.inliers).map((edge) => {
       const there = edge.a === id ? edge.b : edge.a;
       const heading = edge.a === id ? edge.heading_ab_rad : edge.heading_ba_rad;
@@ -100,7 +100,7 @@ export class Inspector {
     this.compare(a, b, canvas, answer);
     const facts = ["why", "traversals", "failures", "clear", "raw_matches", "inliers", "confidence", "revision"].map((name) =>
       [name.replaceAll("_", " "), typeof edge[name] === "number" ? String(+edge[name].toFixed(2)) : String(edge[name] ?? "–")]);
-    const ends = [a, b].map((id) => html("button", { type: "button", onclick: () => this.open({ node: id }) }, TEXT.place(id)));
+    const ends = [a, b].map((id) => html("button", { type: "button", onclick: () => this.open({ node: id }) }, TEXT.node(id)));
     return [canvas, answer,
       html("p", {}, `${TEXT.headings(side(edge.heading_ab_rad), side(edge.heading_ba_rad))}${edge.suspended ? `; ${TEXT.suspended}` : ""}`),
       table(TEXT.evidenceColumns, facts),

@@ -1,4 +1,4 @@
-// Positions for a map that has none: from the headings between its places, then relaxed. Pure.
+// Positions for a map that has none: from the headings between its nodes, then relaxed. Pure.
 //
 // Edge a-b: heading_ab in a's camera frame, heading_ba in b's, yaw_ab the turn from a's camera to b's. With theta_a the
 // direction a's camera looks to, b lies at theta_a + heading_ab and looks to theta_a + yaw_ab. Lengths are unknown: 1.
@@ -24,7 +24,7 @@ export function place(nodes, edges, before = new Map()) {
   return spots;
 }
 
-/** Which way every place's camera looked, along a spanning tree of the surest edges; with the parent it hangs on. */
+/** Which way every node's camera looked, along a spanning tree of the surest edges; with the parent it hangs on. */
 function orient(ids, links) {
   const sure = [...links].sort((one, two) => (two.confidence || 0) - (one.confidence || 0));
   const around = new Map(ids.map((id) => [id, []]));

@@ -36,7 +36,7 @@ export class Views {
     location.hash = view;
   }
 
-  /** Alt and a digit choose a view; "/" goes to the search of places. */
+  /** Alt and a digit choose a view; "/" goes to the search of nodes. */
   key(event) {
     const typing = event.target.closest?.("input, select, textarea, dialog");
     if (event.altKey && this.tabs[Number(event.key) - 1]) {
