@@ -22,7 +22,7 @@ POLICY, TRY_LATER = 1008, 1013
 PACE_S = 0.04
 """Between two batches of news: 25 a second look like motion."""
 PACE_PER_SOCKET_S = 0.002
-"""500 readers get a batch a second each, and drive does not notice (tests/benchmarks/test_gateway_load.py)."""
+"""500 readers get one batch a second each; drive does not notice (tests/benchmarks/test_gateway_load.py)."""
 
 
 @router.websocket("/api/robots/{robot}/live")
