@@ -18,7 +18,7 @@ from services.launcher.terminal.output import rounded
 from shared.messages.matching import MatchRequest, NodeMatch
 
 TRACKED = 4
-"""Places compared on a way: those ahead and around (services/planner/travel/following.py)."""
+"""Places compared on a way: those ahead and around (services/planner/travel/path_follower.py)."""
 
 
 @dataclass(frozen=True)

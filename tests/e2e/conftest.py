@@ -19,6 +19,8 @@ STEPS = 60
 PATIENT = {"GATEWAY_ASK_TIMEOUT_S": "60", "GATEWAY_COMPUTE_TIMEOUT_S": "60"}
 """On a busy machine services stand still for seconds; the console shall not call them slow for that."""
 
+OWN = {"PLANNER_MISSIONS_FOLDER": str(Path(__file__).with_name("own_missions"))}
+
 
 @dataclass(frozen=True)
 class Explored:
@@ -36,7 +38,7 @@ def explored(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Explored]:
     """A part of the apartment, explored in a limited number of steps."""
     data_dir = tmp_path_factory.mktemp("stack")
     space = free_space(load_world(WORLD))
-    with open_stack(StackChoice(data_dir, WORLD, seed=1, lockstep=True, environment=PATIENT)) as stack:
+    with open_stack(StackChoice(data_dir, WORLD, seed=1, lockstep=True, environment=PATIENT | OWN)) as stack:
         result = explore(stack, WORLD, MAP, seed=1, max_steps=STEPS)
         game = Game(stack, space, MAP, np.random.default_rng(1))
         yield Explored(stack, space, result, game, data_dir)

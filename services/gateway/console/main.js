@@ -102,12 +102,16 @@ function heard(type, data) {
   else if (type === "command") { polar.takeCommand(data); history.takeCommand(data); }
   else if (type === "estop") estop.take(data);
   else if (type === "event") events.take(data);
-  else if (type === "services") showServices(data);
+  else if (type === "services") {
+    showServices(data);
+    if (data.planner) mission.learn();
+  }
   else if (type === "status") {
     mission.take(data);
     graph.takeStatus(data);
     matches.takeStatus(data);
     history.takeStatus(data);
+    $("travel").textContent = TEXT.travel(data.travel, data.travel_reason);
     if (data.state === "running" && data.map !== maps.name && !maps.names.includes(data.map)) maps.want(data.map);
   }
 }
@@ -143,6 +147,7 @@ function follow(name) {
   robot = name;
   for (const part of [panorama, polar, events, mission, history, matches, estop]) part.clear();
   graph.status = null;
+  $("travel").textContent = "";
   live.follow(name);
 }
 

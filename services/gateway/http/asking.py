@@ -35,7 +35,7 @@ class Asker:
         """Ask `service`.
 
         Raises:
-            ProblemError: 503 absent or busy, 504 too slow, 409 refused, 502 answered nonsense.
+            ProblemError: 503 absent or busy, 504 too slow, 409 refused (422 for good), 502 answered nonsense.
         """
         if self._waiting >= MAX_WAITING:
             expected, got = f"at most {MAX_WAITING} questions on their way", str(self._waiting)
@@ -90,4 +90,5 @@ def bad_answer(service: str, expected: str, got: str) -> ProblemError:
 def _refused(service: str, error: RefusedError) -> ProblemError:
     expected, got = f"a request {service} can carry out", str(error)[:300]
     next_step = "change what the service objects to"
-    return ProblemError(409, "refused", expected, got, next_step, service=service, reason=error.code)
+    status = 422 if error.code == "invalid" else 409
+    return ProblemError(status, "refused", expected, got, next_step, service=service, reason=error.code)

@@ -6,9 +6,9 @@ from typing import Literal, Self
 from pydantic import AwareDatetime, BaseModel, ConfigDict
 
 from shared.messages.missions import MissionStatus
+from shared.runs import Figure
 
 ENDS = ("succeeded", "failed", "cancelled")
-KINDS = ("explore", "goto")
 MAX_ID = 64
 
 Key = tuple[str, str]
@@ -22,6 +22,8 @@ class MissionEntry(BaseModel):
         seed: None for a mission that was not started through this gateway.
         started: when the gateway first heard of it; None when all it heard was the end.
         ended: when the gateway heard of the end.
+        kind: of mission; it stays readable where no planner knows it any more.
+        figures: what a mission of this kind shows; None in entries from before kinds said so.
         outcome: "succeeded", "failed" or "cancelled"; for "failed", `failure` says of what kind.
     """
 
@@ -29,16 +31,17 @@ class MissionEntry(BaseModel):
 
     mission_id: str
     robot: str
-    kind: Literal["explore", "goto"]
+    kind: str
     map: str
     seed: int | None = None
     started: AwareDatetime | None = None
     ended: AwareDatetime
     steps: int
-    nodes: int
-    edges: int
-    open_directions: int
-    similarity: int
+    nodes: int = 0
+    edges: int = 0
+    open_directions: int = 0
+    similarity: int = 0
+    figures: dict[str, Figure] | None = None
     outcome: Literal["succeeded", "failed", "cancelled"]
     failure: str = ""
     reason: str = ""
@@ -53,7 +56,8 @@ class MissionEntry(BaseModel):
         """The entry of a mission whose last status this is."""
         return cls.model_validate(
             {
-                **status.model_dump(include=set(cls.model_fields)),
+                **status.model_dump(include=set(cls.model_fields) - {"figures"}),
+                "figures": {one.name: one.value for one in status.figures if one.value is not None} or None,
                 "kind": status.action,
                 "steps": status.step,
                 "outcome": status.state,
@@ -86,7 +90,7 @@ class MissionWatch:
         robot, mission_id = status.robot, status.mission_id
         first = robot not in self._heard
         self._heard.add(robot)
-        if status.action not in KINDS or not 0 < len(mission_id) <= MAX_ID:
+        if not status.action or not 0 < len(mission_id) <= MAX_ID:
             return None
         begun = self._begun.get(robot, ("", now))
         if status.state not in ENDS:

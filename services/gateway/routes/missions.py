@@ -3,10 +3,10 @@
 import asyncio
 import contextlib
 import time
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query, Request, Response
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field
 
 from services.gateway.http.bodies import json_body, read_json
 from services.gateway.live.hub import RobotView
@@ -14,8 +14,15 @@ from services.gateway.routes.goals import PICTURE_BODY
 from services.gateway.routes.robots import known
 from services.gateway.state import Gateway, GatewayDep, MapQuery, RobotPath
 from services.gateway.uploads.goal import goal_of
-from shared.messages.missions import MissionRequest, MissionStatus
-from shared.topics import MISSION
+from shared.messages.missions import (
+    CONTROLS,
+    MissionKindInfo,
+    MissionKindsRequest,
+    MissionRequest,
+    MissionStatus,
+    Parameters,
+)
+from shared.topics import MISSION, MISSION_KINDS
 from shared.web.problems import ProblemError
 
 router = APIRouter(tags=["missions"])
@@ -30,21 +37,30 @@ MissionId = Annotated[str, Query(max_length=64)]
 
 
 class StartMission(BaseModel):
-    """Body of a start. A goto by picture goes to /missions/goto instead."""
+    """Body of a start. A goto by picture goes to /missions/goto instead.
+
+    Attributes:
+        action: the kind of mission, one of /api/robots/{robot}/mission-kinds.
+        parameters: of the kind; the planner checks them.
+        goal_node: the parameter of that name.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    action: Literal["explore", "goto"]
+    action: str = Field(pattern=r"^[a-z0-9_-]{1,64}$")
     map: str = Field(pattern=r"^[a-z0-9_-]{1,64}$")
     seed: Seed = 0
+    parameters: Parameters = Field(default_factory=dict)
     goal_node: int | None = Field(default=None, ge=0, lt=2**63)
     max_steps: Steps = 20_000
 
-    @model_validator(mode="after")
-    def _goal_fits(self) -> Self:
-        if (self.action == "goto") != (self.goal_node is not None):
-            raise ValueError("goto needs goal_node (or a picture at /missions/goto); explore takes none")
-        return self
+
+@router.get("/api/robots/{robot}/mission-kinds")
+async def show_kinds(robot: RobotPath, gateway: GatewayDep) -> list[MissionKindInfo]:
+    """What the robot can be asked to do: kinds of mission, with a JSON Schema of their parameters."""
+    timeout_s = gateway.settings.ask_timeout_s
+    reply = await gateway.asker.ask("planner", MISSION_KINDS, MissionKindsRequest(), timeout_s, robot=robot)
+    return list(reply.kinds)
 
 
 class WaitAnswer(BaseModel):
@@ -58,8 +74,14 @@ class WaitAnswer(BaseModel):
 async def start(
     request: Request, robot: RobotPath, gateway: GatewayDep, response: Response
 ) -> dict[str, Any]:
-    """Start exploring, or drive to a node of the map."""
+    """Start a mission of a kind that the planner knows, with its parameters."""
     wish = await read_json(request, StartMission, gateway.settings.upload_timeout_s)
+    if wish.action in CONTROLS:
+        expected, next_step = (
+            "a kind of mission",
+            f"steer with POST /api/robots/{robot}/missions/{wish.action}",
+        )
+        raise ProblemError(422, "invalid_request", expected, wish.action, next_step)
     response.headers["Location"] = f"/api/robots/{robot}/mission"
     return _facts(await _start(gateway, robot, MissionRequest(**wish.model_dump())))
 
@@ -167,7 +189,8 @@ async def _ask(gateway: Gateway, robot: str, wish: MissionRequest) -> MissionSta
         raise
     finally:
         if wish.action != "status":
-            gateway.metrics.missions.labels(wish.action, outcome).inc()
+            known_name = outcome == "accepted" or wish.action in CONTROLS  # a label from outside has no bound
+            gateway.metrics.missions.labels(wish.action if known_name else "start", outcome).inc()
 
 
 def _facts(status: MissionStatus) -> dict[str, Any]:

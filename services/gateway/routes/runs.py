@@ -28,7 +28,7 @@ class Run(BaseModel):
 
     Attributes:
         id: unique, and the same each time it is listed.
-        kind: "explore" or "goto"; of a command its first word, "explore", "hide-and-seek" or "study".
+        kind: of mission; of a command its first word, "explore", "hide-and-seek" or "study".
         title: for people.
         started: None when only the end is known.
         outcome: "succeeded", "failed", "cancelled"; "finished" for a command that does not judge itself.
@@ -85,11 +85,18 @@ def from_mission(entry: MissionEntry) -> Run:
         ended=entry.ended,
         outcome=entry.outcome,
         figures={
-            **{name: getattr(entry, name) for name in ("steps", "nodes", "edges", "open_directions")},
-            "similarity": entry.similarity,
+            "steps": entry.steps,
+            **_shown(entry),
             **{name: value for name, value in named.items() if value is not None},
         },
     )
+
+
+def _shown(entry: MissionEntry) -> dict[str, Figure]:
+    """What its kind shows; of an entry from before kinds said so what was kept of all."""
+    if entry.figures is not None:
+        return entry.figures
+    return {name: getattr(entry, name) for name in ("nodes", "edges", "open_directions", "similarity")}
 
 
 def from_command(name: str, run: CommandRun) -> Run:

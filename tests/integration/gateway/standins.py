@@ -9,12 +9,13 @@ import uvicorn
 from fastapi import FastAPI, Request
 from fastapi.responses import JSONResponse, Response
 
+from services.planner.mission_kinds import MissionError, mission_kinds
 from shared.bus import Bus, open_bus, wait_until
 from shared.messages.features import ExtractRequest, Features
 from shared.messages.maps import MapReply, NodeFeatures
 from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
-from shared.messages.missions import MissionRequest, MissionStatus
-from shared.topics import EXTRACT, MAP, MATCH, MISSION, STATUS
+from shared.messages.missions import CONTROLS, MissionKinds, MissionRequest, MissionStatus
+from shared.topics import EXTRACT, MAP, MATCH, MISSION, MISSION_KINDS, STATUS
 from tests.integration.gateway.gateway_process import WAIT_S
 
 PIPELINE = "standin/1"
@@ -121,8 +122,11 @@ class MapStore:
         return turn
 
 
+KINDS = mission_kinds()
+
+
 class Planner:
-    """Answers MISSION and publishes the status."""
+    """Answers MISSION and MISSION_KINDS, and publishes the status."""
 
     def __init__(self, robot: str = "r1") -> None:
         self.asked: list[MissionRequest] = []
@@ -135,16 +139,20 @@ class Planner:
 
     def setup(self, bus: Bus) -> Callable[[], None]:
         requests = bus.requests(MISSION, robot=self.status.robot)
+        kinds = bus.requests(MISSION_KINDS, robot=self.status.robot)
         statuses = bus.publisher(STATUS, robot=self.status.robot)
 
         def turn() -> None:
             while self._wanted:
                 self.status = self._wanted.pop(0)
                 statuses.put(self.status)
+            while (question := kinds.take()) is not None:
+                question.reply(MissionKinds(kinds=KINDS.infos()))
             while (request := requests.take()) is not None:
-                self._answer(request.message)
-                if request.message.goal_node == 404:
-                    request.refuse("map 'flat' has no node 404")
+                try:
+                    self._answer(request.message)
+                except MissionError as error:
+                    request.refuse(str(error), error.code)
                 else:
                     request.reply(self.status)
 
@@ -153,7 +161,10 @@ class Planner:
     def _answer(self, wish: MissionRequest) -> None:
         self.asked.append(wish)
         states = {"pause": "paused", "cancel": "cancelled"}
-        if wish.action in ("explore", "goto"):
+        if wish.goal_node == 404:
+            raise MissionError("the map has no node 404", "missing")
+        if wish.action not in CONTROLS:
+            assert KINDS[wish.action].name == wish.action
             changes = {"mission_id": "m1", "action": wish.action, "map": wish.map, "state": "running"}
             self.status = self.status.model_copy(update=changes)
         elif wish.action != "status":

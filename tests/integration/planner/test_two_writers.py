@@ -5,8 +5,9 @@ import time
 from itertools import pairwise
 
 import pytest
-from services.planner.mapping.places import Edges, add_node
 
+from services.planner.mapping.edges import NewEdges
+from services.planner.mapping.nodes import add_node
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT
 from services.planner.remote import RemoteMap
@@ -68,7 +69,7 @@ def test_a_planner_knows_its_new_place_by_the_id_that_it_got(two):
     angles_rad = tuple(sector_rad(n) for n in range(SECTORS))
     ranges = Ranges(robot="r2", angles_rad=angles_rad, distances_m=(4.0,) * SECTORS, max_range_m=4.0)
     seen = Observation(FEATURES.model_copy(update={"stamp_ns": 3}), ranges)
-    node_id, _ = add_node(second, seen, Edges(), DEFAULT, None)
+    node_id, _ = add_node(second, seen, NewEdges(), DEFAULT, None)
     assert (node_id, second.graph.nodes[node_id].stamp_ns) == (2, 3)
 
 

@@ -1,8 +1,9 @@
 // The mission: what it is, how it stands, and the buttons that steer it.
 
-import { post } from "../page/api.js";
+import { get, post } from "../page/api.js";
 import { $, html } from "../page/dom.js";
 import { TEXT } from "../page/text.js";
+import { field, values } from "./parameters.js";
 
 const BUSY = ["running", "paused"];
 
@@ -10,13 +11,16 @@ export class Mission {
   constructor(where, started) {
     this.where = where;
     this.started = started;
-    $("explore-form").addEventListener("submit", (event) => { event.preventDefault(); this.explore(); });
+    this.kinds = [];
+    $("mission-form").addEventListener("submit", (event) => { event.preventDefault(); this.start(); });
+    $("mission-kind").addEventListener("change", () => this.choose());
     for (const action of ["pause", "resume", "cancel"]) $(action).addEventListener("click", () => this.steer(action));
     this.clear();
   }
 
   clear() {
     this.status = null;
+    this.kinds = [];
     $("state").textContent = "unknown";
     $("state").className = "state";
     $("mission-facts").textContent = TEXT.missionUnheard;
@@ -33,23 +37,51 @@ export class Mission {
 
   facts(status) {
     if (!status.mission_id) return [TEXT.missionNone];
-    const what = TEXT.missionWhat[status.action] || TEXT.missionAny;
-    return [html("b", {}, `${what} in ${status.map}`), html("br"), TEXT.missionFacts(status), html("br"),
+    return [html("b", {}, TEXT.missionWhat(this.title(status.action), status.map)), html("br"), TEXT.missionFacts(status), html("br"),
       html("span", { class: "quiet" }, status.reason || ""), ];
   }
 
   enable() {
     const state = this.status?.state;
-    $("explore").disabled = BUSY.includes(state);
+    $("start").disabled = BUSY.includes(state) || !this.kinds.length;
     $("pause").disabled = state !== "running";
     $("resume").disabled = state !== "paused";
     $("cancel").disabled = !BUSY.includes(state);
   }
 
-  explore() {
+  /** What the planner can be asked to do; asked again while it is away. */
+  async learn() {
+    if (this.kinds.length || this.learning) return;
+    this.learning = true;
+    try {
+      this.kinds = await get(`/api/robots/${this.where().robot}/mission-kinds`);
+    } catch {
+      return; // the list of services says who is missing
+    } finally {
+      this.learning = false;
+    }
+    $("mission-kind").replaceChildren(...this.kinds.map(({ name, title }) => html("option", { value: name }, title || name)));
+    this.choose();
+    this.enable();
+  }
+
+  choose() {
+    const properties = this.kind()?.parameters.properties || {};
+    $("mission-parameters").replaceChildren(...Object.entries(properties).map(([name, schema]) => field(name, schema)));
+  }
+
+  kind() {
+    return this.kinds.find(({ name }) => name === $("mission-kind").value);
+  }
+
+  title(name) {
+    return this.kinds.find((kind) => kind.name === name)?.title || name;
+  }
+
+  start() {
     const map = $("new-map").value.trim();
     const seed = Number.parseInt($("seed").value, 10) || 0;
-    return this.ask("missions", { action: "explore", map, seed });
+    return this.ask("missions", { action: this.kind().name, map, seed, parameters: values($("mission-parameters")) });
   }
 
   goToNode(id) {

@@ -18,8 +18,8 @@ export const TEXT = {
   nothingMatched: "no node of the map in sight",
   missionNone: "No mission yet.",
   missionUnheard: "Nothing heard of the planner yet.",
-  missionWhat: { explore: "Exploring", goto: "Driving to a place" },
-  missionAny: "Mission",
+  missionWhat: (title, map) => `${title}, map ${map}`,
+  travel: (state, reason) => (state ? `travel: ${state}, as ${reason || "the mission began"}` : ""),
   missionFacts: (s) =>
     `step ${s.step}, ${s.nodes} nodes, ${s.edges} edges, ${s.open_directions} directions open, ` +
     `similarity ${s.similarity}${s.via_points.length ? `, via ${s.via_index + 1} of ${s.via_points.length}` : ""}`,

@@ -5,7 +5,7 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from services.gateway.live.mission_watch import MissionEntry, MissionWatch
-from shared.messages.missions import MissionStatus
+from shared.messages.missions import EventValue, MissionStatus
 
 START = datetime(2026, 3, 1, 12, 0, tzinfo=UTC)
 
@@ -71,9 +71,17 @@ def test_the_seed_is_told_of_the_mission_it_belongs_to_only() -> None:
     assert [entry.seed for entry in entries] == [7, None]
 
 
-@pytest.mark.parametrize(
-    "changes", [{"mission_id": ""}, {"mission_id": "x" * 65}, {"action": ""}, {"action": "fly"}]
-)
+def test_a_mission_of_any_kind_is_told_with_the_figures_that_its_kind_shows() -> None:
+    figures = (EventValue(name="places_seen", value=4), EventValue(name="changes", value=None))
+    (entry,) = told(
+        MissionWatch(),
+        status("running", action="patrol"),
+        status("succeeded", action="patrol", figures=figures),
+    )
+    assert (entry.kind, entry.figures) == ("patrol", {"places_seen": 4})
+
+
+@pytest.mark.parametrize("changes", [{"mission_id": ""}, {"mission_id": "x" * 65}, {"action": ""}])
 def test_what_is_no_mission_is_left_out(changes: dict[str, str]) -> None:
     strange = {"mission_id": "m1", **changes}
     assert told(MissionWatch(), status("running", **strange), status("succeeded", **strange)) == []
