@@ -74,11 +74,7 @@ class BodyLimits:
 
 
 def _too_slow(limit: BodyLimit, got: str) -> ProblemError:
-    rate = "" if math.isinf(limit.bytes_per_s) else f", or {limit.bytes_per_s:g} bytes a second"
-    return ProblemError(
-        408,
-        "body_too_slow",
-        f"the whole body within {limit.stalled_s:g} s{rate}",
-        got,
-        "send it faster or smaller",
-    )
+    expected = f"the whole body within {limit.stalled_s:g} s"
+    if math.isfinite(limit.bytes_per_s):
+        expected = f"a part every {limit.stalled_s:g} s and {limit.bytes_per_s:g} bytes a second"
+    return ProblemError(408, "body_too_slow", expected, got, "send it faster or smaller")

@@ -49,7 +49,8 @@ def create_app(
     """
     app = FastAPI(title="topnav map store", version=VERSION, description=DESCRIPTION)
     short, long = (
-        BodyLimit(most, STALLED_S, LEAST_BYTES_PER_S) for most in (MAX_BODY_BYTES, max_archive_bytes)
+        BodyLimit(most, STALLED_S, LEAST_BYTES_PER_S, "send less")
+        for most in (MAX_BODY_BYTES, max_archive_bytes)
     )
     app.add_middleware(BodyLimits, most=short, exceptions={"/maps/import": long})
     problems.install(app)
