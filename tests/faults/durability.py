@@ -1,7 +1,7 @@
-"""`python -m tests.faults.durability`: nothing acknowledged is lost, and no changed byte goes unnoticed.
+"""`python -m tests.faults.durability`: nothing acknowledged is lost, no changed byte in use goes unnoticed.
 
 --kills N   SIGKILL the map store N times at random instants under load
---flips N   change one random byte in each of N copies of a database
+--flips N   change one random byte in each of N copies of a database; tells how many were in use and found
 """
 
 import argparse

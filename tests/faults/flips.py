@@ -10,14 +10,13 @@ from typing import Any, Literal
 import numpy as np
 
 from services.map_store.errors import MapError
-from services.map_store.integrity.check import Damage, check
-from services.map_store.integrity.file_seal import TOLD
+from services.map_store.integrity.check import check
 from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
 from shared.messages.maps import DeleteNode
 from tests.faults.lived_maps import ROBOT, live, opened, place, rows_of, told_of
 
-Verdict = Literal["detected", "harmless", "undetected"]
+Verdict = Literal["detected", "undetected", "unused"]
 MAPS = ("attic", "flat", "house")
 
 
@@ -26,11 +25,10 @@ class Flip:
     """One changed byte.
 
     Attributes:
-        verdict: detected, harmless (all content is the same and writing goes on), or undetected.
+        verdict: detected or undetected of a byte that is used; unused when every row is still what it was
+            and stays so while maps are written.
         why: who noticed, or what went wrong.
         mended: whether a repair made everything as it was before; None where nothing was to be repaired.
-        idle: the byte holds nothing: all content is the same, stays so while maps are written, and the seal
-            of the file alone noticed.
     """
 
     offset: int
@@ -39,7 +37,6 @@ class Flip:
     verdict: Verdict
     why: str
     mended: bool | None = None
-    idle: bool = False
 
 
 class Flipping:
@@ -75,27 +72,23 @@ class Flipping:
             file.write(bytes([was ^ mask]))
         return Flip(offset, was, was ^ mask, *self._judge(copy))
 
-    def _judge(self, file: Path) -> tuple[Verdict, str, bool | None, bool]:
+    def _judge(self, file: Path) -> tuple[Verdict, str, bool | None]:
         try:
             store = opened(file)
         except MapError as error:
-            return "detected", f"refused at start: {type(error).__name__}: {error}", None, False
+            return "detected", f"refused at start: {type(error).__name__}: {error}", None
         try:
             wrong = self._wrongly_told(store)
             if wrong:
-                return "undetected", wrong, None, False
+                return "undetected", wrong, None
             found = check(store.database)
-            mended = self._mended(store) if found and self._mend else None
-            if _named(found):
-                return "detected", f"{found[0].map} {found[0].thing}: {found[0].reason}", mended, False
-            wrong = self._harm(store, file)
-            if wrong:
-                return "undetected", wrong, mended, False
             if found:
-                return "detected", f"{found[0].thing}: {found[0].reason}", mended, True
-            return "harmless", "the same content", None, True
+                mended = self._mended(store) if self._mend else None
+                return "detected", f"{found[0].map} {found[0].thing}: {found[0].reason}", mended
+            wrong = self._harm(store, file)
+            return ("undetected", wrong, None) if wrong else ("unused", "the same content", None)
         except MapError as error:
-            return "detected", f"refused: {error}", None, False
+            return "detected", f"refused: {error}", None
         finally:
             store.database.close()
 
@@ -115,7 +108,7 @@ class Flipping:
         return ""
 
     def _harm(self, store: MapStore, file: Path) -> str:
-        """No content was found damaged: all must be the same, and stay so while maps are written."""
+        """What a change that no check found did all the same: to a row, or to what is written from now on."""
         rows, expected = rows_of(store), self._rows
         different = [name for name in expected if rows[name] != expected[name]]
         if different:
@@ -132,7 +125,7 @@ class Flipping:
         store.database.close()
         again = opened(file)
         try:
-            found = _named(check(again.database))
+            found = check(again.database)
             if found:
                 return f"written on: {found[0].thing}: {found[0].reason}"
             kept = all(told_of(again, name).items() >= _lasting(self._told[name]) for name in MAPS)
@@ -165,19 +158,14 @@ def figures(found: list[Flip]) -> dict[str, Any]:
     mended = Counter(flip.mended for flip in found if flip.verdict == "detected")
     return {
         "flips": len(found),
+        "in_used_bytes": verdicts["detected"] + verdicts["undetected"],
         "detected": verdicts["detected"],
-        "of_these_idle": sum(flip.idle for flip in found if flip.verdict == "detected"),
-        "harmless": verdicts["harmless"],
         "undetected": verdicts["undetected"],
+        "in_unused_bytes": verdicts["unused"],
         "mended_without_loss": mended[True],
         "mended_with_losses": mended[False],
         "not_mended": mended[None],
     }
-
-
-def _named(found: list[Damage]) -> list[Damage]:
-    """Damage of something that is kept."""
-    return [damage for damage in found if damage.reason != TOLD]
 
 
 def _lasting(told: dict[str, Any]) -> Any:

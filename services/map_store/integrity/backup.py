@@ -16,7 +16,7 @@ from services.map_store.errors import (
     MissingError,
     StorageFullError,
 )
-from services.map_store.integrity.check import check_contents
+from services.map_store.integrity.check import check
 from services.map_store.storage.database import Database
 from services.map_store.storage.engines import is_sqlite, parse, text_of
 
@@ -118,11 +118,10 @@ def _require_sound(file: Path) -> int:
     """Check everything in a copy, bringing it up to this version; returns how many maps it holds."""
     database = Database(f"sqlite:///{file.resolve()}")
     try:
-        found = check_contents(database)
+        found = check(database)
         if found:
             first = "; ".join(f"{d.map} {d.thing}: {d.reason}".strip() for d in found[:SHOWN])
             raise CorruptError(f"{len(found)} things are damaged: {first}; nothing was changed")
-        database.settle()  # of a copy, every byte that counts was read
         with database.read() as connection:
             return int(connection.exec_driver_sql("SELECT count(*) FROM maps").scalar_one())
     finally:

@@ -7,7 +7,7 @@ from sqlalchemy import Connection, select
 
 from services.map_store.errors import CorruptError
 from services.map_store.history.replay import Replay, replay
-from services.map_store.integrity import file_seal, losses
+from services.map_store.integrity import losses
 from services.map_store.integrity.seals import intact
 from services.map_store.storage import answers, blobs, catalogue
 from services.map_store.storage.catalogue import MapRecord
@@ -31,12 +31,6 @@ class Damage:
 
 def check(database: Database, name: str | None = None) -> list[Damage]:
     """Everything that is damaged, or all of it in one map; MissingError when there is no such map."""
-    found = check_contents(database, name)
-    return [*found, Damage("", "file", file_seal.TOLD)] if database.changed else found
-
-
-def check_contents(database: Database, name: str | None = None) -> list[Damage]:
-    """As `check`, without changed bytes in parts of the file where nothing is kept."""
     found = [Damage("", "file", line) for line in database.inspect()]
     try:
         found += [Damage("", "file", line) for line in database.dangling()]

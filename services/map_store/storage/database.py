@@ -4,13 +4,11 @@ import logging
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
 from sqlalchemy import Connection
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
 from services.map_store.errors import CorruptError, MapError, StorageFullError, UnavailableError
-from services.map_store.integrity import file_seal
 from services.map_store.integrity import sqlite_file as integrity
 from services.map_store.storage import migration
 from services.map_store.storage.engines import BUSY_TIMEOUT_S, is_sqlite, open_engines, parse
@@ -28,12 +26,11 @@ class Database:
     """Transactions on the database at `url`; it is created when it is not there.
 
     A SQLite file is read as a whole first. A damaged one is served as far as it can be read and never
-    written to, because SQLite may overwrite good pages through a bad one. A sound one is sealed when it is
-    closed. A server looks after its own files; several map stores may write to its database, in turns.
+    written to, because SQLite may overwrite good pages through a bad one. A server looks after its own files;
+    several map stores may write to its database, in turns.
 
     Attributes:
         damage: what is wrong with the file.
-        changed: whether bytes of the file changed while it was closed, be it where nothing is kept.
 
     Raises:
         UnavailableError: no such URL, no driver for it, no connection, or tables of a later version.
@@ -45,9 +42,6 @@ class Database:
         parsed = parse(url)
         self._where = parsed.render_as_string()  # without the password
         self._sqlite = is_sqlite(parsed)
-        self._file = Path(parsed.database or "") if self._sqlite else None
-        self.changed = self._file is not None and file_seal.changed(self._file)
-        self._opened = False
         self._writer, self._reader = open_engines(parsed)
         self.damage: tuple[str, ...] = ()
         try:
@@ -57,8 +51,6 @@ class Database:
                     migration.prepare(connection)
             with self.read() as connection:
                 migration.require(connection)
-            self._note_change()
-            self._opened = True
         except MapError as error:
             self.close()
             raise type(error)(f"{self._where}: {error}") from error
@@ -89,12 +81,6 @@ class Database:
             then(connection)
         self.inspect()
 
-    def settle(self) -> None:
-        """Take the bytes of the file as they are, once all that is kept in it was found to be whole."""
-        with self.write() as connection:
-            file_seal.note(connection, found=False)
-        self.changed = False
-
     def dangling(self) -> tuple[str, ...]:
         """Rows that refer to a row that is not there; a server checks that by itself."""
         if not self._sqlite:
@@ -117,24 +103,9 @@ class Database:
             yield connection
 
     def close(self) -> None:
-        """Close every connection and seal the file, unless somebody else works with it."""
+        """Close every connection."""
         self._writer.dispose()
         self._reader.dispose()
-        if self._file is not None and self._opened and not self.damage and not self.changed:
-            file_seal.seal(self._file)
-
-    def _note_change(self) -> None:
-        """Have it known after the next start as well; what is damaged will be found then in any case."""
-        if self._file is None or self.damage:
-            return
-        with self.read() as connection:
-            noted = file_seal.noted(connection)
-        if self.changed and not noted:
-            with self.write() as connection:
-                file_seal.note(connection, found=True)
-        self.changed = self.changed or noted
-        if self.changed:
-            log.error("%s: %s", self._where, file_seal.TOLD)
 
     @contextmanager
     def _translated(self) -> Iterator[None]:

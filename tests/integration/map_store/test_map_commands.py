@@ -14,10 +14,8 @@ from services.launcher.client.failure import ExperimentError
 from services.launcher.commands.map import app
 from services.launcher.processes.state import AlreadyRunningError
 from services.launcher.processes.supervisor import Launcher
-from services.map_store.integrity import file_seal
 from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
-from shared.bus import wait_until
 from tests.faults.lived_maps import link, place
 from tests.unit.services.map_store.test_store import damage
 
@@ -77,29 +75,6 @@ def test_a_running_stack_is_checked_repaired_and_backed_up_but_not_replaced(
     assert call("check", "flat").output == "map flat: no damage\n"
     with httpx.Client(base_url=stack.map_store_url, trust_env=False, timeout=30.0) as rest:
         assert rest.get("/maps/flat/revisions").json()[0]["author"] == "repair"
-
-
-def test_a_byte_that_changes_while_no_stack_runs_is_listed_until_a_repair(data_dir: Path):
-    file = data_dir / "maps" / "maps.sqlite3"
-
-    def at_rest() -> bool:  # one that is slow to stop is killed, and leaves its log
-        with Launcher(data_dir, only=["map-store"]):
-            assert Path(f"{file}-wal").exists()
-        return not Path(f"{file}-wal").exists()
-
-    assert wait_until(at_rest, 60.0)
-    data = bytearray(file.read_bytes())
-    data[80] ^= 1  # of the header, kept for later releases of SQLite
-    file.write_bytes(data)
-    assert file_seal.changed(file)
-    for _ in range(2):
-        told = call("check")
-        assert (told.exit_code, "bytes changed while it was closed" in told.output) == (1, True)
-    assert call("repair", "flat").output.splitlines() == [
-        "bytes of the file that hold nothing: taken as they are",
-        "flat is at revision 1",
-    ]
-    assert call("check").output == f"maps in {data_dir}: no damage\n"
 
 
 def test_a_backup_is_put_back_while_nothing_runs(data_dir: Path, tmp_path: Path):
