@@ -9,7 +9,7 @@ from services.map_store.errors import MapError
 from services.map_store.storage.archive import Archive, write_archive
 from services.map_store.storage.blobs import checksum, pack_features, unpack_features
 from services.map_store.storage.contents import Kind
-from services.map_store.storage.graph import AddPlace, Graph, Place
+from services.map_store.storage.graph import AddStoredNode, Graph, StoredNode
 from shared.mapgraph.graph import MapGraph
 from shared.messages.features import Features
 from shared.messages.maps import AddNode, Operation, PutEdge
@@ -43,19 +43,19 @@ class MemoryMap:
 def save(maps: MemoryMap, path: Path) -> None:
     """Write the map; the same map gives the same bytes."""
     packed = {node_id: pack_features(maps.features[node_id]) for node_id in maps.graph.nodes}
-    places = {
-        node_id: Place(node=node, features=checksum(packed[node_id]))
+    nodes = {
+        node_id: StoredNode(node=node, features=checksum(packed[node_id]))
         for node_id, node in maps.graph.nodes.items()
     }
 
-    def blob(place: Place, kind: Kind) -> bytes:
+    def blob(stored: StoredNode, kind: Kind) -> bytes:
         del kind  # thumbnails are not kept here
-        return packed[place.node.node_id]
+        return packed[stored.node_id]
 
     path.parent.mkdir(parents=True, exist_ok=True)
     new = path.with_name(path.name + ".new")
     with new.open("wb") as file:
-        write_archive(file, path.stem, 0, Graph(places=places, edges=dict(maps.graph.edges)), blob)
+        write_archive(file, path.stem, 0, Graph(nodes=nodes, edges=dict(maps.graph.edges)), blob)
     new.replace(path)
 
 
@@ -74,11 +74,9 @@ def load(path: Path) -> MemoryMap:
         with path.open("rb") as file:
             archive = Archive(file, MAX_BYTES)
             for step in archive.steps:
-                if isinstance(step, AddPlace):
-                    maps.graph.nodes[step.place.node.node_id] = step.place.node
-                    maps.features[step.place.node.node_id] = unpack_features(
-                        archive.blob(step.place.features)
-                    )
+                if isinstance(step, AddStoredNode):
+                    maps.graph.nodes[step.place.node_id] = step.place.node
+                    maps.features[step.place.node_id] = unpack_features(archive.blob(step.place.features))
                 elif isinstance(step, PutEdge):
                     maps.graph.edges[step.edge.a, step.edge.b] = step.edge
     except (OSError, MapError) as error:

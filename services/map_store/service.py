@@ -61,7 +61,7 @@ def answer_map(store: MapStore, name: str, request: MapRequest) -> MapReply:
         revision, features = store.contents.features(name, request.node_ids)
         return MapReply(map=name, revision=revision, features=features)
     revision, graph = store.graph(name)
-    nodes = tuple(place.node for place in graph.places.values())
+    nodes = tuple(stored.node for stored in graph.nodes.values())
     return MapReply(map=name, revision=revision, nodes=nodes, edges=tuple(graph.edges.values()))
 
 

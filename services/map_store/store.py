@@ -3,25 +3,22 @@
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
 
 from sqlalchemy import Connection
 
 from services.map_store.errors import ConflictError, InvalidError
 from services.map_store.history import revisions as history
-from services.map_store.history.past import Past
+from services.map_store.history.comparison import Comparison
 from services.map_store.history.revisions import Revision
 from services.map_store.history.summaries import Summaries
-from services.map_store.integrity import losses
-from services.map_store.integrity.repair import Repaired, mend, relink_all
+from services.map_store.integrity.repair import Repaired, relink_all, repair
 from services.map_store.storage import answers, blobs, catalogue
 from services.map_store.storage.catalogue import MapRecord
 from services.map_store.storage.contents import Contents
 from services.map_store.storage.database import Database
-from services.map_store.storage.graph import Change, Graph, Step, apply
+from services.map_store.storage.graph import Graph, Step, apply
 from services.map_store.storage.graphs import Graphs
 from services.map_store.storage.operations import prepare
-from services.map_store.storage.rows import write_change
 from shared.messages.maps import MapDelta, Operation
 
 
@@ -40,7 +37,6 @@ class MapStore:
         self.database = database
         self._graphs = Graphs()
         self.contents = Contents(database, self._graphs)
-        self.past = Past(database, self._graphs)
         self._summaries = Summaries()
         self._now_ns, self._changed = now_ns, changed
         self._writing = threading.Lock()
@@ -66,6 +62,12 @@ class MapStore:
         with self.database.read() as connection:
             found = catalogue.find(connection, name)
             return history.entries(connection, found, before, limit, self._summaries)
+
+    def compare(self, name: str, start: int, end: int | None) -> tuple[int, Comparison]:
+        """What leads from revision `start` to `end`, by default the newest; returns the end's number too."""
+        with self.database.read() as connection:
+            found = catalogue.find(connection, name)
+            return history.compared(connection, found, self._graphs.get(connection, found), start, end)
 
     def create(self, name: str, request_id: str = "") -> int:
         """Make an empty map; returns its revision, 0. ConflictError when it exists, not by this request."""
@@ -113,7 +115,7 @@ class MapStore:
             change = apply(self._graphs.get(connection, found), prepared.steps)
             blobs.put(connection, found.map_id, prepared.contents)
             entry = Revision(found.revision + 1, author, self._now_ns(), len(prepared.steps), None)
-            self._commit(connection, found, entry, prepared.steps, change)
+            history.record(connection, found, entry, prepared.steps, change)
             answers.keep(connection, name, request_id, entry.revision)
             deltas.append(
                 MapDelta(
@@ -136,7 +138,7 @@ class MapStore:
             steps = history.steps_of(connection, found.map_id, undone, inverse=True)
             change = apply(self._graphs.get(connection, found), steps)
             entry = Revision(found.revision + 1, author, self._now_ns(), len(steps), undone)
-            self._commit(connection, found, entry, steps, change)
+            history.record(connection, found, entry, steps, change)
             deltas.append(MapDelta(map=name, revision=entry.revision, author=author, reset=True))
         return entry.revision, undone
 
@@ -148,10 +150,9 @@ class MapStore:
         with self._write() as (connection, deltas):
             entry = Revision(1, author, self._now_ns(), len(steps), None)
             record = catalogue.create(connection, name, entry.stamp_ns)
-            for place in change.graph.places.values():
-                named = [sha256 for sha256 in (place.features, place.thumbnail) if sha256]
-                blobs.put(connection, record.map_id, {sha256: read_blob(sha256) for sha256 in named})
-            self._commit(connection, record, entry, steps, change)
+            for stored in change.graph.nodes.values():
+                blobs.put(connection, record.map_id, {sha256: read_blob(sha256) for sha256 in stored.blobs})
+            history.record(connection, record, entry, steps, change)
             deltas.append(MapDelta(map=name, revision=1, author=author, reset=True))
         return entry.revision
 
@@ -161,38 +162,15 @@ class MapStore:
         Raises:
             CorruptError: more of the file is damaged than a repair can mend; nothing was changed.
         """
-        done: list[str] = []
+        first = []
         if self.database.inspect():
             self.database.rebuild_indexes(then=relink_all)
-            done.append("indexes of the file: written anew from their tables")
+            first.append("indexes of the file: written anew from their tables")
         with self._write() as (connection, deltas):
-            mended = mend(connection, name, self._now_ns())
-            found = mended.found
-            lost = losses.take_out(connection, found.map_id, mended.graph)
-            steps = mended.removed + lost.steps
-            if steps:
-                entry = Revision(found.revision + 1, author, self._now_ns(), len(steps), None)
-                found = self._commit(connection, found, entry, steps, lost.change)
+            found, done = repair(connection, name, author, self._now_ns())
             deltas.append(MapDelta(map=found.name, revision=found.revision, author=author, reset=True))
         self._graphs.forget(found.map_id)
-        done += [*mended.done, *lost.done]
-        return Repaired(found.name, found.revision, tuple(done))
-
-    @staticmethod
-    def _commit(
-        connection: Connection, found: MapRecord, entry: Revision, steps: tuple[Step, ...], change: Change
-    ) -> MapRecord:
-        write_change(connection, found.map_id, entry.revision, change)
-        history.record(connection, found.map_id, entry, steps, change)
-        record = replace(
-            found,
-            revision=entry.revision,
-            changed_ns=entry.stamp_ns,
-            node_count=len(change.graph.places),
-            edge_count=len(change.graph.edges),
-        )
-        catalogue.save(connection, record)
-        return record
+        return Repaired(found.name, found.revision, (*first, *done))
 
     @contextmanager
     def _write(self) -> Iterator[tuple[Connection, list[MapDelta]]]:

@@ -75,11 +75,11 @@ def told_of(store: MapStore, name: str) -> dict[str, Any]:
     """Everything a client can read of one map, each under its name; raises MapError."""
     revision, graph = store.graph(name)
     told: dict[str, Any] = {"revision": revision, "record": store.summary(name)}
-    told |= {f"node {node_id}": node for node_id, node in graph.places.items()}
+    told |= {f"node {node_id}": node for node_id, node in graph.nodes.items()}
     told |= {f"edge {a}-{b}": edge for (a, b), edge in graph.edges.items()}
     for found in store.contents.features(name, [])[1]:
         told[f"features of node {found.node_id}"] = encode(found.features)
-    for node_id, node in graph.places.items():
+    for node_id, node in graph.nodes.items():
         told[f"thumbnail of node {node_id}"] = _or_refused(store.contents.read, name, node, "thumbnail")
     for entry in store.revisions(name, MAX_NODE_ID, 1000):
         told[f"revision {entry.revision}"] = None if entry.summary.startswith("unreadable") else entry

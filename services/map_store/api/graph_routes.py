@@ -10,7 +10,7 @@ from services.map_store.api.names import AUTHOR, Author, MapName, NodeId
 from services.map_store.api.schemas import Changed, EdgeView, KeypointsView, NodeView, keypoints_view
 from services.map_store.api.views import edge_views, node_views
 from services.map_store.errors import CorruptError, MissingError
-from services.map_store.storage.contents import place_of
+from services.map_store.storage.contents import node_of
 from services.map_store.storage.graph import MAX_NODE_ID
 from services.map_store.store import MapStore
 from shared.messages.maps import DeleteEdge, DeleteNode
@@ -66,7 +66,7 @@ def _add_appearance(router: APIRouter, store: MapStore) -> None:
     def read_thumbnail(name: MapName, node_id: NodeId) -> Response:
         """The small picture of a node."""
         _, graph = store.graph(name)
-        data = store.contents.read(name, place_of(graph, name, node_id), "thumbnail")
+        data = store.contents.read(name, node_of(graph, name, node_id), "thumbnail")
         if not data:
             raise MissingError(f"map {name!r}: node {node_id} has no thumbnail")
         # A node's picture never changes, but another node may get its number after an undo.

@@ -39,7 +39,7 @@ def build(store: MapStore, write: Sequence[Depends]) -> APIRouter:
     @router.get("/compare")
     def compare_revisions(name: MapName, start: Start, end: End = None) -> ComparisonView:
         """What leads from one revision to another, by default to the newest; either may be the older."""
-        end, comparison = store.past.compare(name, start, end)
+        end, comparison = store.compare(name, start, end)
         return comparison_view(name, start, end, comparison)
 
     @router.post("/undo", dependencies=write)

@@ -4,7 +4,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from services.map_store.history.comparison import Comparison, Value
 from services.map_store.history.revisions import Revision
-from services.map_store.storage.graph import Key
+from shared.mapgraph.operations import Key
 from shared.messages.base import Name
 
 

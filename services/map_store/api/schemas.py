@@ -46,7 +46,7 @@ class NodeView(Node):
     Attributes:
         revision: the revision that wrote it last.
         thumbnail: whether it has a picture.
-        quarantined: its features are damaged; it cannot be recognised.
+        quarantined: its features are damaged, as somebody who asked for them found; it cannot be recognised.
     """
 
     revision: int

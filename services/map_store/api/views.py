@@ -22,13 +22,14 @@ def node_views(store: MapStore, name: str, after: int, limit: int) -> list[NodeV
             .limit(limit)
         )
         rows = connection.execute(query).all()
+        damaged = store.contents.damaged(connection, (row.features for row in rows))
     try:
         return [
             NodeView(
                 **parse_node(row).node.model_dump(),
                 revision=row.revision,
                 thumbnail=row.thumbnail is not None,
-                quarantined=row.quarantined,
+                quarantined=row.features in damaged,
             )
             for row in rows
         ]

@@ -6,7 +6,8 @@ from itertools import chain
 from typing import TypeVar
 
 from services.map_store.errors import ConflictError, CorruptError, InvalidError, MissingError
-from services.map_store.storage.graph import Graph, Key, Step, apply
+from services.map_store.storage.graph import Graph, Step, apply
+from shared.mapgraph.operations import Key
 from shared.messages.maps import Edge
 
 K = TypeVar("K", int, Key)
@@ -60,7 +61,7 @@ def rewind(graph: Graph, inverses: Iterable[Iterable[Step]]) -> Graph:
 
 def compare(before: Graph, after: Graph) -> Comparison:
     """What is in `after` and not in `before`, what is gone, and what both have in different forms."""
-    nodes_added, nodes_removed, nodes_changed = _differences(before.places, after.places)
+    nodes_added, nodes_removed, nodes_changed = _differences(before.nodes, after.nodes)
     edges_added, edges_removed, edges_changed = _differences(before.edges, after.edges)
     return Comparison(
         nodes_added=nodes_added,

@@ -7,8 +7,9 @@ from sqlalchemy import Connection, func, select
 
 from services.map_store.errors import CorruptError, GivenUpError, MapError
 from services.map_store.history import revisions as history
-from services.map_store.storage.graph import AddPlace, Graph, Key, Step, apply
+from services.map_store.storage.graph import AddStoredNode, Graph, Step, apply
 from services.map_store.storage.tables import revisions
+from shared.mapgraph.operations import Key
 from shared.messages.maps import PutEdge, UpdateNode
 
 
@@ -48,8 +49,8 @@ def replay(connection: Connection, map_id: int, at_least: int = 0) -> Replay:
                 damaged[number] = str(error).removeprefix(f"revision {number}: ")
             continue
         done += steps
-        written |= {_place(step): number for step in steps}
-    named = {name for step in done if isinstance(step, AddPlace) for name in _blobs(step)}
+        written |= {_key(step): number for step in steps}
+    named = {name for step in done if isinstance(step, AddStoredNode) for name in step.place.blobs}
     return Replay(newest, damaged, _applied(done) if whole else None, written, frozenset(named))
 
 
@@ -60,16 +61,13 @@ def _applied(steps: list[Step]) -> Graph | None:
         return None
 
 
-def _place(step: Step) -> int | Key:
+def _key(step: Step) -> int | Key:
+    """The node or edge that a step writes."""
     match step:
-        case AddPlace(place=place):
-            return place.node.node_id
+        case AddStoredNode(place=stored):
+            return stored.node_id
         case UpdateNode(node=node):
             return node.node_id
         case PutEdge(edge=edge):
             return edge.a, edge.b
     return step.node_id if step.op == "delete_node" else (step.a, step.b)
-
-
-def _blobs(step: AddPlace) -> list[str]:
-    return [name for name in (step.place.features, step.place.thumbnail) if name]

@@ -1,17 +1,19 @@
 """Revisions of a map: what was done, by whom, and which one an undo takes back."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from sqlalchemy import Connection, Row, Select, delete, insert, select
 
 from services.map_store.errors import CorruptError, MissingError
+from services.map_store.history.comparison import Comparison, compare, rewind
 from services.map_store.history.summaries import Summaries
 from services.map_store.integrity.seals import intact, sealed
+from services.map_store.storage import catalogue
 from services.map_store.storage.catalogue import MapRecord
-from services.map_store.storage.graph import Change, Step
-from services.map_store.storage.rows import pack_history, pack_lost, unpack_steps
+from services.map_store.storage.graph import Change, Graph, Step
+from services.map_store.storage.rows import pack_history, pack_lost, unpack_steps, write_change
 from services.map_store.storage.tables import revisions
 
 
@@ -34,12 +36,13 @@ class Revision:
 
 
 def record(
-    connection: Connection, map_id: int, entry: Revision, steps: tuple[Step, ...], change: Change
-) -> None:
-    """Write one revision with the steps that led to it and those that lead back."""
+    connection: Connection, found: MapRecord, entry: Revision, steps: tuple[Step, ...], change: Change
+) -> MapRecord:
+    """Write one revision: what it changed, the steps that led to it and those that lead back."""
+    write_change(connection, found.map_id, entry.revision, change)
     content, sha256 = pack_history(steps, change.inverse)
     values = {
-        "map_id": map_id,
+        "map_id": found.map_id,
         "revision": entry.revision,
         "author": entry.author,
         "stamp_ns": entry.stamp_ns,
@@ -48,6 +51,15 @@ def record(
         "sha256": sha256,
     }
     connection.execute(insert(revisions).values({**sealed(revisions, values), "content": content}))
+    now = replace(
+        found,
+        revision=entry.revision,
+        changed_ns=entry.stamp_ns,
+        node_count=len(change.graph.nodes),
+        edge_count=len(change.graph.edges),
+    )
+    catalogue.save(connection, now)
+    return now
 
 
 def entries(
@@ -100,7 +112,32 @@ def steps_of(connection: Connection, map_id: int, revision: int, inverse: bool) 
         raise type(error)(f"revision {revision}: {error}") from None
 
 
-def inverses(connection: Connection, map_id: int, newer: int, older: int) -> Iterator[tuple[Step, ...]]:
+def compared(
+    connection: Connection, found: MapRecord, newest: Graph, start: int, end: int | None
+) -> tuple[int, Comparison]:
+    """What leads from revision `start` to `end` (None = the newest), whichever is older.
+
+    No old graph is kept: the history leads back from `newest`, the graph of the newest revision.
+
+    Returns:
+        The number of the end, and the comparison.
+
+    Raises:
+        MissingError: no such revision.
+        CorruptError: a revision on the way back is damaged.
+    """
+    end = found.revision if end is None else end
+    for number in (start, end):
+        if not 0 <= number <= found.revision:
+            known = f"revisions: 0 to {found.revision}"
+            raise MissingError(f"map {found.name!r}: revision {number} does not exist; {known}")
+    older, newer = sorted((start, end))
+    after = rewind(newest, _inverses(connection, found.map_id, found.revision, newer))
+    before = rewind(after, _inverses(connection, found.map_id, newer, older))
+    return end, compare(before, after) if start <= end else compare(after, before)
+
+
+def _inverses(connection: Connection, map_id: int, newer: int, older: int) -> Iterator[tuple[Step, ...]]:
     """The ways back over all revisions from `newer` to the one after `older`, each read when it is needed."""
     numbers = range(newer, older, -1)
     return (steps_of(connection, map_id, number, inverse=True) for number in numbers)

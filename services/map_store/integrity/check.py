@@ -1,13 +1,12 @@
 """Looking for damage: every row, every blob and the file itself are read and held against checksums."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from sqlalchemy import Connection, select
 
 from services.map_store.errors import CorruptError
 from services.map_store.history.replay import Replay, replay
-from services.map_store.integrity import losses
 from services.map_store.integrity.seals import intact
 from services.map_store.storage import answers, blobs, catalogue
 from services.map_store.storage.catalogue import MapRecord
@@ -63,11 +62,11 @@ def rows(connection: Connection, found: MapRecord) -> Iterator[Finding]:
         yield "graph", f"{told}, got {counts[0]} and {counts[1]}"
 
 
-def past(told: Replay, revision: int) -> Iterator[Finding]:
-    """Entries of the history that cannot be read and were not given up, and entries too many."""
-    yield from ((f"revision {number}", reason) for number, reason in told.damaged.items())
-    if told.newest != revision:
-        yield "history", f"{revision} revisions expected, got {told.newest}"
+def lost_blobs(connection: Connection, found: MapRecord, used: Iterable[str]) -> dict[str, str]:
+    """Checksums of blobs of a map, those `used` included, that are missing or damaged, with the reason."""
+    owned = blobs.owned(connection, found.map_id)
+    stray = {name: "it is not kept for this map" for name in used if name not in owned}
+    return stray | blobs.unreadable(connection, owned.union(used))
 
 
 def _check_map(database: Database, name: str) -> list[Damage]:
@@ -75,11 +74,18 @@ def _check_map(database: Database, name: str) -> list[Damage]:
         with database.read() as connection:
             found = catalogue.find(connection, name)
             findings = list(rows(connection, found))
-            findings += past(replay(connection, found.map_id, found.revision), found.revision)
+            findings += _history(replay(connection, found.map_id, found.revision), found.revision)
             findings += _contents(connection, found)
     except CorruptError as error:
         return [Damage(name, "map", str(error))]
     return [Damage(name, *finding) for finding in findings]
+
+
+def _history(replayed: Replay, revision: int) -> Iterator[Finding]:
+    """Entries of the history that cannot be read and were not given up, and entries too many."""
+    yield from ((f"revision {number}", reason) for number, reason in replayed.damaged.items())
+    if replayed.newest != revision:
+        yield "history", f"{revision} revisions expected, got {replayed.newest}"
 
 
 def _contents(connection: Connection, found: MapRecord) -> Iterator[Finding]:
@@ -91,11 +97,9 @@ def _contents(connection: Connection, found: MapRecord) -> Iterator[Finding]:
         used.setdefault(row.features, []).append(f"features of node {row.node_id}")
         if row.thumbnail is not None:
             used.setdefault(row.thumbnail, []).append(f"thumbnail of node {row.node_id}")
-    for name, reason in losses.unreadable(connection, found.map_id, used).items():
-        things = used.get(
-            name, [] if losses.given_up(connection, name) else ["picture of a node that is gone"]
-        )
-        yield from ((thing, reason) for thing in things)
+    for name, reason in lost_blobs(connection, found, used).items():
+        gone = [] if blobs.given_up(connection, name) else ["picture of a node that is gone"]
+        yield from ((thing, reason) for thing in used.get(name, gone))
     for name in blobs.wrong_sizes(connection, found.map_id):
         yield f"blob {name!s:.12}", "its size is recorded wrongly"
 

@@ -10,7 +10,7 @@ from pydantic import Field, ValidationError
 from services.map_store.errors import CorruptError, InvalidError, MapError
 from services.map_store.storage.blobs import checksum, unpack_features
 from services.map_store.storage.contents import Kind
-from services.map_store.storage.graph import AddPlace, Graph, Place, Step, apply
+from services.map_store.storage.graph import AddStoredNode, Graph, Step, StoredNode, apply
 from services.map_store.storage.zip_opening import open_zip
 from shared.messages.base import Name, Part
 from shared.messages.maps import Edge, PutEdge
@@ -32,19 +32,19 @@ class Index(Part):
     format: Literal["topnav-map.v1"] = "topnav-map.v1"
     name: Name
     revision: int = Field(ge=0)
-    places: tuple[Place, ...] = Field(max_length=MAX_CONTAINER)
+    places: tuple[StoredNode, ...] = Field(max_length=MAX_CONTAINER)
     edges: tuple[Edge, ...] = Field(max_length=MAX_CONTAINER)
 
 
 def write_archive(
-    file: IO[bytes], name: str, revision: int, graph: Graph, read_blob: Callable[[Place, Kind], bytes]
+    file: IO[bytes], name: str, revision: int, graph: Graph, read_blob: Callable[[StoredNode, Kind], bytes]
 ) -> None:
-    """Write one map; `read_blob(place, kind)` gives the bytes of its "features" or "thumbnail"."""
-    places = tuple(graph.places[node_id] for node_id in sorted(graph.places))
-    links = tuple(graph.edges[key] for key in sorted(graph.edges))
-    index = Index(name=name, revision=revision, places=places, edges=links)
-    owners: dict[str, tuple[Place, Kind]] = {place.features: (place, "features") for place in places}
-    owners |= {place.thumbnail: (place, "thumbnail") for place in places if place.thumbnail}
+    """Write one map; `read_blob(node, kind)` gives the bytes of its "features" or "thumbnail"."""
+    nodes = tuple(graph.nodes[node_id] for node_id in sorted(graph.nodes))
+    edges = tuple(graph.edges[key] for key in sorted(graph.edges))
+    index = Index(name=name, revision=revision, places=nodes, edges=edges)
+    owners: dict[str, tuple[StoredNode, Kind]] = {stored.features: (stored, "features") for stored in nodes}
+    owners |= {stored.thumbnail: (stored, "thumbnail") for stored in nodes if stored.thumbnail}
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
         _write(archive, INDEX, index.model_dump_json(indent=1).encode())
         for sha256 in sorted(owners):
@@ -120,11 +120,11 @@ class Archive:
             return Index.model_validate_json(self._read(INDEX, MAX_INDEX_BYTES))
         except ValidationError as error:
             first = error.errors(include_url=False, include_input=False)[0]
-            place = ".".join(str(part) for part in first["loc"])
-            raise InvalidError(f"{INDEX}: {place}: {first['msg']}") from error
+            field = ".".join(str(part) for part in first["loc"])
+            raise InvalidError(f"{INDEX}: {field}: {first['msg']}") from error
 
     def _check_graph(self) -> tuple[Step, ...]:
-        steps: list[Step] = [AddPlace(place=place) for place in self.index.places]
+        steps: list[Step] = [AddStoredNode(place=stored) for stored in self.index.places]
         steps += [PutEdge(edge=edge) for edge in self.index.edges]
         if len({(edge.a, edge.b) for edge in self.index.edges}) != len(self.index.edges):
             raise InvalidError(f"{INDEX}: an edge stands there twice")
@@ -135,8 +135,8 @@ class Archive:
         return tuple(steps)
 
     def _check_blobs(self) -> None:
-        features = {place.features for place in self.index.places}
-        thumbnails = {place.thumbnail for place in self.index.places if place.thumbnail}
+        features = {node.features for node in self.index.places}
+        thumbnails = {node.thumbnail for node in self.index.places if node.thumbnail}
         stored = {name.removeprefix(BLOBS) for name in self._zip.namelist() if name != INDEX}
         if stored != features | thumbnails:
             missing, extra = len((features | thumbnails) - stored), len(stored - features - thumbnails)

@@ -7,7 +7,6 @@ from typing import Any
 from sqlalchemy import Column, Connection, Select, delete, func, insert, select, update
 
 from services.map_store.errors import CorruptError
-from services.map_store.integrity import quarantine
 from services.map_store.integrity.seals import matches
 from services.map_store.storage import tables
 from shared.messages.features import Features
@@ -45,8 +44,8 @@ def put(connection: Connection, map_id: int, contents: Mapping[str, bytes]) -> N
     rows = [{"sha256": n, "size": len(contents[n]), "data": contents[n]} for n in names if n not in known]
     if rows:
         connection.execute(insert(tables.blobs), rows)
-    owned = select(tables.map_blobs.c.sha256).where(tables.map_blobs.c.map_id == map_id)
-    linked = _existing(connection, owned, tables.map_blobs.c.sha256, names)
+    mine = select(tables.map_blobs.c.sha256).where(tables.map_blobs.c.map_id == map_id)
+    linked = _existing(connection, mine, tables.map_blobs.c.sha256, names)
     links = [{"map_id": map_id, "sha256": name} for name in names if name not in linked]
     if links:
         connection.execute(insert(tables.map_blobs), links)
@@ -58,7 +57,6 @@ def _heal(connection: Connection, name: str, data: bytes) -> None:
     except CorruptError:
         blobs = tables.blobs
         connection.execute(update(blobs).where(blobs.c.sha256 == name).values(data=data, size=len(data)))
-        quarantine.mark(connection, tables.nodes.c.features == name, quarantined=False)
 
 
 def get(connection: Connection, name: str) -> bytes:
@@ -69,6 +67,38 @@ def get(connection: Connection, name: str) -> bytes:
     if not matches(data, name):
         raise CorruptError(f"blob {name[:12]} does not match its checksum")
     return bytes(data)
+
+
+def owned(connection: Connection, map_id: int) -> set[str]:
+    """Checksums of the blobs of a map, those of its history included."""
+    query = select(tables.map_blobs.c.sha256).where(tables.map_blobs.c.map_id == map_id)
+    return {name for name in connection.execute(query).scalars() if isinstance(name, str)}
+
+
+def unreadable(connection: Connection, names: Iterable[str]) -> dict[str, str]:
+    """Those of these blobs that are missing or damaged, with the reason."""
+    reasons = {}
+    for name in sorted(names):
+        try:
+            get(connection, name)
+        except CorruptError as error:
+            reasons[name] = str(error)
+    return reasons
+
+
+def given_up(connection: Connection, name: str) -> bool:
+    """Whether a repair emptied this blob because its bytes were damaged."""
+    data = connection.execute(select(tables.blobs.c.data).where(tables.blobs.c.sha256 == name)).scalar()
+    return data == b""
+
+
+def give_up(connection: Connection, name: str) -> None:
+    """Empty a blob that is lost, so that it is known as such; histories go on referring to it."""
+    values: Mapping[str, object] = {"data": b"", "size": 0}
+    kept = tables.blobs
+    written = connection.execute(update(kept).where(kept.c.sha256 == name).values(values))
+    if written.rowcount == 0:
+        connection.execute(insert(kept).values({**values, "sha256": name}))
 
 
 def sizes(connection: Connection, names: Iterable[str]) -> int:
@@ -96,10 +126,10 @@ def name_again(connection: Connection) -> None:
 
 def wrong_sizes(connection: Connection, map_id: int) -> list[str]:
     """Checksums of the map's blobs whose recorded size is not theirs."""
-    owned = select(tables.map_blobs.c.sha256).where(tables.map_blobs.c.map_id == map_id)
+    mine = select(tables.map_blobs.c.sha256).where(tables.map_blobs.c.map_id == map_id)
     length = func.length(tables.blobs.c.data)
     query = select(tables.blobs.c.sha256).where(tables.blobs.c.size != length)
-    return list(connection.execute(query.where(tables.blobs.c.sha256.in_(owned))).scalars())
+    return list(connection.execute(query.where(tables.blobs.c.sha256.in_(mine))).scalars())
 
 
 def measure(connection: Connection) -> None:
@@ -111,8 +141,7 @@ def relink(connection: Connection, map_id: int, names: Set[str]) -> int:
     """Link a map to those of these blobs that are there, and unlink what is not; returns how many it was."""
     links = tables.map_blobs
     there = _existing(connection, select(tables.blobs.c.sha256), tables.blobs.c.sha256, sorted(names))
-    owned = select(links.c.sha256).where(links.c.map_id == map_id)
-    missing = there - set(connection.execute(owned).scalars())
+    missing = there - owned(connection, map_id)
     dangling = links.c.sha256.not_in(select(tables.blobs.c.sha256))
     cut = connection.execute(delete(links).where(links.c.map_id == map_id, dangling)).rowcount
     if missing:

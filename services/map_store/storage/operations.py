@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from services.map_store.storage.blobs import checksum, pack_features
-from services.map_store.storage.graph import AddPlace, Place, Step
+from services.map_store.storage.graph import AddStoredNode, Step, StoredNode
 from shared.messages.maps import AddNode, Operation
 
 
@@ -33,14 +33,14 @@ def prepare(operations: Sequence[Operation]) -> Prepared:
             steps.append(operation)
             published.append(operation)
             continue
-        words, picture = pack_features(operation.features), operation.features.thumbnail
-        place = Place(
-            node=operation.node, features=checksum(words), thumbnail=checksum(picture) if picture else ""
+        features, thumbnail = pack_features(operation.features), operation.features.thumbnail
+        stored = StoredNode(
+            node=operation.node,
+            features=checksum(features),
+            thumbnail=checksum(thumbnail) if thumbnail else "",
         )
-        contents[place.features] = words
-        if picture:
-            contents[place.thumbnail] = picture
-        steps.append(AddPlace(place=place))
+        contents |= dict(zip(stored.blobs, (features, thumbnail), strict=False))
+        steps.append(AddStoredNode(place=stored))
         bare = operation.features.model_copy(update={"thumbnail": b""})
         published.append(operation.model_copy(update={"features": bare}))
     return Prepared(tuple(steps), contents, tuple(published))

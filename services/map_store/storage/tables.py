@@ -79,7 +79,7 @@ nodes = Table(
     Column("record", Text, nullable=False),
     Column("features", ForeignKey("blobs.sha256"), nullable=False),
     Column("thumbnail", ForeignKey("blobs.sha256")),
-    Column("quarantined", Boolean, nullable=False, default=False),
+    Column("quarantined", Boolean, nullable=False, default=False),  # of earlier versions, nobody reads it
     _seal(),
 )
 

@@ -14,7 +14,7 @@ from services.map_store.errors import InvalidError
 from services.map_store.storage.archive import INDEX, Archive, write_archive
 from services.map_store.storage.blobs import checksum, pack_features
 from services.map_store.storage.contents import Kind
-from services.map_store.storage.graph import AddPlace, Graph, Place, apply
+from services.map_store.storage.graph import AddStoredNode, Graph, StoredNode, apply
 from shared.messages import Features
 from shared.messages.maps import Edge, Node, PutEdge
 from tests.fuzz.decoder import Decoder, Shape
@@ -55,12 +55,13 @@ def archive() -> bytes:
         )
         thumbnail = b"\xff\xd8 picture %d" % number
         node = Node(node_id=number, stamp_ns=number + 1, pipeline="sift", keypoints=4)
-        place = Place(node=node, features=checksum(pack_features(features)), thumbnail=checksum(thumbnail))
-        blobs |= {place.features: pack_features(features), place.thumbnail: thumbnail}
-        graph = apply(graph, [AddPlace(place=place)]).graph
+        packed = pack_features(features)
+        place = StoredNode(node=node, features=checksum(packed), thumbnail=checksum(thumbnail))
+        blobs |= {place.features: packed, place.thumbnail: thumbnail}
+        graph = apply(graph, [AddStoredNode(place=place)]).graph
     graph = apply(graph, [PutEdge(edge=Edge(a=a, b=a + 1, raw_matches=60, inliers=40)) for a in (0, 1)]).graph
 
-    def read(place: Place, kind: Kind) -> bytes:
+    def read(place: StoredNode, kind: Kind) -> bytes:
         return blobs[place.features if kind == "features" else place.thumbnail]
 
     file = io.BytesIO()

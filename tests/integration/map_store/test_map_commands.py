@@ -58,7 +58,7 @@ def test_a_running_stack_is_checked_repaired_and_backed_up_but_not_replaced(
     assert "stop it with 'topnav down'" in str(refused.exception)
 
     beside = opened(data_dir)
-    damage(beside.database, beside.graph("flat")[1].places[1].features)
+    damage(beside.database, beside.graph("flat")[1].nodes[1].features)
     beside.database.close()
     found = call("check", "flat")
     assert found.exit_code == 1
@@ -84,6 +84,6 @@ def test_a_backup_is_put_back_while_nothing_runs(data_dir: Path, tmp_path: Path)
     told = call("restore", copy).output
     kept = Path(told.split("kept as ")[1].replace("\n", ""))
     assert kept.read_bytes() == b"rubbish" * 1_000
-    assert sorted(opened(data_dir).graph("flat")[1].places) == [0, 1]
+    assert sorted(opened(data_dir).graph("flat")[1].nodes) == [0, 1]
     with closing(sqlite3.connect(copy)) as connection:
         assert connection.execute("SELECT name FROM maps").fetchall() == [("flat",)]

@@ -129,7 +129,7 @@ def test_no_write_of_two_stores_is_lost_and_epochs_are_given_once(opened: Callab
     in_two_threads(work)
     for store in stores:
         revision, graph = store.graph("flat")
-        assert (revision, len(graph.places)) == (40, 40)
+        assert (revision, len(graph.nodes)) == (40, 40)
     assert sorted(epochs) == list(range(1, 41))
     assert [entry.revision for entry in stores[0].revisions("flat", 99, 99)] == list(range(40, 0, -1))
 

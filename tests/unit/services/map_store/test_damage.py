@@ -103,8 +103,8 @@ def test_an_epoch_that_was_changed_is_not_believed(two: MapStore):
 
 def test_a_check_names_every_damaged_thing(two: MapStore):
     flat = two.graph("flat")[1]
-    damage(two.database, flat.places[0].features)
-    damage(two.database, flat.places[1].thumbnail)
+    damage(two.database, flat.nodes[0].features)
+    damage(two.database, flat.nodes[1].thumbnail)
     tamper(two, f"UPDATE edges SET revision = 1 WHERE {FLAT}")
     tamper(two, f"UPDATE revisions SET content = :new WHERE {FLAT} AND revision = 2", new=b"\x80")
     found = [(each.map, each.thing) for each in check(two.database)]

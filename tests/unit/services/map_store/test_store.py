@@ -13,6 +13,7 @@ from services.map_store.errors import (
     StorageFullError,
     UnavailableError,
 )
+from services.map_store.integrity.seals import sealed
 from services.map_store.storage import tables
 from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
@@ -27,7 +28,7 @@ def link(a: int, b: int, inliers: int = 1) -> PutEdge:
 
 def graph_of(store: MapStore) -> tuple[dict, dict]:
     _, graph = store.graph("flat")
-    return dict(graph.places), dict(graph.edges)
+    return dict(graph.nodes), dict(graph.edges)
 
 
 def reopened(url: str) -> MapStore:
@@ -118,13 +119,25 @@ def test_undo_after_new_work_takes_back_the_new_work_first(store: MapStore):
     assert [entry.undoes for entry in store.revisions("flat", 2**62, 10)] == [1, 4, None, 2, None, None]
 
 
+def test_a_node_marked_by_an_earlier_version_is_written_on(store: MapStore, database_url: str):
+    """Damaged features were once noted in the row, and its checksum covers the note."""
+    store.transact("flat", [add(0)])
+    with store.database.write() as connection:
+        row = connection.execute(select(tables.nodes)).one()
+        marked = sealed(tables.nodes, {**row._mapping, "quarantined": True})
+        connection.execute(update(tables.nodes).values(marked))
+    again = reopened(database_url)
+    again.transact("flat", [UpdateNode(node=Node(node_id=0, keypoints=5))])
+    assert graph_of(reopened(database_url))[0][0].node.keypoints == 5
+
+
 def test_undo_brings_a_deleted_node_back_with_its_pictures(store: MapStore):
     store.transact("flat", [add(0)])
     store.transact("flat", [DeleteNode(node_id=0)])
     store.undo("flat")
     _, found = store.contents.features("flat", [])
     assert encode(found[0].features) == encode(features(0, thumbnail=False))
-    place = store.graph("flat")[1].places[0]
+    place = store.graph("flat")[1].nodes[0]
     assert store.contents.read("flat", place, "thumbnail") == features(0).thumbnail
 
 
@@ -168,27 +181,26 @@ def damage(database: Database, sha256: str) -> None:
         connection.execute(update(tables.blobs).where(tables.blobs.c.sha256 == sha256).values(data=flipped))
 
 
-def test_a_node_with_damaged_features_goes_into_quarantine_and_the_others_are_served(store: MapStore):
+def test_a_node_with_damaged_features_is_left_out_and_the_others_are_served(store: MapStore):
     store.transact("flat", [add(0), add(1)])
-    damage(store.database, store.graph("flat")[1].places[0].features)
+    stored = store.graph("flat")[1].nodes[0]
+    damage(store.database, stored.features)
     assert [entry.node_id for entry in store.contents.features("flat", [])[1]] == [1]
-    with store.database.read() as connection:
-        marked = (
-            connection.execute(select(tables.nodes.c.node_id).where(tables.nodes.c.quarantined))
-            .scalars()
-            .all()
-        )
-    assert marked == [0]
     with pytest.raises(CorruptError, match=r"map 'flat', node 0: features: .*checksum"):
-        store.contents.read("flat", store.graph("flat")[1].places[0], "features")
+        store.contents.read("flat", stored, "features")
+    with store.database.read() as connection:
+        everything = set(connection.execute(select(tables.blobs.c.sha256)).scalars())
+        assert store.contents.damaged(connection, everything) == {stored.features}
 
 
 def test_writing_the_same_content_again_heals_a_damaged_blob(store: MapStore):
     store.transact("flat", [add(0)])
-    damage(store.database, store.graph("flat")[1].places[0].features)
+    damage(store.database, store.graph("flat")[1].nodes[0].features)
     store.contents.features("flat", [])
     store.create("backup")
     store.transact("backup", [add(0)])
+    with store.database.read() as connection:
+        assert not store.contents.damaged(connection, [store.graph("flat")[1].nodes[0].features])
     assert len(store.contents.features("flat", [])[1]) == 1
 
 
@@ -214,7 +226,7 @@ def test_two_threads_never_lose_a_write_and_deltas_stay_in_order(store: MapStore
         thread.start()
     for thread in threads:
         thread.join()
-    assert len(store.graph("flat")[1].places) == 40
+    assert len(store.graph("flat")[1].nodes) == 40
     assert [delta.revision for delta in told] == list(range(1, 41))
 
 

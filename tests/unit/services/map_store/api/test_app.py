@@ -146,8 +146,8 @@ def test_a_node_without_a_picture_says_so(client: TestClient, store: MapStore):
     assert "no thumbnail" in problem(client.get("/maps/flat/nodes/5/thumbnail"), 404)
 
 
-def test_damaged_pictures_and_nodes_in_quarantine_are_told(client: TestClient, store: MapStore):
-    place = store.graph("flat")[1].places[1]
+def test_damaged_pictures_and_features_are_told(client: TestClient, store: MapStore):
+    place = store.graph("flat")[1].nodes[1]
     damage(store.database, place.thumbnail)
     damage(store.database, place.features)
     assert "node 1: thumbnail" in problem(client.get("/maps/flat/nodes/1/thumbnail"), 500)

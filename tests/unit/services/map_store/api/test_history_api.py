@@ -28,8 +28,8 @@ def test_a_node_without_keypoints_gives_empty_lists(client: TestClient, store: M
     assert client.get("/maps/flat/nodes/5/keypoints").json() == {"lonlat_rad": [], "scores": []}
 
 
-def test_damaged_keypoints_are_a_problem_and_put_the_node_in_quarantine(client: TestClient, store: MapStore):
-    damage(store.database, store.graph("flat")[1].places[1].features)
+def test_damaged_keypoints_are_a_problem_and_noted_at_the_node(client: TestClient, store: MapStore):
+    damage(store.database, store.graph("flat")[1].nodes[1].features)
     for _ in range(2):
         told = problem(client.get("/maps/flat/nodes/1/keypoints"), 500)
         assert "map 'flat', node 1: features: damaged; delete the node" in told

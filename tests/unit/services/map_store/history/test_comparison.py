@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from services.map_store.errors import ConflictError, CorruptError, MissingError
 from services.map_store.history.comparison import EdgeChange, compare, rewind
-from services.map_store.storage.graph import AddPlace, Graph, Place, Step, apply
+from services.map_store.storage.graph import AddStoredNode, Graph, Step, StoredNode, apply
 from shared.messages.maps import DeleteEdge, DeleteNode, Edge, Node, PutEdge, UpdateNode
 from tests.unit.services.map_store.storage.test_graph import STEPS, TRIANGLE, edge, place
 
@@ -44,7 +44,7 @@ def test_deleting_a_node_removes_its_edges_and_changes_no_other():
         pytest.param(
             [
                 DeleteNode(node_id=1),
-                AddPlace(place=Place(node=Node(node_id=1), features="f1", thumbnail="new")),
+                AddStoredNode(place=StoredNode(node=Node(node_id=1), features="f1", thumbnail="new")),
                 edge(0, 1),
                 edge(1, 2),
             ],
@@ -120,7 +120,7 @@ def brute(before: Graph, after: Graph) -> dict[str, object]:
         f"{thing}_{how}": [] for thing in ("nodes", "edges") for how in ("added", "removed", "changed")
     }
     for number in range(10):
-        _note(found, "nodes", number, before.places.get(number), after.places.get(number))
+        _note(found, "nodes", number, before.nodes.get(number), after.nodes.get(number))
     for key in product(range(10), repeat=2):
         _note(found, "edges", key, before.edges.get(key), after.edges.get(key))
     found["edges_changed"] = [

@@ -45,7 +45,7 @@ def test_a_backup_is_one_moment_of_a_store_that_is_being_written(store: MapStore
     kept = sorted(graph_in(tmp_path / "b.sqlite3")[0])
     assert kept == list(range(len(kept)))
     assert len(kept) >= 2
-    assert len(store.graph("flat")[1].places) == 40
+    assert len(store.graph("flat")[1].nodes) == 40
     assert not list(tmp_path.glob("*.new*"))
 
 
@@ -53,7 +53,7 @@ def test_a_damaged_database_does_not_replace_a_good_backup(store: MapStore, live
     copy = tmp_path / "b.sqlite3"
     back_up(live, copy)
     good = copy.read_bytes()
-    damage(store.database, store.graph("flat")[1].places[0].features)
+    damage(store.database, store.graph("flat")[1].nodes[0].features)
     with pytest.raises(
         CorruptError, match=r"1 things are damaged: flat features of node 0: .*nothing was changed"
     ):

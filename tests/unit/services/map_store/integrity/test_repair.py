@@ -41,7 +41,7 @@ def test_a_damaged_row_is_written_anew_from_the_history(chain: MapStore, databas
     assert store.undo("flat")[1] == 3
 
 
-def test_a_node_without_features_goes_with_its_edges_and_an_undo_brings_it_back_in_quarantine(
+def test_a_node_without_features_goes_with_its_edges_and_an_undo_brings_it_back_without_them(
     chain: MapStore, told: Told
 ):
     before = graph_of(chain)
@@ -144,7 +144,7 @@ def test_a_sound_map_is_left_as_it_is(chain: MapStore):
 
 def test_rest_checks_and_repairs(client: TestClient, store: MapStore):
     assert client.get("/check").json() == {"damage": []}
-    damage(store.database, store.graph("flat")[1].places[1].features)
+    damage(store.database, store.graph("flat")[1].nodes[1].features)
     listed = client.get("/maps/flat/check").json()["damage"]
     assert [(entry["map"], entry["thing"]) for entry in listed] == [("flat", "features of node 1")]
     assert client.get("/maps/garden/check").status_code == 404

@@ -54,7 +54,7 @@ def test_import_gives_the_same_map_under_another_name(client: TestClient, store:
     made = client.post("/maps/import", params={"name": "copy"}, content=exported)
     assert made.status_code == 201
     assert made.json()["nodes"] == 3
-    assert dict(store.graph("copy")[1].places) == dict(store.graph("flat")[1].places)
+    assert dict(store.graph("copy")[1].nodes) == dict(store.graph("flat")[1].nodes)
     assert dict(store.graph("copy")[1].edges) == dict(store.graph("flat")[1].edges)
     assert (
         client.get("/maps/copy/nodes/2/thumbnail").content

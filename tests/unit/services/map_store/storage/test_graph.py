@@ -5,13 +5,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from services.map_store.errors import ConflictError, InvalidError, MissingError
-from services.map_store.storage import graph as graphs
-from services.map_store.storage.graph import AddPlace, Graph, Place, Step, apply
+from services.map_store.storage.graph import AddStoredNode, Graph, Step, StoredNode, apply
+from shared.mapgraph import operations
 from shared.messages.maps import DeleteEdge, DeleteNode, Edge, Node, PutEdge, UpdateNode
 
 
-def place(number: int, stamp_ns: int = 0) -> AddPlace:
-    return AddPlace(place=Place(node=Node(node_id=number, stamp_ns=stamp_ns), features=f"f{number}"))
+def place(number: int, stamp_ns: int = 0) -> AddStoredNode:
+    return AddStoredNode(
+        place=StoredNode(node=Node(node_id=number, stamp_ns=stamp_ns), features=f"f{number}")
+    )
 
 
 def edge(a: int, b: int, inliers: int = 0) -> PutEdge:
@@ -22,22 +24,22 @@ TRIANGLE = apply(Graph(), [place(0), place(1), place(2), edge(0, 1), edge(1, 2),
 
 
 def test_steps_are_applied_in_order():
-    assert set(TRIANGLE.places) == {0, 1, 2}
+    assert set(TRIANGLE.nodes) == {0, 1, 2}
     assert set(TRIANGLE.edges) == {(0, 1), (1, 2), (0, 2)}
 
 
 def test_the_graph_before_stays_as_it_was():
     apply(TRIANGLE, [DeleteNode(node_id=0)])
-    assert set(TRIANGLE.places) == {0, 1, 2}
+    assert set(TRIANGLE.nodes) == {0, 1, 2}
     with pytest.raises(TypeError):
-        TRIANGLE.places[3] = place(3).place  # type: ignore[index]
+        TRIANGLE.nodes[3] = place(3).place  # type: ignore[index]
 
 
 def test_deleting_a_node_deletes_its_edges_and_no_other():
     change = apply(TRIANGLE, [DeleteNode(node_id=1)])
     assert set(change.graph.edges) == {(0, 2)}
     assert change.edges == {(0, 1), (1, 2)}
-    assert change.rewritten == {1}
+    assert change.nodes == {1}
 
 
 def test_edges_put_after_the_first_deletion_are_deleted_with_their_node():
@@ -53,10 +55,10 @@ def test_putting_an_edge_again_replaces_it():
 
 def test_updating_a_node_keeps_its_pictures():
     change = apply(TRIANGLE, [UpdateNode(node=Node(node_id=1, keypoints=9))])
-    assert change.graph.places[1].node.keypoints == 9
-    assert change.graph.places[1].features == "f1"
-    assert change.updated == {1}
-    assert not change.rewritten
+    assert change.graph.nodes[1].node.keypoints == 9
+    assert change.graph.nodes[1].features == "f1"
+    assert change.nodes == {1}
+    assert change.inverse == (UpdateNode(node=Node(node_id=1)),)
 
 
 @pytest.mark.parametrize(
@@ -80,7 +82,7 @@ def test_steps_that_do_not_fit_are_refused_by_number_and_name(step: Step, error:
 
 def test_a_full_map_takes_no_more(monkeypatch: pytest.MonkeyPatch):
     square = apply(TRIANGLE, [place(3)]).graph
-    monkeypatch.setattr(graphs, "MAX_CONTAINER", 3)
+    monkeypatch.setattr(operations, "MAX_CONTAINER", 3)
     with pytest.raises(InvalidError, match="at most 3 nodes"):
         apply(TRIANGLE, [place(3)])
     with pytest.raises(InvalidError, match="at most 3 edges"):
@@ -110,7 +112,7 @@ def test_whatever_was_done_the_inverse_leads_back_and_every_edge_has_both_ends(s
             continue
         fitting.append(step)
     change = apply(TRIANGLE, fitting)
-    assert all(end in change.graph.places for key in change.graph.edges for end in key)
+    assert all(end in change.graph.nodes for key in change.graph.edges for end in key)
     back = apply(change.graph, change.inverse).graph
-    assert dict(back.places) == dict(TRIANGLE.places)
+    assert dict(back.nodes) == dict(TRIANGLE.nodes)
     assert dict(back.edges) == dict(TRIANGLE.edges)

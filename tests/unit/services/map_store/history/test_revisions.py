@@ -8,7 +8,7 @@ from sqlalchemy import delete, select, update
 from services.map_store.errors import CorruptError, MissingError
 from services.map_store.history.comparison import Comparison, compare
 from services.map_store.storage import tables
-from services.map_store.storage.graph import AddPlace, Graph, apply
+from services.map_store.storage.graph import AddStoredNode, Graph, apply
 from services.map_store.storage.rows import STEPS, read_history
 from services.map_store.store import MapStore
 from shared.messages.maps import DeleteEdge, DeleteNode, Node, UpdateNode
@@ -50,18 +50,18 @@ def test_any_two_revisions_compare_as_the_history_replayed_forwards(lived: MapSt
     graphs = replayed(lived, "house")
     assert len(graphs) == 9
     for start, end in product(range(9), repeat=2):
-        assert lived.past.compare("house", start, end) == (end, compare(graphs[start], graphs[end]))
+        assert lived.compare("house", start, end) == (end, compare(graphs[start], graphs[end]))
 
 
 def test_the_newest_revision_is_the_end_when_none_is_given(lived: MapStore):
-    assert lived.past.compare("house", 3, None) == lived.past.compare("house", 3, 8)
+    assert lived.compare("house", 3, None) == lived.compare("house", 3, 8)
 
 
 def test_a_restored_map_starts_empty(store: MapStore):
     store.transact("flat", [add(0)])
-    place = store.graph("flat")[1].places[0]
-    store.restore("copy", (AddPlace(place=place),), lambda _: b"bytes", "rest")
-    assert store.past.compare("copy", 0, None) == (1, Comparison((0,), (), (), (), (), ()))
+    place = store.graph("flat")[1].nodes[0]
+    store.restore("copy", (AddStoredNode(place=place),), lambda _: b"bytes", "rest")
+    assert store.compare("copy", 0, None) == (1, Comparison((0,), (), (), (), (), ()))
 
 
 @pytest.mark.parametrize(("start", "end"), [(9, None), (0, 9), (9, 0), (-1, 3), (2**63 - 1, None)])
@@ -69,16 +69,16 @@ def test_a_revision_that_is_not_there_is_named_with_those_that_are(
     lived: MapStore, start: int, end: int | None
 ):
     with pytest.raises(MissingError, match=r"map 'house': revision \S+ does not exist; revisions: 0 to 8"):
-        lived.past.compare("house", start, end)
+        lived.compare("house", start, end)
 
 
 def test_damage_on_the_way_back_is_told_and_does_not_touch_newer_revisions(lived: MapStore):
     table = tables.revisions
     with lived.database.write() as connection:
         connection.execute(update(table).where(table.c.revision == 5).values(content=b"\x80"))
-    assert lived.past.compare("house", 5, 8)[0] == 8
+    assert lived.compare("house", 5, 8)[0] == 8
     with pytest.raises(CorruptError, match="revision 5: the stored operations do not match"):
-        lived.past.compare("house", 4, 8)
+        lived.compare("house", 4, 8)
 
 
 def test_a_gap_in_the_history_is_damage(lived: MapStore):
@@ -86,4 +86,4 @@ def test_a_gap_in_the_history_is_damage(lived: MapStore):
     with lived.database.write() as connection:
         connection.execute(delete(table).where(table.c.revision == 5))
     with pytest.raises(CorruptError, match="revision 5: its record is missing"):
-        lived.past.compare("house", 4, 8)
+        lived.compare("house", 4, 8)

@@ -1,0 +1,139 @@
+"""What the operations of a transaction do to a graph: checked, carried out, and with the way back. Pure.
+
+The map store keeps checksums with each node, a planner only its record: `N` is what either calls a node.
+"""
+
+from collections.abc import Callable
+from typing import Generic, NamedTuple, TypeVar
+
+from shared.messages.maps import DeleteEdge, DeleteNode, Edge, PutEdge
+from shared.wire import MAX_CONTAINER
+
+N = TypeVar("N")
+
+Key = tuple[int, int]
+"""The two nodes of an edge, a < b."""
+
+
+class GraphError(ValueError):
+    """An operation that does not fit the graph; it changed nothing."""
+
+
+class UnknownError(GraphError):
+    """It names a node or an edge that is not there."""
+
+
+class TakenError(GraphError):
+    """It adds a node whose number another one has."""
+
+
+class FullError(GraphError):
+    """The graph would be larger than one message about it may be."""
+
+
+class NodeWrite(NamedTuple, Generic[N]):
+    """A node before and after; None where there is none."""
+
+    node_id: int
+    before: N | None
+    after: N | None
+
+
+class EdgeWrite(NamedTuple):
+    """An edge before and after; None where there is none."""
+
+    key: Key
+    before: Edge | None
+    after: Edge | None
+
+
+class Draft(Generic[N]):
+    """A graph being changed in place.
+
+    Attributes:
+        nodes, edges: as they are by now, by number and by pair of numbers.
+        writes: what was done; backwards, with before and after exchanged, it leads back.
+    """
+
+    def __init__(self, nodes: dict[int, N], edges: dict[Key, Edge]) -> None:
+        self.nodes, self.edges = nodes, edges
+        self.writes: list[NodeWrite[N] | EdgeWrite] = []
+        self._neighbours: dict[int, set[int]] | None = None
+
+    def add(self, node_id: int, node: N) -> None:
+        """Add a node. Raises TakenError, FullError."""
+        if node_id in self.nodes:
+            raise TakenError(f"node {node_id} exists already")
+        if len(self.nodes) >= MAX_CONTAINER:
+            raise FullError(f"a map holds at most {MAX_CONTAINER} nodes; start another map")
+        self._write_node(node_id, node)
+
+    def update(self, node_id: int, changed: Callable[[N], N]) -> None:
+        """Put another node in the place of one, its edges stay. Raises UnknownError."""
+        self._write_node(node_id, changed(self._node(node_id)))
+
+    def apply(self, operation: DeleteNode | PutEdge | DeleteEdge) -> None:
+        """Do what is the same whatever a node is. Raises UnknownError, FullError."""
+        match operation:
+            case DeleteNode(node_id=node_id):
+                self._delete(node_id)
+            case PutEdge(edge=edge):
+                self._put_edge(edge)
+            case DeleteEdge(a=a, b=b):
+                self._delete_edge((a, b))
+
+    def _delete(self, node_id: int) -> None:
+        self._node(node_id)
+        for other in sorted(self._adjacency().get(node_id, ())):
+            self._delete_edge((min(node_id, other), max(node_id, other)))
+        self._write_node(node_id, None)
+
+    def _put_edge(self, edge: Edge) -> None:
+        key = (edge.a, edge.b)
+        for end in key:
+            self._node(end)
+        if key not in self.edges and len(self.edges) >= MAX_CONTAINER:
+            raise FullError(f"a map holds at most {MAX_CONTAINER} edges; start another map")
+        self._write_edge(key, edge)
+
+    def _delete_edge(self, key: Key) -> None:
+        if key not in self.edges:
+            raise UnknownError(f"edge {key[0]}-{key[1]} does not exist")
+        self._write_edge(key, None)
+
+    def _node(self, node_id: int) -> N:
+        if node_id not in self.nodes:
+            raise UnknownError(f"node {node_id} does not exist")
+        return self.nodes[node_id]
+
+    def _write_node(self, node_id: int, after: N | None) -> None:
+        self.writes.append(NodeWrite(node_id, self.nodes.get(node_id), after))
+        if after is not None:
+            self.nodes[node_id] = after
+        else:
+            del self.nodes[node_id]
+
+    def _write_edge(self, key: Key, after: Edge | None) -> None:
+        self.writes.append(EdgeWrite(key, self.edges.get(key), after))
+        if after is not None:
+            self.edges[key] = after
+        else:
+            del self.edges[key]
+        if self._neighbours is not None:
+            _join(self._neighbours, key, joined=after is not None)
+
+    def _adjacency(self) -> dict[int, set[int]]:
+        """Who is joined to whom; built when the first node is deleted, kept up to date from then on."""
+        if self._neighbours is None:
+            self._neighbours = {}
+            for key in self.edges:
+                _join(self._neighbours, key, joined=True)
+        return self._neighbours
+
+
+def _join(neighbours: dict[int, set[int]], key: Key, joined: bool) -> None:
+    for one, other in (key, key[::-1]):
+        if joined:
+            neighbours.setdefault(one, set()).add(other)
+        else:
+            neighbours[one].discard(other)
