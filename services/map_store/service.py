@@ -21,6 +21,8 @@ R = TypeVar("R", bound=Message)
 log = logging.getLogger(__name__)
 
 PERIOD_S = 0.5
+"""A signal to stop is seen after at most this long; questions and deltas end the wait at once."""
+
 READING = frozenset({"read", "read_features"})
 
 

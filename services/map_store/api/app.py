@@ -26,7 +26,7 @@ STALLED_S = 30.0
 LEAST_BYTES_PER_S = 1.0
 """None worth the name: a body that flows may take its time."""
 
-DESCRIPTION = "Maps of places: their nodes, edges, pictures and history. Errors are RFC 9457 problems."
+DESCRIPTION = "Topological maps: their nodes, edges, pictures and history. Errors are RFC 9457 problems."
 
 
 def create_app(

@@ -20,7 +20,11 @@ from services.map_store.store import MapStore
 
 ZIP: dict[int | str, dict[str, Any]] = {200: {"content": {"application/zip": {}}}}
 IN_MEMORY_BYTES = 8_000_000
+"""An archive up to this long needs no file: 50 nodes of 300 SIFT descriptors, 0.16 MB each."""
+
 CHUNK_BYTES = 1_000_000
+"""Read and sent at once; so much memory a slow reader holds."""
+
 FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.ENOENT})
 """What a full disk says; ENOENT because then `tempfile` finds no folder that it can write to."""
 NewName = Annotated[str | None, Query(alias="name", pattern=r"^[a-z0-9_-]{1,64}$")]
@@ -77,8 +81,8 @@ def _room() -> Iterator[None]:
     except OSError as error:
         if error.errno not in FULL:
             raise
-        told = f"no room for an archive in the folder for temporary files: {error.strerror}"
-        raise StorageFullError(f"{told}; free some space (TMPDIR names the folder)") from error
+        full = f"no room for an archive in the folder for temporary files: {error.strerror}"
+        raise StorageFullError(f"{full}; free some space (TMPDIR names the folder)") from error
 
 
 def _chunks(file: IO[bytes]) -> Iterator[bytes]:

@@ -22,7 +22,7 @@ MAX_REVISION = 2**63 - 1
 RevisionNumber = Annotated[int, Query(ge=0, le=MAX_REVISION)]
 Start = Annotated[int, Query(alias="from", ge=0, le=MAX_REVISION, description="revision to compare from")]
 End = Annotated[int | None, Query(alias="to", ge=0, le=MAX_REVISION, description="revision to compare to")]
-Limit = Annotated[int, Query(ge=1, le=1000)]
+Limit = Annotated[int, Query(ge=1, le=1000)]  # what the console shows is a hundred
 
 
 def build(store: MapStore, write: Sequence[Depends]) -> APIRouter:

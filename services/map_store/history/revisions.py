@@ -76,8 +76,8 @@ def entries(
         if row is None or not intact(revisions, row):
             listed.append(Revision(number, "", 0, 0, None, f"unreadable: {_lacks(row)}"))
             continue
-        said = summaries.of(connection, found.map_id, number, row.sha256)
-        listed.append(Revision(number, row.author, row.stamp_ns, row.steps, row.undoes, said))
+        summary = summaries.of(connection, found.map_id, number, row.sha256)
+        listed.append(Revision(number, row.author, row.stamp_ns, row.steps, row.undoes, summary))
     return listed
 
 

@@ -58,8 +58,8 @@ def rows(connection: Connection, found: MapRecord) -> Iterator[Finding]:
                 thing, _, reason = str(error).partition(": ")
                 yield thing, reason
     if counts != [found.node_count, found.edge_count]:
-        told = f"{found.node_count} nodes and {found.edge_count} edges expected"
-        yield "graph", f"{told}, got {counts[0]} and {counts[1]}"
+        expected = f"{found.node_count} nodes and {found.edge_count} edges expected"
+        yield "graph", f"{expected}, got {counts[0]} and {counts[1]}"
 
 
 def lost_blobs(connection: Connection, found: MapRecord, used: Iterable[str]) -> dict[str, str]:
@@ -89,10 +89,10 @@ def _history(replayed: Replay, revision: int) -> Iterator[Finding]:
 
 
 def _contents(connection: Connection, found: MapRecord) -> Iterator[Finding]:
-    """Features and thumbnails: of a node when it has one, else of the past that an undo may bring back."""
+    """Features and thumbnails: of a node when it has one, else of a revision that an undo may bring back."""
     used: dict[str, list[str]] = {}
     for row in connection.execute(select(nodes).where(nodes.c.map_id == found.map_id)).all():
-        if not intact(nodes, row):  # told already, and nobody knows what it refers to
+        if not intact(nodes, row):  # listed already, and nobody knows what it refers to
             continue
         used.setdefault(row.features, []).append(f"features of node {row.node_id}")
         if row.thumbnail is not None:

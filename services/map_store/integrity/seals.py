@@ -16,9 +16,9 @@ def seal(table: Table, values: Mapping[Any, Any]) -> str:
     return digest([table.name, *(values[name] for name in _sealed(table))])
 
 
-def digest(said: Sequence[object]) -> str:
+def digest(values: Sequence[object]) -> str:
     """Checksum of plain values."""
-    return hashlib.sha256(msgpack.packb(said)).hexdigest()
+    return hashlib.sha256(msgpack.packb(values)).hexdigest()
 
 
 def sealed(table: Table, values: Mapping[str, Any]) -> dict[str, Any]:

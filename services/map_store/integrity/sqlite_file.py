@@ -5,10 +5,10 @@ from sqlalchemy import Connection
 
 def damage(connection: Connection) -> tuple[str, ...]:
     """Read the whole file; what is wrong with its trees, indexes and free pages."""
-    told = connection.exec_driver_sql("PRAGMA integrity_check").scalars().all()
-    if list(told) == ["ok"]:
+    lines = connection.exec_driver_sql("PRAGMA integrity_check").scalars().all()
+    if list(lines) == ["ok"]:
         return ()
-    return tuple(" ".join(str(line).removeprefix("*** in database main ***").split()) for line in told)
+    return tuple(" ".join(str(line).removeprefix("*** in database main ***").split()) for line in lines)
 
 
 def dangling(connection: Connection) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from services.map_store.integrity.seals import intact, sealed
 from services.map_store.storage.tables import answers
 
 KEPT = 10_000
-"""The newest answers; who asks again does so within seconds."""
+"""The newest answers: ten minutes of 16 writes a second, and who asks again does so within seconds."""
 
 
 def revision_of(connection: Connection, map_name: str, request_id: str) -> int | None:

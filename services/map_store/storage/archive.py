@@ -19,9 +19,11 @@ from shared.wire import MAX_CONTAINER
 INDEX = "map.json"
 BLOBS = "blobs/"
 MAX_INDEX_BYTES = 64_000_000
+"""Twice what the largest map needs: MAX_CONTAINER nodes of 0.8 kB and as many edges of 0.6 kB."""
 MAX_BLOB_BYTES = 64_000_000
+"""The longest frame on the bus (`shared.topics.FRAME`): its features and its thumbnail are shorter."""
 MAX_DIRECTORY_BYTES = 10_000_000
-"""Twice what a map with as many places as the bus carries needs for their two blobs each."""
+"""Twice what a map with as many nodes as the bus carries needs for their two blobs each."""
 EPOCH = (1980, 1, 1, 0, 0, 0)
 """Time stamp of every entry: the earliest a zip can hold."""
 

@@ -17,7 +17,7 @@ log = logging.getLogger(__name__)
 
 Kind = Literal["features", "thumbnail"]
 MAX_ANSWER_BYTES = 400_000_000
-"""Features in one answer; `shared.topics.MAP` carries 512 MB."""
+"""Features in one answer; the 512 MB that `shared.topics.MAP` carries leave room for the rest of it."""
 
 
 class Contents:

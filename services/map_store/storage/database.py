@@ -16,6 +16,7 @@ from services.map_store.storage.engines import BUSY_TIMEOUT_S, is_sqlite, open_e
 log = logging.getLogger(__name__)
 
 SHOWN = 5
+"""Lines of damage in the log; `topnav map check` lists all."""
 FULL = ("database or disk is full", "no space left", "disk full", "could not extend file")
 BUSY = "lock timeout"
 MALFORMED = ("malformed", "not a database", "too big")
@@ -119,11 +120,13 @@ class Database:
         except SQLAlchemyError as error:
             cause = str(error.orig if isinstance(error, DBAPIError) else error).strip()
             if any(sign in cause.lower() for sign in FULL):
-                told = f"nothing was written: {cause}: {self._where}; free some space, reads go on"
-                raise StorageFullError(told) from error
+                raise StorageFullError(
+                    f"nothing was written: {cause}: {self._where}; free some space, reads go on"
+                ) from error
             if BUSY in cause.lower():
-                told = f"database: another map store writes since {BUSY_TIMEOUT_S:g} s; try again"
-                raise UnavailableError(told) from error
+                raise UnavailableError(
+                    f"database: another map store writes since {BUSY_TIMEOUT_S:g} s; try again"
+                ) from error
             if any(sign in cause.lower() for sign in MALFORMED):
                 raise CorruptError(f"database: {cause[:200]}; {ADVICE}") from error
             raise UnavailableError(f"database: {type(error).__name__}: {cause[:200]}") from error

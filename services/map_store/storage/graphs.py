@@ -11,6 +11,7 @@ from services.map_store.storage.graph import Graph
 from services.map_store.storage.rows import read_graph
 
 CACHED_MAPS = 32
+"""More than the robots of one store use at once; 20,000 nodes and edges take 73 MB (tracemalloc)."""
 
 
 class Graphs:

@@ -69,8 +69,8 @@ def _from_1(connection: Connection) -> None:
 
 
 def _add_column(connection: Connection, table: Table, column: Column[Any]) -> None:
-    words = CreateColumn(column).compile(dialect=connection.dialect)
-    connection.execute(text(f"ALTER TABLE {table.name} ADD COLUMN {words}"))
+    definition = CreateColumn(column).compile(dialect=connection.dialect)
+    connection.execute(text(f"ALTER TABLE {table.name} ADD COLUMN {definition}"))
 
 
 def _seal_rows(connection: Connection, table: Table) -> None:

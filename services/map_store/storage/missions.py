@@ -17,6 +17,7 @@ from shared.wire import WireError, decode, encode
 log = logging.getLogger(__name__)
 
 MAX_EPOCH = 2**62
+"""A database integer holds twice as much: there is always a next epoch."""
 
 
 class MissionStore:

@@ -1,4 +1,4 @@
-"""Opening a zip of strangers: its directory is bounded before it is read."""
+"""Opening a zip from outside: its directory is bounded before it is read."""
 
 import struct
 import zipfile
