@@ -8,7 +8,7 @@ from services.map_store.storage.database import Database
 from tests.postgres import PostgresServer
 from tests.unit.services.map_store import conftest, test_damage, test_store
 from tests.unit.services.map_store.api import test_history_api
-from tests.unit.services.map_store.history import test_past
+from tests.unit.services.map_store.history import test_revisions
 from tests.unit.services.map_store.integrity import test_repair
 from tests.unit.services.map_store.storage import test_answers, test_missions
 
@@ -18,7 +18,7 @@ BORROWED = {
     test_damage: ("two",),
     test_history_api: (),
     test_missions: (),
-    test_past: ("lived",),
+    test_revisions: ("lived",),
     test_repair: ("chain",),
     test_store: (),
 }

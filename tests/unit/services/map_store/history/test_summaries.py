@@ -83,7 +83,7 @@ def test_the_cache_lets_the_oldest_go(store: MapStore, monkeypatch: pytest.Monke
     for number in range(5):
         store.transact("flat", [add(number)])
     assert told(store) == [f"node {number} added" for number in (4, 3, 2, 1, 0)]
-    assert len(store._summaries._said) == 2
+    assert len(store._summaries._summaries) == 2
 
 
 def test_a_damaged_revision_says_so_and_the_others_are_listed(store: MapStore):
