@@ -12,6 +12,7 @@ SERVICES = ("features", "map_store", "planner", "drive", "gateway", "recorder", 
 # Pure code: the same input gives the same output, whatever the clock, the bus and the environment say.
 PURE = (
     "shared/geometry/**/*.py",
+    "shared/mapgraph/**/*.py",
     "shared/messages/**/*.py",
     "services/planner/**/*.py",
     "services/drive/**/*.py",

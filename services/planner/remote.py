@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from services.planner.ports import Matches
 from shared.bus import Bus
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.operations import GraphError
 from shared.mapgraph.rebasing import rebased
 from shared.mapgraph.routing import GOAL
 from shared.messages import MapReply, MapRequest, MatchRequest
@@ -44,7 +45,11 @@ class RemoteMap:
         if delta.reset or gone or delta.revision != self.revision + 1:
             self.load(create=False)
             return
-        self.graph.apply(delta.operations)
+        try:
+            self.graph.apply(delta.operations)
+        except GraphError:  # the copy was not what it should be
+            self.load(create=False)
+            return
         self.revision = delta.revision
 
     def commit(self, operations: Sequence[Operation]) -> None:

@@ -6,11 +6,14 @@ close. A neighbour seen in the same frame whose triangle closes supports the nod
 contradicts it.
 """
 
-from collections.abc import Mapping, Set
+from collections.abc import Callable, Mapping, Set
+from typing import Any, TypeVar
 
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.triangle import Sight, triangle_closes
 from shared.messages.matching import NodeMatch
+
+K = TypeVar("K")
 
 NEAR_HOPS = 1
 """Within so many edges of the node the robot came from an edge closes no loop."""
@@ -91,17 +94,34 @@ def contradicted(
         Node and reason.
     """
     votes = _votes(graph, matches, voters if voters is not None else matches)
-    refused: dict[int, str] = {}
-    while True:
-        balance = {
-            node: sum(vote for neighbour, vote in seen.items() if neighbour not in refused)
-            for node, seen in votes.items()
-            if node not in refused
-        }
-        worst = min(balance, key=lambda node: (balance[node], node), default=None)
-        if worst is None or balance[worst] >= 0:
-            return refused
-        refused[worst] = f"{-balance[worst]} more matches of its neighbours speak against node {worst}"
+    against = outvoted(votes, least=0, order=lambda node: node)
+    return {
+        node: f"{-balance} more matches of its neighbours speak against node {node}"
+        for node, balance in against.items()
+    }
+
+
+def outvoted(votes: Mapping[K, Mapping[K, int]], least: int, order: Callable[[K], Any]) -> dict[K, int]:
+    """Those who get less than `least` votes once others with less are gone, weakest first.
+
+    Args:
+        votes: by who is judged, those who judge and how many votes they give, negative against.
+        least: balance of votes with which one stays.
+        order: who goes first of those with the same balance.
+
+    Returns:
+        Their balances.
+    """
+    balance = {one: sum(given.values()) for one, given in votes.items()}
+    gone: dict[K, int] = {}
+    while balance:
+        worst = min(balance, key=lambda one: (balance[one], order(one)))
+        if balance[worst] >= least:
+            break
+        gone[worst] = balance.pop(worst)
+        for one in balance:
+            balance[one] -= votes[one].get(worst, 0)
+    return gone
 
 
 def _votes(
@@ -120,21 +140,17 @@ def _votes(
 
 
 def _can_judge(graph: MapGraph, matches: Mapping[int, NodeMatch], node: int, neighbour: int) -> bool:
-    edge = graph.edge(node, neighbour)
-    yaws = (edge.yaw_ab_rad if edge else None, matches[node].yaw_rad, matches[neighbour].yaw_rad)
-    return all(yaw is not None for yaw in yaws)
+    yaws = matches[node].yaw_rad, matches[neighbour].yaw_rad
+    return graph.sight(node, neighbour) is not None and None not in yaws
 
 
 def is_consistent(graph: MapGraph, matches: Mapping[int, NodeMatch], node: int, neighbour: int) -> bool:
     """Whether the triangle of frame, node and neighbour closes."""
-    edge, to_node, to_neighbour = graph.edge(node, neighbour), matches[node], matches[neighbour]
-    if edge is None or edge.yaw_ab_rad is None:
-        return False
-    yaw_rad = edge.yaw_ab_rad if edge.a == node else -edge.yaw_ab_rad
-    return triangle_closes(
+    onward, to_node, to_neighbour = graph.sight(node, neighbour), matches[node], matches[neighbour]
+    return onward is not None and triangle_closes(
         Sight(to_node.heading_rad, to_node.yaw_rad),
         Sight(to_neighbour.heading_rad, to_neighbour.yaw_rad),
-        Sight(graph.heading(node, neighbour), yaw_rad),
+        onward,
     )
 
 

@@ -4,10 +4,10 @@ from collections.abc import Iterable
 
 import networkx as nx
 
-from shared.messages.maps import AddNode, DeleteEdge, DeleteNode, Edge, Node, Operation, PutEdge, UpdateNode
-
-EdgeKey = tuple[int, int]
-"""The two nodes of an edge, the lower id first."""
+from shared.mapgraph.operations import Draft
+from shared.mapgraph.operations import EdgeKey as EdgeKey
+from shared.mapgraph.triangle import Sight
+from shared.messages.maps import AddNode, Edge, Node, Operation, UpdateNode
 
 
 def edge_key(first: int, second: int) -> EdgeKey:
@@ -24,19 +24,21 @@ class MapGraph:
         self._linked: nx.Graph[int] | None = None
 
     def apply(self, operations: Iterable[Operation]) -> None:
-        """Change the graph as the map store does."""
+        """Change the graph as the map store does.
+
+        Raises:
+            GraphError: they do not fit; those before the one that does not are done.
+        """
         self._linked = None
+        draft = Draft(self.nodes, self.edges)
         for operation in operations:
             match operation:
-                case AddNode() | UpdateNode():
-                    self.nodes[operation.node.node_id] = operation.node
-                case DeleteNode():
-                    self.nodes.pop(operation.node_id, None)
-                    self.edges = {ends: e for ends, e in self.edges.items() if operation.node_id not in ends}
-                case PutEdge():
-                    self.edges[operation.edge.a, operation.edge.b] = operation.edge
-                case DeleteEdge():
-                    self.edges.pop((operation.a, operation.b), None)
+                case AddNode(node=node):
+                    draft.add(node.node_id, node)
+                case UpdateNode(node=node):
+                    draft.update(node.node_id, node)
+                case _:
+                    draft.apply(operation)
 
     def next_id(self) -> int:
         """An id no node has had while the newest ones exist."""
@@ -57,6 +59,15 @@ class MapGraph:
         if edge is None:
             return None
         return edge.heading_ab_rad if edge.a == node_id else edge.heading_ba_rad
+
+    def sight(self, node_id: int, neighbour: int) -> Sight | None:
+        """A neighbour as seen from a node; None where no edge leads there or its yaw is unknown."""
+        edge = self.edge(node_id, neighbour)
+        if edge is None or edge.yaw_ab_rad is None:
+            return None
+        if edge.a == node_id:
+            return Sight(edge.heading_ab_rad, edge.yaw_ab_rad)
+        return Sight(edge.heading_ba_rad, -edge.yaw_ab_rad)
 
     def within(self, start: int, hops: int) -> set[int]:
         """Nodes at most so many edges from `start`, suspended ones excluded; `start` is one of them."""

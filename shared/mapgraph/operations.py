@@ -3,7 +3,6 @@
 The map store keeps checksums with each node, a planner only its record: `N` is what either calls a node.
 """
 
-from collections.abc import Callable
 from typing import Generic, NamedTuple, TypeVar
 
 from shared.messages.maps import DeleteEdge, DeleteNode, Edge, PutEdge
@@ -11,7 +10,7 @@ from shared.wire import MAX_CONTAINER
 
 N = TypeVar("N")
 
-Key = tuple[int, int]
+EdgeKey = tuple[int, int]
 """The two nodes of an edge, a < b."""
 
 
@@ -42,7 +41,7 @@ class NodeWrite(NamedTuple, Generic[N]):
 class EdgeWrite(NamedTuple):
     """An edge before and after; None where there is none."""
 
-    key: Key
+    key: EdgeKey
     before: Edge | None
     after: Edge | None
 
@@ -55,7 +54,7 @@ class Draft(Generic[N]):
         writes: what was done; backwards, with before and after exchanged, it leads back.
     """
 
-    def __init__(self, nodes: dict[int, N], edges: dict[Key, Edge]) -> None:
+    def __init__(self, nodes: dict[int, N], edges: dict[EdgeKey, Edge]) -> None:
         self.nodes, self.edges = nodes, edges
         self.writes: list[NodeWrite[N] | EdgeWrite] = []
         self._neighbours: dict[int, set[int]] | None = None
@@ -68,9 +67,16 @@ class Draft(Generic[N]):
             raise FullError(f"a map holds at most {MAX_CONTAINER} nodes; start another map")
         self._write_node(node_id, node)
 
-    def update(self, node_id: int, changed: Callable[[N], N]) -> None:
+    def update(self, node_id: int, node: N) -> None:
         """Put another node in the place of one, its edges stay. Raises UnknownError."""
-        self._write_node(node_id, changed(self._node(node_id)))
+        self.node(node_id)
+        self._write_node(node_id, node)
+
+    def node(self, node_id: int) -> N:
+        """One node. Raises UnknownError."""
+        if node_id not in self.nodes:
+            raise UnknownError(f"node {node_id} does not exist")
+        return self.nodes[node_id]
 
     def apply(self, operation: DeleteNode | PutEdge | DeleteEdge) -> None:
         """Do what is the same whatever a node is. Raises UnknownError, FullError."""
@@ -83,7 +89,7 @@ class Draft(Generic[N]):
                 self._delete_edge((a, b))
 
     def _delete(self, node_id: int) -> None:
-        self._node(node_id)
+        self.node(node_id)
         for other in sorted(self._adjacency().get(node_id, ())):
             self._delete_edge((min(node_id, other), max(node_id, other)))
         self._write_node(node_id, None)
@@ -91,20 +97,15 @@ class Draft(Generic[N]):
     def _put_edge(self, edge: Edge) -> None:
         key = (edge.a, edge.b)
         for end in key:
-            self._node(end)
+            self.node(end)
         if key not in self.edges and len(self.edges) >= MAX_CONTAINER:
             raise FullError(f"a map holds at most {MAX_CONTAINER} edges; start another map")
         self._write_edge(key, edge)
 
-    def _delete_edge(self, key: Key) -> None:
+    def _delete_edge(self, key: EdgeKey) -> None:
         if key not in self.edges:
             raise UnknownError(f"edge {key[0]}-{key[1]} does not exist")
         self._write_edge(key, None)
-
-    def _node(self, node_id: int) -> N:
-        if node_id not in self.nodes:
-            raise UnknownError(f"node {node_id} does not exist")
-        return self.nodes[node_id]
 
     def _write_node(self, node_id: int, after: N | None) -> None:
         self.writes.append(NodeWrite(node_id, self.nodes.get(node_id), after))
@@ -113,7 +114,7 @@ class Draft(Generic[N]):
         else:
             del self.nodes[node_id]
 
-    def _write_edge(self, key: Key, after: Edge | None) -> None:
+    def _write_edge(self, key: EdgeKey, after: Edge | None) -> None:
         self.writes.append(EdgeWrite(key, self.edges.get(key), after))
         if after is not None:
             self.edges[key] = after
@@ -131,7 +132,7 @@ class Draft(Generic[N]):
         return self._neighbours
 
 
-def _join(neighbours: dict[int, set[int]], key: Key, joined: bool) -> None:
+def _join(neighbours: dict[int, set[int]], key: EdgeKey, joined: bool) -> None:
     for one, other in (key, key[::-1]):
         if joined:
             neighbours.setdefault(one, set()).add(other)

@@ -4,7 +4,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from services.map_store.history.comparison import Comparison, Value
 from services.map_store.history.revisions import Revision
-from shared.mapgraph.operations import Key
+from shared.mapgraph.operations import EdgeKey
 from shared.messages.base import Name
 
 
@@ -49,8 +49,8 @@ class ComparisonView(BaseModel):
     nodes_added: list[int]
     nodes_removed: list[int]
     nodes_changed: list[int]
-    edges_added: list[Key]
-    edges_removed: list[Key]
+    edges_added: list[EdgeKey]
+    edges_removed: list[EdgeKey]
     edges_changed: list[EdgeChangeView]
 
 

@@ -7,10 +7,10 @@ from typing import TypeVar
 
 from services.map_store.errors import ConflictError, CorruptError, InvalidError, MissingError
 from services.map_store.storage.graph import Graph, Step, apply
-from shared.mapgraph.operations import Key
+from shared.mapgraph.operations import EdgeKey
 from shared.messages.maps import Edge
 
-K = TypeVar("K", int, Key)
+K = TypeVar("K", int, EdgeKey)
 V = TypeVar("V")
 Value = bool | int | float | str | None
 """What a field of an edge holds."""
@@ -38,8 +38,8 @@ class Comparison:
     nodes_added: tuple[int, ...]
     nodes_removed: tuple[int, ...]
     nodes_changed: tuple[int, ...]
-    edges_added: tuple[Key, ...]
-    edges_removed: tuple[Key, ...]
+    edges_added: tuple[EdgeKey, ...]
+    edges_removed: tuple[EdgeKey, ...]
     edges_changed: tuple[EdgeChange, ...]
 
 

@@ -7,9 +7,9 @@ from sqlalchemy import Connection, func, select
 
 from services.map_store.errors import CorruptError, GivenUpError, MapError
 from services.map_store.history import revisions as history
-from services.map_store.storage.graph import AddStoredNode, Graph, Step, apply
+from services.map_store.storage.graph import AddStoredNode, Graph, Step, added_by, apply
 from services.map_store.storage.tables import revisions
-from shared.mapgraph.operations import Key
+from shared.mapgraph.operations import EdgeKey
 from shared.messages.maps import PutEdge, UpdateNode
 
 
@@ -28,7 +28,7 @@ class Replay:
     newest: int
     damaged: Mapping[int, str]
     graph: Graph | None
-    written: Mapping[int | Key, int]
+    written: Mapping[int | EdgeKey, int]
     blobs: frozenset[str]
 
 
@@ -39,7 +39,7 @@ def replay(connection: Connection, map_id: int, at_least: int = 0) -> Replay:
     done: list[Step] = []
     whole = True
     damaged: dict[int, str] = {}
-    written: dict[int | Key, int] = {}
+    written: dict[int | EdgeKey, int] = {}
     for number in range(1, newest + 1):
         try:
             steps = history.steps_of(connection, map_id, number, inverse=False)
@@ -50,7 +50,7 @@ def replay(connection: Connection, map_id: int, at_least: int = 0) -> Replay:
             continue
         done += steps
         written |= {_key(step): number for step in steps}
-    named = {name for step in done if isinstance(step, AddStoredNode) for name in step.place.blobs}
+    named = {sha256 for stored in added_by(done) for sha256 in stored.blobs}
     return Replay(newest, damaged, _applied(done) if whole else None, written, frozenset(named))
 
 
@@ -61,7 +61,7 @@ def _applied(steps: list[Step]) -> Graph | None:
         return None
 
 
-def _key(step: Step) -> int | Key:
+def _key(step: Step) -> int | EdgeKey:
     """The node or edge that a step writes."""
     match step:
         case AddStoredNode(place=stored):

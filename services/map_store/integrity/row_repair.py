@@ -12,7 +12,7 @@ from services.map_store.storage.catalogue import MapRecord
 from services.map_store.storage.graph import Graph, Step, StoredNode
 from services.map_store.storage.rows import edge_row, node_row, parse_edge, parse_node
 from services.map_store.storage.tables import edges, nodes
-from shared.mapgraph.operations import Key
+from shared.mapgraph.operations import EdgeKey
 from shared.messages.maps import DeleteEdge, DeleteNode, Edge
 
 Rows = Sequence[Row[Any]]
@@ -62,13 +62,13 @@ def _write_rows(
     """Write all rows of a graph anew; what good rows say of their revision stays."""
     for table in (edges, nodes):
         connection.execute(delete(table).where(table.c.map_id == found.map_id))
-    written: dict[int | Key, int] = dict(replayed.written)
+    written: dict[int | EdgeKey, int] = dict(replayed.written)
     for row in before:
         key, table = ((row.a, row.b), edges) if "a" in row._mapping else (row.node_id, nodes)
         if intact(table, row):
             written[key] = row.revision
 
-    def row_of(key: int | Key, thing: StoredNode | Edge) -> dict[str, Any]:
+    def row_of(key: int | EdgeKey, thing: StoredNode | Edge) -> dict[str, Any]:
         revision = written.get(key, found.revision)
         if isinstance(thing, Edge):
             return edge_row(found.map_id, revision, thing)

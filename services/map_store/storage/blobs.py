@@ -6,7 +6,7 @@ from typing import Any
 
 from sqlalchemy import Column, Connection, Select, delete, func, insert, select, update
 
-from services.map_store.errors import CorruptError
+from services.map_store.errors import CorruptError, MissingError
 from services.map_store.integrity.seals import matches
 from services.map_store.storage import tables
 from shared.messages.features import Features
@@ -44,6 +44,18 @@ def put(connection: Connection, map_id: int, contents: Mapping[str, bytes]) -> N
     rows = [{"sha256": n, "size": len(contents[n]), "data": contents[n]} for n in names if n not in known]
     if rows:
         connection.execute(insert(tables.blobs), rows)
+    _link(connection, map_id, names)
+
+
+def share(connection: Connection, map_id: int, names: Set[str]) -> None:
+    """Keep blobs of another map for this one as well; MissingError when they are gone with that map."""
+    there = _existing(connection, select(tables.blobs.c.sha256), tables.blobs.c.sha256, sorted(names))
+    if gone := names - there:
+        raise MissingError(f"{len(gone)} blobs are no longer there; was the map they belong to deleted?")
+    _link(connection, map_id, sorted(names))
+
+
+def _link(connection: Connection, map_id: int, names: list[str]) -> None:
     mine = select(tables.map_blobs.c.sha256).where(tables.map_blobs.c.map_id == map_id)
     linked = _existing(connection, mine, tables.map_blobs.c.sha256, names)
     links = [{"map_id": map_id, "sha256": name} for name in names if name not in linked]

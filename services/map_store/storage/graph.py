@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from services.map_store.errors import ConflictError, InvalidError, MapError, MissingError
-from shared.mapgraph.operations import Draft, EdgeWrite, FullError, GraphError, Key, NodeWrite, TakenError
+from shared.mapgraph.operations import Draft, EdgeKey, EdgeWrite, FullError, GraphError, NodeWrite, TakenError
 from shared.messages.base import Part
 from shared.messages.maps import DeleteEdge, DeleteNode, Edge, Node, PutEdge, UpdateNode
 
@@ -51,12 +51,17 @@ class AddStoredNode(Part):
 Step = Annotated[AddStoredNode | UpdateNode | DeleteNode | PutEdge | DeleteEdge, Field(discriminator="op")]
 
 
+def added_by(steps: Iterable[Step]) -> list[StoredNode]:
+    """The nodes that these steps add."""
+    return [step.place for step in steps if isinstance(step, AddStoredNode)]
+
+
 @dataclass(frozen=True)
 class Graph:
     """One revision of a map."""
 
     nodes: Mapping[int, StoredNode] = field(default_factory=lambda: MappingProxyType({}))
-    edges: Mapping[Key, Edge] = field(default_factory=lambda: MappingProxyType({}))
+    edges: Mapping[EdgeKey, Edge] = field(default_factory=lambda: MappingProxyType({}))
 
 
 @dataclass(frozen=True)
@@ -73,7 +78,7 @@ class Change:
     graph: Graph
     inverse: tuple[Step, ...]
     nodes: frozenset[int]
-    edges: frozenset[Key]
+    edges: frozenset[EdgeKey]
 
 
 def apply(graph: Graph, steps: Iterable[Step]) -> Change:
@@ -105,7 +110,7 @@ def _apply(draft: Draft[StoredNode], step: Step) -> None:
                 raise FullError(f"node id must be at most {MAX_NODE_ID}, got {added.node_id}")
             draft.add(added.node_id, added)
         case UpdateNode(node=node):
-            draft.update(node.node_id, lambda before: before.model_copy(update={"node": node}))
+            draft.update(node.node_id, draft.node(node.node_id).model_copy(update={"node": node}))
         case _:
             draft.apply(step)
 

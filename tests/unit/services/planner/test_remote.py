@@ -5,8 +5,8 @@ import pytest
 from services.planner.remote import RemoteMap, RemoteMatcher
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.routing import GOAL
-from shared.messages import MatchReply
-from shared.messages.maps import Node
+from shared.messages import MapReply, MatchReply
+from shared.messages.maps import Edge, MapDelta, Node, PutEdge
 from shared.messages.matching import NodeMatch
 
 
@@ -42,3 +42,17 @@ def test_costs_start_at_zero_with_each_frame(matcher):
 
 def test_a_place_of_another_robot_that_the_planner_has_not_heard_of_yet_is_left_out(matcher):
     assert matcher.match((), best_k=3).keys() == {GOAL, 1}
+
+
+class Store:
+    """A bus on which every question about maps has the same answer."""
+
+    def ask(self, _query, _request, _timeout_s, **_names):
+        return MapReply(map="flat", revision=7, nodes=(Node(node_id=1), Node(node_id=2)))
+
+
+def test_a_delta_that_does_not_fit_the_copy_has_the_map_read_again():
+    maps = RemoteMap(Store(), "flat", 1.0)
+    maps.graph, maps.revision = MapGraph([Node(node_id=1)]), 6
+    maps.follow(MapDelta(map="flat", revision=7, operations=(PutEdge(edge=Edge(a=1, b=2)),)))
+    assert (set(maps.graph.nodes), maps.revision) == ({1, 2}, 7)

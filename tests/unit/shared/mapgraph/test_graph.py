@@ -1,0 +1,39 @@
+"""The graph in memory: what operations change, and what nodes see of one another."""
+
+import pytest
+
+from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.operations import GraphError
+from shared.mapgraph.triangle import Sight
+from shared.messages.maps import DeleteEdge, DeleteNode, Edge, Node, PutEdge, UpdateNode
+
+SEEN = Edge(a=0, b=1, heading_ab_rad=0.5, heading_ba_rad=-1.0, yaw_ab_rad=0.25)
+
+
+def chain() -> MapGraph:
+    return MapGraph([Node(node_id=n) for n in range(3)], [SEEN, Edge(a=1, b=2)])
+
+
+def test_operations_change_nodes_edges_and_neighbours():
+    graph = chain()
+    assert graph.neighbours(1) == [0, 2]
+    graph.apply(
+        [PutEdge(edge=Edge(a=0, b=2)), DeleteEdge(a=1, b=2), UpdateNode(node=Node(node_id=2, keypoints=9))]
+    )
+    assert (graph.neighbours(1), graph.neighbours(2)) == ([0], [0])
+    assert graph.nodes[2].keypoints == 9
+    graph.apply([DeleteNode(node_id=0)])
+    assert (sorted(graph.nodes), dict(graph.edges), graph.neighbours(1)) == ([1, 2], {}, [])
+
+
+def test_an_operation_that_does_not_fit_is_an_error():
+    with pytest.raises(GraphError, match="node 7 does not exist"):
+        chain().apply([PutEdge(edge=Edge(a=1, b=7))])
+
+
+def test_a_neighbour_is_seen_from_either_end_where_the_yaw_is_known():
+    graph = chain()
+    assert graph.sight(0, 1) == Sight(0.5, 0.25)
+    assert graph.sight(1, 0) == Sight(-1.0, -0.25)
+    assert graph.sight(1, 2) is None
+    assert graph.sight(0, 2) is None
