@@ -6,14 +6,9 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from fastapi.params import Depends
 
-from services.map_store.api.history_schemas import (
-    ComparisonView,
-    RevisionView,
-    comparison_view,
-    revision_view,
-)
 from services.map_store.api.names import AUTHOR, Author, MapName
-from services.map_store.api.schemas import Undone
+from services.map_store.api.schemas import ComparisonView, Undone, comparison_view
+from services.map_store.history.revisions import Revision
 from services.map_store.store import MapStore
 
 MAX_REVISION = 2**63 - 1
@@ -32,9 +27,9 @@ def build(store: MapStore, write: Sequence[Depends]) -> APIRouter:
     @router.get("/revisions")
     def list_revisions(
         name: MapName, before: RevisionNumber = MAX_REVISION, limit: Limit = 100
-    ) -> list[RevisionView]:
+    ) -> list[Revision]:
         """The history, newest first."""
-        return [revision_view(revision) for revision in store.revisions(name, before, limit)]
+        return store.revisions(name, before, limit)
 
     @router.get("/compare")
     def compare_revisions(name: MapName, start: Start, end: End = None) -> ComparisonView:

@@ -6,7 +6,7 @@ from fastapi import APIRouter, Response
 from fastapi.params import Depends
 
 from services.map_store.api.names import MapName
-from services.map_store.api.schemas import MapCreate, MapRename, MapView, map_view
+from services.map_store.api.schemas import MapView, NewMapName, map_view
 from services.map_store.store import MapStore
 
 
@@ -20,7 +20,7 @@ def build(store: MapStore, write: Sequence[Depends]) -> APIRouter:
         return [map_view(summary) for summary in store.summaries()]
 
     @router.post("", status_code=201, dependencies=write)
-    def create_map(new: MapCreate, response: Response) -> MapView:
+    def create_map(new: NewMapName, response: Response) -> MapView:
         """Make an empty map."""
         store.create(new.name)
         response.headers["Location"] = f"/maps/{new.name}"
@@ -32,7 +32,7 @@ def build(store: MapStore, write: Sequence[Depends]) -> APIRouter:
         return map_view(store.summary(name))
 
     @router.patch("/{map}", dependencies=write)
-    def rename_map(name: MapName, new: MapRename) -> MapView:
+    def rename_map(name: MapName, new: NewMapName) -> MapView:
         """Give the map another name."""
         store.rename(name, new.name)
         return map_view(store.summary(new.name))

@@ -1,11 +1,11 @@
 """What REST takes and gives."""
 
-from collections.abc import Sequence
+from pydantic import BaseModel, ConfigDict, Field
 
-from pydantic import BaseModel, ConfigDict
-
+from services.map_store.history.comparison import Comparison, EdgeChange
 from services.map_store.integrity.check import Damage
 from services.map_store.storage.catalogue import MapRecord
+from shared.mapgraph.operations import EdgeKey
 from shared.messages.base import Name
 from shared.messages.features import Features
 from shared.messages.maps import Edge, Node
@@ -13,8 +13,6 @@ from shared.messages.maps import Edge, Node
 
 class MapView(BaseModel):
     """One map."""
-
-    model_config = ConfigDict(from_attributes=True)
 
     name: Name
     revision: int
@@ -24,16 +22,8 @@ class MapView(BaseModel):
     changed_ns: int
 
 
-class MapCreate(BaseModel):
-    """A map to make."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    name: Name
-
-
-class MapRename(BaseModel):
-    """A new name."""
+class NewMapName(BaseModel):
+    """Name of a map to make, or another one for a map."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -85,30 +75,24 @@ class Undone(Changed):
     undone: int
 
 
-class DamageView(BaseModel):
-    """One damaged thing.
-
-    Attributes:
-        map: the map it belongs to; "" for what all maps share.
-    """
-
-    model_config = ConfigDict(from_attributes=True)
-
-    map: str
-    thing: str
-    reason: str
-
-
 class CheckView(BaseModel):
     """Everything that is damaged."""
 
-    damage: list[DamageView]
+    damage: list[Damage]
 
 
-class RepairView(Changed):
-    """The revision after a repair, and what it did, in words."""
+class ComparisonView(BaseModel):
+    """What leads from revision `from` to revision `to`; edges as pairs of their nodes, a < b."""
 
-    done: list[str]
+    map: Name
+    start: int = Field(alias="from")
+    end: int = Field(alias="to")
+    nodes_added: list[int]
+    nodes_removed: list[int]
+    nodes_changed: list[int]
+    edges_added: list[EdgeKey]
+    edges_removed: list[EdgeKey]
+    edges_changed: list[EdgeChange]
 
 
 class Health(BaseModel):
@@ -122,9 +106,9 @@ def map_view(record: MapRecord) -> MapView:
     return MapView.model_validate(vars(record) | {"nodes": record.node_count, "edges": record.edge_count})
 
 
-def check_view(found: Sequence[Damage]) -> CheckView:
-    """What a check found."""
-    return CheckView(damage=[DamageView.model_validate(damage) for damage in found])
+def comparison_view(name: str, start: int, end: int, comparison: Comparison) -> ComparisonView:
+    """Two revisions of a map beside one another."""
+    return ComparisonView.model_validate({"map": name, "from": start, "to": end} | vars(comparison))
 
 
 def keypoints_view(features: Features) -> KeypointsView:

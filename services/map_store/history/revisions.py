@@ -22,7 +22,8 @@ class Revision:
     """One entry of a map's history.
 
     Attributes:
-        steps: how many it had.
+        author: who wrote it.
+        steps: how many single changes it is made of; `summary` says which.
         undoes: the revision it took back.
         summary: what it did, in words; made from its steps when the history is listed.
     """

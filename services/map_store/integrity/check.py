@@ -21,7 +21,11 @@ Finding = tuple[str, str]
 
 @dataclass(frozen=True)
 class Damage:
-    """One damaged thing; `map` is "" for what belongs to no map."""
+    """One damaged thing.
+
+    Attributes:
+        map: the map it belongs to; "" for what all maps share.
+    """
 
     map: str
     thing: str

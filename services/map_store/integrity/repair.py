@@ -23,7 +23,7 @@ from shared.messages.maps import DeleteNode, PutEdge
 class Repaired:
     """The map after a repair, and what was done, in words."""
 
-    name: str
+    map: str
     revision: int
     done: tuple[str, ...]
 
