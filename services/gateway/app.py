@@ -21,7 +21,6 @@ from services.gateway.http.response_headers import ResponseHeaders
 from services.gateway.live.bridge import BEAT_S, Bridge
 from services.gateway.live.hub import Hub
 from services.gateway.live.mission_log import MissionLog
-from services.gateway.merging.desk import MergeDesk
 from services.gateway.routes import (
     estop,
     evidence,
@@ -29,7 +28,6 @@ from services.gateway.routes import (
     health,
     live,
     maps,
-    merging,
     missions,
     robots,
     runs,
@@ -59,7 +57,6 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
         store = open_client(str(settings.map_store_url), secret, settings.certs)
         gateway = Gateway(settings, metrics, Asker(bus, metrics), hub, log, store)
         app.state.gateway = gateway
-        app.state.merges = merges = MergeDesk(gateway)
         bridge = Bridge(bus, hub, asyncio.get_running_loop(), settings.robot, settings.max_robots)
         bridge.start()
         beat = asyncio.create_task(_beat(hub))
@@ -68,7 +65,6 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
         finally:
             beat.cancel()
             bridge.stop()
-            await merges.close()
             gateway.asker.close()
             gateway.pictures.shutdown(wait=False, cancel_futures=True)
             await gateway.store.aclose()
@@ -78,7 +74,7 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
     app.state.access = Access(settings, ValidTokens.chosen(settings))
     problems.install(app, metrics)
     app.add_middleware(ResponseHeaders, metrics=metrics)
-    for resource in (estop, evidence, goals, missions, maps, merging, robots, runs, session):
+    for resource in (estop, evidence, goals, missions, maps, robots, runs, session):
         app.include_router(resource.router, dependencies=[Depends(guard)])
     for open_to_all in (live, health):
         app.include_router(open_to_all.router)

@@ -8,7 +8,8 @@ from threading import Event
 from services.map_store.api.app import create_app
 from services.map_store.api.server import serve
 from services.map_store.errors import MapError
-from services.map_store.service import Deltas, run
+from services.map_store.merging.merges import Merges
+from services.map_store.service import Deltas, matcher, run
 from services.map_store.settings import MapStoreSettings
 from services.map_store.storage.database import Database
 from services.map_store.storage.missions import MissionStore
@@ -38,6 +39,7 @@ def main() -> None:
             sys.exit(1)
         deltas, ready = Deltas(bus), Event()
         store = MapStore(database, time.time_ns, deltas.push)
+        merges = Merges(store, matcher(bus, settings.robot, settings.compute_timeout_s))
 
         def announce() -> None:
             ready.set()
@@ -45,6 +47,7 @@ def main() -> None:
 
         app = create_app(
             store,
+            merges,
             settings.token.get_secret_value(),
             settings.max_archive_bytes,
             ready.is_set,
@@ -55,6 +58,7 @@ def main() -> None:
             with serve(app, settings, stop):
                 run(bus, stop, store, MissionStore(database), deltas, announce)
         finally:
+            merges.close()
             database.close()
 
     run_service(NAME, settings, loop)

@@ -8,12 +8,13 @@ from threading import Event
 from typing import TypeVar
 
 from services.map_store.errors import ConflictError, InvalidError, MapError
+from services.map_store.merging.merge import Matcher
 from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
 from shared.bus import Bus, Publisher, Request
 from shared.messages.base import Message
 from shared.messages.maps import MapDelta, MapReply, MapRequest, MissionRecord, MissionRecordRequest
-from shared.topics import MAP, MAP_DELTA, MAP_READ, MISSION_RECORD
+from shared.topics import MAP, MAP_DELTA, MAP_READ, MATCH, MISSION_RECORD
 from shared.wire import encode
 
 Q = TypeVar("Q", bound=Message)
@@ -48,6 +49,11 @@ class Deltas:
             if delta.map not in self._publishers:
                 self._publishers[delta.map] = self._bus.publisher(MAP_DELTA, map=delta.map)
             self._publishers[delta.map].put(delta)
+
+
+def matcher(bus: Bus, robot: str, timeout_s: float) -> Matcher:
+    """Asks the feature service of `robot`; any thread may."""
+    return lambda wish: bus.ask(MATCH, wish, timeout_s, robot=robot)
 
 
 def answer_map(store: MapStore, name: str, request: MapRequest) -> MapReply:

@@ -21,6 +21,7 @@ class MapStoreSettings(ServiceSettings):
         allow_open: listen on a reachable address without a token all the same, as in a network of
             containers of which no port is published.
         max_archive_bytes: largest archive that may be imported, packed and unpacked.
+        compute_timeout_s: how long matching one node of a map that is merged may take.
     """
 
     model_config = SettingsConfigDict(env_prefix="MAP_STORE_")
@@ -31,6 +32,7 @@ class MapStoreSettings(ServiceSettings):
     token: SecretStr = SecretStr("")
     allow_open: bool = False
     max_archive_bytes: int = Field(default=4_000_000_000, ge=1)
+    compute_timeout_s: float = Field(default=20.0, gt=0.0)
 
     @model_validator(mode="after")
     def _closed_unless_asked(self) -> Self:

@@ -16,7 +16,7 @@ from services.map_store.storage import answers, blobs, catalogue
 from services.map_store.storage.catalogue import MapRecord
 from services.map_store.storage.contents import Contents
 from services.map_store.storage.database import Database
-from services.map_store.storage.graph import Graph, Step, apply
+from services.map_store.storage.graph import Graph, Step, added_by, apply
 from services.map_store.storage.graphs import Graphs
 from services.map_store.storage.operations import prepare
 from shared.messages.maps import MapDelta, Operation
@@ -112,10 +112,8 @@ class MapStore:
                 return answered
             found = catalogue.find(connection, name)
             _check_base(name, found.revision, base_revision)
-            change = apply(self._graphs.get(connection, found), prepared.steps)
             blobs.put(connection, found.map_id, prepared.contents)
-            entry = Revision(found.revision + 1, author, self._now_ns(), len(prepared.steps), None)
-            history.record(connection, found, entry, prepared.steps, change)
+            entry, graph = self._commit(connection, found, prepared.steps, author)
             answers.keep(connection, name, request_id, entry.revision)
             deltas.append(
                 MapDelta(
@@ -126,7 +124,7 @@ class MapStore:
                     operations=prepared.published,
                 )
             )
-        self._graphs.remember(found.map_id, entry.revision, change.graph)
+        self._graphs.remember(found.map_id, entry.revision, graph)
         return entry.revision
 
     def undo(self, name: str, author: str = "", base_revision: int | None = None) -> tuple[int, int]:
@@ -136,25 +134,32 @@ class MapStore:
             _check_base(name, found.revision, base_revision)
             undone = history.last_standing(connection, found)
             steps = history.steps_of(connection, found.map_id, undone, inverse=True)
-            change = apply(self._graphs.get(connection, found), steps)
-            entry = Revision(found.revision + 1, author, self._now_ns(), len(steps), undone)
-            history.record(connection, found, entry, steps, change)
+            entry, _ = self._commit(connection, found, steps, author, undone)
             deltas.append(MapDelta(map=name, revision=entry.revision, author=author, reset=True))
         return entry.revision, undone
+
+    def add_stored(self, name: str, steps: tuple[Step, ...], author: str, base_revision: int) -> int:
+        """Apply steps whose blobs are kept for another map; all or none. Returns the new revision."""
+        with self._write() as (connection, deltas):
+            found = catalogue.find(connection, name)
+            _check_base(name, found.revision, base_revision)
+            names = {sha256 for stored in added_by(steps) for sha256 in stored.blobs}
+            blobs.share(connection, found.map_id, names)
+            entry, _ = self._commit(connection, found, steps, author)
+            deltas.append(MapDelta(map=name, revision=entry.revision, author=author, reset=True))
+        return entry.revision
 
     def restore(
         self, name: str, steps: tuple[Step, ...], read_blob: Callable[[str], bytes], author: str
     ) -> int:
         """Make a map at revision 1; `read_blob` gives the bytes of each checksum that `steps` name."""
-        change = apply(Graph(), steps)
         with self._write() as (connection, deltas):
-            entry = Revision(1, author, self._now_ns(), len(steps), None)
-            record = catalogue.create(connection, name, entry.stamp_ns)
-            for stored in change.graph.nodes.values():
-                blobs.put(connection, record.map_id, {sha256: read_blob(sha256) for sha256 in stored.blobs})
-            history.record(connection, record, entry, steps, change)
+            found = catalogue.create(connection, name, self._now_ns())
+            for stored in added_by(steps):
+                blobs.put(connection, found.map_id, {sha256: read_blob(sha256) for sha256 in stored.blobs})
+            self._commit(connection, found, steps, author)
             deltas.append(MapDelta(map=name, revision=1, author=author, reset=True))
-        return entry.revision
+        return 1
 
     def repair(self, name: str, author: str = "") -> Repaired:
         """Mend what is damaged in a map; what cannot be mended is removed, as a new revision.
@@ -171,6 +176,20 @@ class MapStore:
             deltas.append(MapDelta(map=found.name, revision=found.revision, author=author, reset=True))
         self._graphs.forget(found.map_id)
         return Repaired(found.name, found.revision, (*first, *done))
+
+    def _commit(
+        self,
+        connection: Connection,
+        found: MapRecord,
+        steps: tuple[Step, ...],
+        author: str,
+        undoes: int | None = None,
+    ) -> tuple[Revision, Graph]:
+        """Write steps as the next revision; returns its entry and the graph it leads to."""
+        change = apply(self._graphs.get(connection, found), steps)
+        entry = Revision(found.revision + 1, author, self._now_ns(), len(steps), undoes)
+        history.record(connection, found, entry, steps, change)
+        return entry, change.graph
 
     @contextmanager
     def _write(self) -> Iterator[tuple[Connection, list[MapDelta]]]:

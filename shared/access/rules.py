@@ -81,7 +81,7 @@ STREAMS: dict[Topic[Any], Grant] = {
     topics.MAP_DELTA: _grant([Role.MAP_STORE], [Role.FEATURES, Role.PLANNER, *WATCHERS]),
 }
 QUESTIONS: dict[Query[Any, Any], Grant] = {
-    topics.MATCH: _grant([Role.FEATURES], [Role.PLANNER, *PEOPLE]),
+    topics.MATCH: _grant([Role.FEATURES], [Role.PLANNER, Role.MAP_STORE, *PEOPLE]),
     topics.EXTRACT: _grant([Role.FEATURES], PEOPLE),
     topics.MISSION: _grant([Role.PLANNER], PEOPLE),
     topics.MISSION_KINDS: _grant([Role.PLANNER], PEOPLE),

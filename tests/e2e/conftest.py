@@ -16,7 +16,11 @@ from simulator.world.world_file import load_world
 WORLD = "apartment"
 MAP = "small"
 STEPS = 60
-PATIENT = {"GATEWAY_ASK_TIMEOUT_S": "60", "GATEWAY_COMPUTE_TIMEOUT_S": "60"}
+PATIENT = {
+    "GATEWAY_ASK_TIMEOUT_S": "60",
+    "GATEWAY_COMPUTE_TIMEOUT_S": "60",
+    "MAP_STORE_COMPUTE_TIMEOUT_S": "60",
+}
 """On a busy machine services stand still for seconds; the console shall not call them slow for that."""
 
 OWN = {"PLANNER_MISSIONS_FOLDER": str(Path(__file__).with_name("own_missions"))}

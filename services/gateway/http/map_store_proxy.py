@@ -19,8 +19,6 @@ from shared.web.openapi import MEDIA_TYPE
 from shared.web.problems import ProblemError
 
 AUTHOR = "x-topnav-author"
-AUTHOR_CHARACTERS = 64
-"""Twice what the map store takes, so that it says what is wrong."""
 SENT_ON = ("accept", "content-type", "if-match", "if-none-match", AUTHOR)
 SENT_BACK = ("content-type", "content-length", "content-disposition", "etag", "cache-control", "location")
 MAX_PROBLEM_BYTES = 64_000
@@ -89,25 +87,6 @@ async def forward_stream(gateway: Gateway, request: Request, path: str) -> Respo
         return await _answer(gateway, wish)
 
 
-async def fetch(store: httpx.AsyncClient, path: str) -> bytes | None:
-    """The body of a short answer of the map store, None where it has nothing.
-
-    Raises:
-        ProblemError: 503 the store is down, 504 too slow, 502 it answered anything else.
-    """
-    answer = await _send(store, store.build_request("GET", path))
-    try:
-        if answer.status_code == HTTPStatus.NOT_FOUND:
-            return None
-        if answer.status_code != HTTPStatus.OK:
-            raise _nonsense(f"status {answer.status_code} for {path}")
-        return await answer.aread()
-    except httpx.HTTPError as error:
-        raise _nonsense(_name(error)) from error
-    finally:
-        await answer.aclose()
-
-
 async def _answer(gateway: Gateway, wish: httpx.Request) -> Response:
     answer = await _send(gateway.store, wish)
     if answer.status_code >= HTTPStatus.BAD_REQUEST:
@@ -145,11 +124,6 @@ async def _problem(answer: httpx.Response) -> Response:
     if kind.startswith(MEDIA_TYPE) and len(body) <= MAX_PROBLEM_BYTES:
         return Response(body, answer.status_code, media_type=MEDIA_TYPE)
     raise _nonsense(f"status {answer.status_code} with {kind[:80]}")
-
-
-def author_of(request: Request) -> str:
-    """Who stands in a map's history: the token's name where there is one, else who the request says it is."""
-    return person_of(request).name or request.headers.get(AUTHOR, "")[:AUTHOR_CHARACTERS]
 
 
 def _headers(request: Request) -> dict[str, str]:

@@ -29,21 +29,32 @@ OPERATIONS = (
     ("GET", f"{MAP}/revisions", "list_revisions", "How a map came to be."),
     ("GET", f"{MAP}/compare", "compare_revisions", "Changes from revision `from` to `to`, or to now."),
     ("POST", f"{MAP}/undo", "undo", "Take a map's newest change back."),
+    ("POST", f"{MAP}/merge", "start_merge", "Start adding the nodes of the map `other` to this one."),
+    ("GET", f"{MAP}/merge", "show_merge", "The running or last merge into a map."),
+    (
+        "DELETE",
+        f"{MAP}/merge",
+        "cancel_merge",
+        "Cancel the merge into a map, if it is not written yet.",
+    ),
     ("GET", f"{MAP}/export", "export_map", "A map as one archive."),
 )
-STATUS = {"create_map": 201, "import_map": 201, "delete_map": 204}
+STATUS = {"create_map": 201, "import_map": 201, "delete_map": 204, "start_merge": 202}
 MEDIA = {"show_thumbnail": "image/jpeg", "export_map": "application/zip"}
 
 
 async def pass_on(request: Request, gateway: GatewayDep) -> Response:
-    """Answer as the map store does."""
+    """Answer as the map store does; where it says that something is, is below our own path."""
     path = request.url.path.removeprefix(API)
     if path == IMPORT:
         return await forward_stream(gateway, request, path)
     body = b""
     if request.method in ("POST", "PATCH"):
         body = await read_body(request, MAX_JSON_BYTES, gateway.settings.upload_timeout_s)
-    return await forward(gateway, request, path, body)
+    answer = await forward(gateway, request, path, body)
+    if "location" in answer.headers:
+        answer.headers["location"] = API + answer.headers["location"]
+    return answer
 
 
 async def _names_a_map(map_name: MapPath) -> None:

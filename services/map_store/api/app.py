@@ -10,11 +10,13 @@ from services.map_store.api import (
     graph_routes,
     history_routes,
     map_routes,
+    merge_routes,
     problems,
 )
 from services.map_store.api.guard import reader_guard, writer_guard
 from services.map_store.api.schemas import Health
 from services.map_store.errors import UnavailableError
+from services.map_store.merging.merges import Merges
 from services.map_store.store import MapStore
 from shared.web.bodies import BodyLimit, BodyLimits
 
@@ -31,6 +33,7 @@ DESCRIPTION = "Topological maps: their nodes, edges, pictures and history. Error
 
 def create_app(
     store: MapStore,
+    merges: Merges,
     token: str = "",
     max_archive_bytes: int = 4_000_000_000,
     ready: Callable[[], bool] = lambda: True,
@@ -41,6 +44,7 @@ def create_app(
 
     Args:
         store: the maps.
+        merges: those under way, and how the last ones ended.
         token: bearer token that writes need; empty = none.
         max_archive_bytes: largest archive to import.
         ready: whether the bus side answers too.
@@ -62,6 +66,7 @@ def create_app(
         graph_routes.build(store, write),
         care_routes.build(store, write),
         archive_routes.build(store, write, max_archive_bytes),
+        merge_routes.build(store, merges, write),
     ):
         app.include_router(router, dependencies=read)
     app.include_router(_health(store, ready))

@@ -23,12 +23,17 @@ MAX_DETAIL = 1000
 """Characters; chosen: a list of faults may be as long as the request."""
 
 
+class MergeProblemError(ProblemError):
+    """Of merging: the document says what was expected, what came and what to do, as those of the gateway."""
+
+
 def install(app: FastAPI) -> None:
     """Answer every error of `app` as a problem."""
     translations: dict[type[Exception], problems.Translation] = {
         errors.MapError: _map_error,
         HTTPException: _http_error,
         ProblemError: _http_error,
+        MergeProblemError: lambda _request, error: error,
         RequestValidationError: _bad_request,
     }
     bug = _problem("internal", 500, "the map store failed; its log says why")

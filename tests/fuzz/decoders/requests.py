@@ -9,17 +9,17 @@ from typing import Any
 from urllib.parse import unquote_to_bytes
 
 from pydantic import BaseModel
+from services.gateway.routes.merging import StartMerge
 from starlette.requests import Request
 
 from services.gateway.http.bodies import read_json, read_picture
 from services.gateway.routes.estop import Clear
-from services.gateway.routes.merging import StartMerge
 from services.gateway.routes.missions import StartMission
-from services.map_store.api.app import create_app
 from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
 from shared.web.problems import ProblemError
 from tests.fuzz.decoder import Decoder, Shape
+from tests.unit.services.map_store.conftest import app_of
 
 TOKENS = (b"NaN", b"1e999", b"[" * 2000, b'{"a":' * 2000, b"\xed\xa0\x80", b'"\\ud800"', b'"map":"flat",')
 FORM_TOKENS = (
@@ -113,7 +113,7 @@ def _map_store(loop: asyncio.AbstractEventLoop, scratch: Path) -> Any:
     (scratch / "fuzzed.sqlite3").unlink(missing_ok=True)
     store = MapStore(Database(f"sqlite:///{scratch}/fuzzed.sqlite3"), lambda: 1, lambda _delta: None)
     store.create("flat")
-    app = create_app(store, max_archive_bytes=100_000)
+    app = app_of(store, max_archive_bytes=100_000)
 
     def run(data: bytes) -> None:
         head, _, body = data.partition(b" {")

@@ -6,14 +6,13 @@ from pathlib import Path
 import httpx
 import pytest
 
-from services.map_store.api.app import create_app
 from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
 from shared.messages.maps import Edge, PutEdge
 from tests.integration.gateway.conftest import serve_gateway
 from tests.integration.gateway.gateway_process import WAIT_S
 from tests.integration.gateway.standins import served
-from tests.unit.services.map_store.conftest import add
+from tests.unit.services.map_store.conftest import add, app_of
 
 ANNA = {"X-Topnav-Author": "anna"}
 
@@ -26,7 +25,7 @@ def http(endpoint: str, tmp_path: Path) -> Iterator[httpx.Client]:
     store.create("flat")
     store.transact("flat", [add(0), add(1)], author="planner")
     store.transact("flat", [PutEdge(edge=Edge(a=0, b=1, inliers=40))], author="planner")
-    with served(create_app(store)) as port:
+    with served(app_of(store)) as port:
         for address in serve_gateway(endpoint, map_store_url=f"http://127.0.0.1:{port}"):
             with httpx.Client(base_url=address, trust_env=False, timeout=WAIT_S) as client:
                 yield client

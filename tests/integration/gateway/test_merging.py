@@ -218,7 +218,7 @@ def test_an_undo_takes_the_whole_merge_back(http: httpx.Client, robot_bus: Bus) 
 def test_maps_that_share_no_place_stay_as_they_are(http: httpx.Client, robot_bus: Bus) -> None:
     told = merge(http, "hall", "yard")
     assert (told["state"], told["matched"], told["cross_edges"]) == ("refused", 5, 0)
-    assert told["reason"] == "the maps share no place: 1 of 5 look alike, none is borne out"
+    assert told["reason"] == "the maps share no place: 1 of 5 look alike, none is supported"
     assert ask(robot_bus, "hall", action="read").revision == 1
 
 

@@ -3,16 +3,21 @@
 from collections.abc import Iterator
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
 from services.map_store.api.app import create_app
+from services.map_store.merging.merges import Merges
 from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
 from shared.messages import Features, MapDelta
 from shared.messages.maps import AddNode, Edge, Node, PutEdge
+from shared.messages.matching import MatchReply, MatchRequest
+from shared.queries import AbsentError
 
 Told = list[MapDelta]
 
@@ -65,10 +70,19 @@ def store(database: Database, told: Told) -> MapStore:
     return opened
 
 
+def app_of(store: MapStore, **options: Any) -> FastAPI:
+    """REST over a store whose bus has no feature service."""
+
+    def nobody(_wish: MatchRequest) -> MatchReply:
+        raise AbsentError("nobody answers")
+
+    return create_app(store, Merges(store, nobody), **options)
+
+
 @pytest.fixture
 def client(store: MapStore) -> TestClient:
     """REST over a map with three nodes and two edges."""
     links = [PutEdge(edge=Edge(a=a, b=a + 1, raw_matches=60, inliers=40, s_min=30, s_max=60)) for a in (0, 1)]
     store.transact("flat", [add(0), add(1), add(2)], author="planner")
     store.transact("flat", links, author="planner")
-    return TestClient(create_app(store), raise_server_exceptions=False)
+    return TestClient(app_of(store), raise_server_exceptions=False)

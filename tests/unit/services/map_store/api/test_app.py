@@ -5,9 +5,9 @@ import json
 import pytest
 from fastapi.testclient import TestClient
 
-from services.map_store.api.app import MAX_BODY_BYTES, create_app
+from services.map_store.api.app import MAX_BODY_BYTES
 from services.map_store.store import MapStore
-from tests.unit.services.map_store.conftest import add, features
+from tests.unit.services.map_store.conftest import add, app_of, features
 from tests.unit.services.map_store.test_store import damage
 
 PROBLEM = "application/problem+json"
@@ -157,7 +157,7 @@ def test_damaged_pictures_and_features_are_told(client: TestClient, store: MapSt
 
 
 def test_writes_need_the_token_once_there_is_one_and_reads_do_not(store: MapStore):
-    client = TestClient(create_app(store, token="secret"))
+    client = TestClient(app_of(store, token="secret"))
     assert client.get("/maps").status_code == 200
     for given in (
         {},
@@ -175,12 +175,12 @@ def test_writes_need_the_token_once_there_is_one_and_reads_do_not(store: MapStor
 
 
 def test_every_writing_route_is_guarded(store: MapStore):
-    client = TestClient(create_app(store, token="secret"))
+    client = TestClient(app_of(store, token="secret"))
     paths = client.get("/openapi.json").json()["paths"]
     writes = [
         (m, p) for p, methods in paths.items() for m in methods if m in {"post", "put", "patch", "delete"}
     ]
-    assert len(writes) == 8
+    assert len(writes) == 10
     for method, path in writes:
         filled = path.format(map="flat", node_id=0, a=0, b=1)
         problem(client.request(method, filled, json={"name": "x"}), 401)
@@ -193,7 +193,7 @@ def test_pages_of_another_origin_may_not_write(client: TestClient):
 
 def test_readiness_waits_for_the_bus_and_health_does_not(store: MapStore):
     ready = False
-    client = TestClient(create_app(store, ready=lambda: ready))
+    client = TestClient(app_of(store, ready=lambda: ready))
     assert client.get("/healthz").json() == {"status": "alive"}
     problem(client.get("/readyz"), 503)
     ready = True
@@ -210,5 +210,5 @@ def test_a_fault_inside_is_a_problem_without_its_innards(client: TestClient, mon
 
 def test_openapi_describes_every_route(client: TestClient):
     described = client.get("/openapi.json").json()
-    assert len(described["paths"]) == 18
+    assert len(described["paths"]) == 19
     assert described["paths"]["/maps/import"]["post"]["requestBody"]["content"].keys() == {"application/zip"}

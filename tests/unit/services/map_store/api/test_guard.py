@@ -4,17 +4,17 @@ import pytest
 from fastapi.testclient import TestClient
 from pydantic import ValidationError
 
-from services.map_store.api.app import create_app
 from services.map_store.settings import MapStoreSettings
 from services.map_store.store import MapStore
 from shared.web.origins import LOOPBACK_NAMES
+from tests.unit.services.map_store.conftest import app_of
 
 SECRET = "a long enough secret"
 BEARER = {"Authorization": f"Bearer {SECRET}"}
 
 
 def test_where_reading_is_guarded_only_the_health_needs_no_token(store: MapStore):
-    client = TestClient(create_app(store, token=SECRET, guard_reading=True))
+    client = TestClient(app_of(store, token=SECRET, guard_reading=True))
     for path in ("/maps", "/maps/flat/nodes", "/maps/flat/export", "/check"):
         refused = client.get(path)
         assert (refused.status_code, refused.headers["www-authenticate"]) == (401, "Bearer")
@@ -24,13 +24,13 @@ def test_where_reading_is_guarded_only_the_health_needs_no_token(store: MapStore
 
 @pytest.mark.parametrize("host", ["127.0.0.1:8001", "localhost", "[::1]:8001"])
 def test_names_of_this_machine_lead_here(store: MapStore, host: str):
-    client = TestClient(create_app(store, names=LOOPBACK_NAMES))
+    client = TestClient(app_of(store, names=LOOPBACK_NAMES))
     assert client.get("/maps", headers={"host": host}).status_code == 200
 
 
 @pytest.mark.parametrize("host", ["evil.example", "evil.example:8001", "127.0.0.1.evil.example", "", "["])
 def test_a_name_pointed_at_this_machine_reads_and_writes_nothing(store: MapStore, host: str):
-    client = TestClient(create_app(store, names=LOOPBACK_NAMES))
+    client = TestClient(app_of(store, names=LOOPBACK_NAMES))
     headers = {"host": host, "origin": f"http://{host}"}
     assert client.get("/maps", headers=headers).status_code == 403
     assert client.delete("/maps/flat", headers=headers).status_code == 403

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from services.map_store.api.app import create_app
 from services.map_store.store import MapStore
 from shared.messages.maps import Edge, PutEdge
 from tests.unit.services.map_store.api.test_app import problem
-from tests.unit.services.map_store.conftest import Told, add, features
+from tests.unit.services.map_store.conftest import Told, add, app_of, features
 from tests.unit.services.map_store.test_store import damage
 
 ANNA = {"X-Topnav-Author": "anna"}
@@ -159,7 +158,7 @@ def test_other_authors_are_refused_and_nothing_is_written(
 
 
 def test_an_author_does_not_replace_the_token(store: MapStore):
-    client = TestClient(create_app(store, token="secret"))
+    client = TestClient(app_of(store, token="secret"))
     problem(client.post("/maps/flat/undo", headers=ANNA), 401)
 
 

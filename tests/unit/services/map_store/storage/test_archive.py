@@ -13,13 +13,12 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from services.map_store.api.app import create_app
 from services.map_store.errors import InvalidError
 from services.map_store.storage.archive import Archive
 from services.map_store.storage.blobs import checksum
 from services.map_store.store import MapStore
 from shared.messages.maps import Edge, PutEdge
-from tests.unit.services.map_store.conftest import add
+from tests.unit.services.map_store.conftest import add, app_of
 
 Entries = dict[str, bytes]
 
@@ -28,7 +27,7 @@ Entries = dict[str, bytes]
 def client(store: MapStore) -> TestClient:
     """REST over a map with three nodes and an edge."""
     store.transact("flat", [add(0), add(1), add(2), PutEdge(edge=Edge(a=0, b=1, heading_ab_rad=0.1))])
-    return TestClient(create_app(store, max_archive_bytes=2_000_000))
+    return TestClient(app_of(store, max_archive_bytes=2_000_000))
 
 
 @pytest.fixture
