@@ -1,4 +1,4 @@
-"""The edge between two places from what one of them saw of the other. Pure."""
+"""The edge between two nodes from what one of them saw of the other. Pure."""
 
 import math
 
