@@ -9,7 +9,6 @@ from typing import Any
 from urllib.parse import unquote_to_bytes
 
 from pydantic import BaseModel
-from services.gateway.routes.merging import StartMerge
 from starlette.requests import Request
 
 from services.gateway.http.bodies import read_json, read_picture
@@ -49,7 +48,6 @@ FORM = (
 VISIBLE = re.compile(rb"[\x21-\x7e]+")
 BODIES: tuple[tuple[type[BaseModel], dict[str, Any]], ...] = (
     (StartMission, {"action": "explore", "map": "flat", "seed": 1}),
-    (StartMerge, {"other": "more"}),
     (Clear, {"who": "me"}),
 )
 PATHS = (
@@ -58,6 +56,7 @@ PATHS = (
     b"DELETE /maps/flat/edges/0/1",
     b"GET /maps/flat/compare?from=1",
     b'POST /maps {"name": "more"}',
+    b'POST /maps/flat/merge {"other": "more"}',
     b"GET /maps/flat/revisions?limit=3&before=9",
     b"GET /maps/flat/export",
 )
