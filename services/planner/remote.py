@@ -40,7 +40,7 @@ class RemoteMap:
         self.revision = reply.revision
 
     def follow(self, delta: MapDelta) -> None:
-        """Take over what somebody else wrote; after a gap, and where places went, the map is read again."""
+        """Take over what somebody else wrote; after a gap, and where nodes went, the map is read again."""
         gone = any(isinstance(operation, DeleteNode) for operation in delta.operations)
         if delta.reset or gone or delta.revision != self.revision + 1:
             self.load(create=False)
@@ -78,7 +78,7 @@ class RemoteMap:
                 raise
 
     def _has(self, operations: Sequence[Operation]) -> bool:
-        """Whether the map has the new places already: they were written, only the answer got lost."""
+        """Whether the map has the new nodes already: they were written, only the answer got lost."""
         new = [operation.node for operation in operations if isinstance(operation, AddNode)]
         there = [self.graph.nodes.get(node.node_id) for node in new]
         return any(a is not None and a.stamp_ns == b.stamp_ns for a, b in zip(there, new, strict=True))
@@ -146,5 +146,5 @@ class RemoteMatcher:
         reply = self._bus.ask(MATCH, request, self._timeout_s, robot=self._robot)
         self.match_ms += reply.match_ms
         self.verify_ms += reply.verify_ms
-        known = self._maps.graph.nodes  # the service may know of places of another robot before we do
+        known = self._maps.graph.nodes  # the service may know of nodes of another robot before we do
         return {m.node_id: m for m in reply.results if m.node_id in known or m.node_id == GOAL}

@@ -18,7 +18,7 @@ class PlannerSettings(ServiceSettings):
         profile: name of the thresholds and rules.
         profile_file: takes the place of `profile`: a file of `topnav calibrate --write`.
         heading_method: replaces the profile's: epipolar, histogram or 1 to 6.
-        edge_window: replaces the profile's: how many of the newest places may get an edge to a new one.
+        edge_window: replaces the profile's: how many of the newest nodes may get an edge to a new one.
         missions_folder: files with further kinds of mission, see `services.planner.mission_kinds`.
         heading_ttl_ms: how long the drive service may follow one heading in real time.
         query_timeout_s: for a match; map_timeout_s: for a map transaction.

@@ -1,4 +1,4 @@
-"""What twelve distances say about the way to a place that is only known by its bearing and disparity."""
+"""What twelve distances say about the way to a node that is only known by its bearing and disparity."""
 
 import math
 from collections.abc import Sequence
@@ -43,14 +43,14 @@ def openings(ranges: Ranges, profile: Profile) -> tuple[bool, ...]:
 
 
 def hidden_openings(ranges: Ranges, nodes: Sequence[tuple[Node, float]], profile: Profile) -> list[int]:
-    """Ways out seen from here that none of the near places has: sectors of the robot frame.
+    """Ways out seen from here that none of the near nodes has: sectors of the robot frame.
 
-    A doorway beside the way shows for a few frames only; places half a metre before and after it know nothing
-    of it. To be worth a place of its own a way out must be clear for `doorway_m`.
+    A doorway beside the way shows for a few frames only; nodes half a metre before and after it know nothing
+    of it. To be worth a node of its own a way out must be clear for `doorway_m`.
 
     Args:
         ranges: the distances here.
-        nodes: the places near, each with the yaw of its camera in the robot frame.
+        nodes: the nodes near, each with the yaw of its camera in the robot frame.
         profile: lengths that count.
     """
     found = []
@@ -64,23 +64,23 @@ def hidden_openings(ranges: Ranges, nodes: Sequence[tuple[Node, float]], profile
 
 
 def _knows(node: Node, heading_rad: float) -> bool:
-    """Whether a place is open towards `heading_rad`, its own frame."""
+    """Whether a node is open towards `heading_rad`, its own frame."""
     return node.open[round(heading_rad / SECTOR_RAD) % SECTORS]
 
 
 def length_m(match: NodeMatch, profile: Profile) -> float:
-    """Rough length of a leg: disparity grows with distance by a factor calibrated per kind of place."""
+    """Rough length of the way to a node: disparity grows with distance by a factor calibrated per kind of place."""
     disparity_rad = match.disparity_rad if match.disparity_rad is not None else 0.0
     return apart_rad(disparity_rad, match.inliers, profile) / profile.sensing.disparity_rad_per_m
 
 
 def is_clear(match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
-    """Whether the sensors see free ground all the way to the matched place."""
+    """Whether the sensors see free ground all the way to the matched node."""
     return _is_free_for(length_m(match, profile), match, ranges, profile)
 
 
 def is_surely_clear(match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
-    """The same where the matched place may be as far away as places with so few matches are."""
+    """The same where the matched node may be as far away as nodes with so few matches are."""
     most_m = (
         profile.sensing.unsure_m / max(match.inliers, 1) if match.inliers < profile.mapping.s_sure else 0.0
     )

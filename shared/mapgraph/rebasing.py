@@ -11,7 +11,7 @@ COUNTERS = ("traversals", "failures")
 def rebased(operations: Sequence[Operation], before: MapGraph, now: MapGraph) -> list[Operation]:
     """The operations as they are to be written on top of `now`.
 
-    New places get ids after the newest one, with their edges. Of a place or an edge that both changed, each
+    New nodes get ids after the newest one, with their edges. Of a node or an edge that both changed, each
     side's changes are kept; counters add up. What concerns something that is gone is left out.
 
     Args:
@@ -57,7 +57,7 @@ def _put(edge: Edge, before: MapGraph, now: MapGraph, ids: Mapping[int, int]) ->
 
 
 def _node(base: Node, mine: Node, theirs: Node) -> Node:
-    """Their place with what I changed; directions one by one."""
+    """Their node with what I changed; directions one by one."""
 
     def merged(name: str) -> tuple[bool, ...]:
         sides = zip(getattr(base, name), getattr(mine, name), getattr(theirs, name), strict=True)

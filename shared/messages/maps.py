@@ -1,4 +1,4 @@
-"""The map: a graph of places, written by transactions, followed by deltas. Planner <-> map store."""
+"""The map: a graph of nodes, written by transactions, followed by deltas. Planner <-> map store."""
 
 import uuid
 from typing import Annotated, ClassVar, Literal
@@ -15,7 +15,7 @@ MAP_ITEMS = 2_000_000
 
 
 class Node(Part):
-    """A place. Its features and thumbnail are kept apart, see `AddNode`.
+    """A node. Its features and thumbnail are kept apart, see `AddNode`.
 
     Attributes:
         stamp_ns: capture time of its frame.
@@ -34,7 +34,7 @@ class Node(Part):
 
 
 class Edge(Part):
-    """Two places seen from one another, with the evidence. Always a < b.
+    """Two nodes seen from one another, with the evidence. Always a < b.
 
     Attributes:
         heading_ab_rad: direction from a to b in a's camera frame.
@@ -71,7 +71,7 @@ class Edge(Part):
 
 
 class AddNode(Part):
-    """Add a place with what it looks like."""
+    """Add a node with what it looks like."""
 
     op: Literal["add_node"] = "add_node"
     node: Node
@@ -79,21 +79,21 @@ class AddNode(Part):
 
 
 class UpdateNode(Part):
-    """Replace what is known about a place's surroundings."""
+    """Replace what is known about a node's surroundings."""
 
     op: Literal["update_node"] = "update_node"
     node: Node
 
 
 class DeleteNode(Part):
-    """Remove a place and its edges."""
+    """Remove a node and its edges."""
 
     op: Literal["delete_node"] = "delete_node"
     node_id: int = Field(ge=0)
 
 
 class PutEdge(Part):
-    """Add an edge or replace the one between the same places."""
+    """Add an edge or replace the one between the same nodes."""
 
     op: Literal["put_edge"] = "put_edge"
     edge: Edge
