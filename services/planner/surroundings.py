@@ -69,7 +69,7 @@ def _knows(node: Node, heading_rad: float) -> bool:
 
 
 def length_m(match: NodeMatch, profile: Profile) -> float:
-    """Rough length of the way to a node: disparity grows with distance by a factor calibrated per kind of place."""
+    """Rough length of the way to a node: disparity grows with distance, faster in rooms than in yards."""
     disparity_rad = match.disparity_rad if match.disparity_rad is not None else 0.0
     return apart_rad(disparity_rad, match.inliers, profile) / profile.sensing.disparity_rad_per_m
 
