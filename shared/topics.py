@@ -96,8 +96,8 @@ RANGES = Topic("topnav/{robot}/ranges", Ranges, Delivery.DATA, 10_000)
 FEATURES = Topic("topnav/{robot}/features", Features, Delivery.DATA, 8 * MB)
 HEADING = Topic("topnav/{robot}/heading", Heading, Delivery.COMMAND, 10_000)
 COMMAND = Topic("topnav/{robot}/command", Command, Delivery.COMMAND, 10_000)
-STOPPED = Topic("topnav/{robot}/stopped", EStopState, Delivery.COMMAND, 10_000)
-STANDING = Topic("topnav/{robot}/standing", EStopState, Delivery.COMMAND, 10_000)
+ESTOP_STATE = Topic("topnav/{robot}/stopped", EStopState, Delivery.COMMAND, 10_000)
+ROBOT_ESTOP_STATE = Topic("topnav/{robot}/standing", EStopState, Delivery.COMMAND, 10_000)
 STATUS = Topic("topnav/{robot}/status", MissionStatus, Delivery.LOG, 1 * MB)
 EVENT = Topic("topnav/{robot}/event", Event, Delivery.LOG, 100_000)
 TRUTH = Topic("topnav/{robot}/truth", Truth, Delivery.LOG, 10_000)
@@ -119,8 +119,8 @@ TOPICS: tuple[Topic[Message], ...] = (
     FEATURES,
     HEADING,
     COMMAND,
-    STOPPED,
-    STANDING,
+    ESTOP_STATE,
+    ROBOT_ESTOP_STATE,
     STATUS,
     EVENT,
     TRUTH,

@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 
 from shared.bus import Bus
-from shared.estop.sides import StopFollower
+from shared.estop.sides import RobotEStop
 from shared.messages import Command, Frame, Ranges, Truth
 from shared.sole_robot import SoleRobot
 from shared.topics import COMMAND, FRAME, RANGES, SIMULATION, TRUTH
@@ -19,7 +19,7 @@ from simulator.world.world_file import WorldFile
 
 log = logging.getLogger(__name__)
 
-REAL_TIME_TURN_S = 0.02
+REAL_TIME_STEP_S = 0.02
 CATCH_UP_S = 0.5  # time lost beyond this (a suspended process) is dropped, not driven through
 
 
@@ -32,7 +32,7 @@ class Ports:
         self._truth = bus.publisher(TRUTH, robot=robot)
         self._commands = bus.subscribe(COMMAND, robot=robot)
         self.requests = bus.requests(SIMULATION, robot=robot)
-        self.stop = StopFollower(bus, robot, state_dir)
+        self.stop = RobotEStop(bus, robot, state_dir)
 
     def send(self, *messages: Frame | Ranges | Truth) -> None:
         """Publish in the order given."""
@@ -90,7 +90,7 @@ class LockstepLoop(Loop):
         """Send the first frame."""
         self._send()
 
-    def turn(self, now_s: float) -> None:
+    def step(self, now_s: float) -> None:
         """Advance if the awaited command came; send the frame again if none came for a while."""
         command = self.ports.newest_command()
         answered = command is not None and command.seq == self.seq
@@ -130,7 +130,7 @@ class RealTimeLoop(Loop):
         self._physics_s = self._frame_s = self._ranges_s = time.monotonic()
         self._age = CommandAge()
 
-    def turn(self, now_s: float) -> None:
+    def step(self, now_s: float) -> None:
         """Obey the newest command, let physics catch up, send what is due."""
         self.serve_requests()
         command = self.ports.newest_command()
@@ -176,7 +176,7 @@ def run(settings: SimulatorSettings, world: WorldFile, bus: Bus, stop: threading
     simulation.panorama()
     loop.start()
     while not stop.is_set():
-        bus.wait(settings.repeat_s / 4 if settings.lockstep else REAL_TIME_TURN_S)
+        bus.wait(settings.repeat_s / 4 if settings.lockstep else REAL_TIME_STEP_S)
         sole.require()
-        loop.turn(time.monotonic())
+        loop.step(time.monotonic())
         ports.stop.tell(time.monotonic())

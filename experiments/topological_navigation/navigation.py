@@ -19,7 +19,7 @@ from experiments.topological_navigation.vectors import (
     latitude_headings,
     pair_headings,
 )
-from services.drive.momentary import obstacle_heading
+from services.drive.passing import obstacle_heading
 from services.features.networks.runtime import WeightsError
 from services.planner.heading.choose import heading_by_votes
 from services.planner.heading.methods import MethodName

@@ -1,30 +1,43 @@
-"""Getting round furniture: follow its border until the way ahead is free and all turning is undone.
+"""Getting round obstacles: what follows a border with a memory, and the thesis's rule without one. Pure.
 
-The rule is Pledge's (Abelson and diSessa, Turtle Geometry, 1981) with a compass that is the planner's
-heading: the deflection from the wished heading is counted, also beyond half a turn, and the border is left
-only when it has come back to zero. A side that does not lead past in time is given up for the other, with
-twice the patience each time: without a map of the obstacle no search wastes less. This memory ages in steps.
+To pass is to follow the border of an obstacle until the way ahead is free and all turning is undone. The rule
+is Pledge's (Abelson and diSessa, Turtle Geometry, 1981) with a compass that is the planner's heading: the
+deflection from the wished heading is counted, also beyond half a turn, and the border is left only when it
+has come back to zero. A side that does not lead past in time is given up for the other, with twice the
+patience each time: without a map of the obstacle no search wastes less. This memory ages in steps.
 """
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, PositiveFloat, PositiveInt
 
-from services.drive.steering import Steering
-from shared.geometry.clearance import Obstacles
+from shared.geometry.clearance import FloatArray, Obstacles
 
 STEP_RAD = math.radians(10.0)
+"""Directions that are tried; chosen: finer than half the beam of a sensor (clearance.HALF_BEAM_RAD)."""
 BACKTRACK_RAD = math.radians(100.0)
-LOYALTY_RAD = math.radians(50.0)
+"""Turning that one step may undo; chosen: a border that goes round a right angle, and one direction more."""
+PREFERENCE_RAD = math.radians(50.0)
+"""So much easier must the other side be to be taken; chosen: five of the directions that are tried."""
 JUMP_RAD = math.radians(60.0)
-"""A wish that changes this much between two steps is another errand."""
+"""A wish that changes this much between two steps is another errand (chosen, see decision 0005)."""
 FULL_TURN_RAD = 2.0 * math.pi
 
 
 class PassingLimits(BaseModel):
-    """Sizes of the robot and patience of the rule."""
+    """Sizes of the robot and patience of the rule; chosen so that it drives through its own doors untouched.
+
+    Attributes:
+        radius_m, radius_slow_m: of the disc that must fit, at full speed and near standstill: the body's
+            radius of 0.25 m (simulator/settings.py), with 4 and 2.5 cm to spare.
+        lookahead_m, lookahead_min_m: free way that a direction needs, likewise.
+        memory_steps: the side is remembered so long after a border was left.
+        patience_steps, patience_growth: a side is given up after so many steps, then so many times as many
+            (decision 0005).
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -35,6 +48,21 @@ class PassingLimits(BaseModel):
     memory_steps: PositiveInt = 15
     patience_steps: PositiveInt = 14
     patience_growth: PositiveFloat = 2.0
+
+
+class Steering(NamedTuple):
+    """Direction to drive in (robot frame) and why.
+
+    Attributes:
+        clearance_m: free way in that direction; limits the speed.
+        blocked: no direction is free; stand still.
+    """
+
+    heading_rad: float
+    avoiding: bool
+    why: str
+    clearance_m: float = float("inf")
+    blocked: bool = False
 
 
 @dataclass(frozen=True)
@@ -66,6 +94,13 @@ class Passing:
         turned_rad = max(0.0, self.deflection_rad - self.side * change_rad) if self.deflection_rad else 0.0
         return replace(self, deflection_rad=turned_rad, wished_rad=wished_rad)
 
+    def rested(self, limits: PassingLimits) -> "Passing":
+        """The memory after a step without an obstacle: it fades, and is gone after a while."""
+        idle = self.idle_steps + 1
+        if idle >= limits.memory_steps:
+            return Passing(wished_rad=self.wished_rad)
+        return replace(self, steps=max(0, self.steps - 1), idle_steps=idle)
+
 
 def steer_past(
     wished_rad: float, obstacles: Obstacles, memory: Passing, speed_fraction: float, limits: PassingLimits
@@ -85,26 +120,19 @@ def steer_past(
     radius_m = limits.radius_slow_m + (limits.radius_m - limits.radius_slow_m) * speed_fraction
     if memory.steps > limits.patience_steps * limits.patience_growth**memory.turns_back:
         memory = Passing(side=-memory.side, turns_back=memory.turns_back + 1, wished_rad=wished_rad)
+    side = memory.side
     if memory.deflection_rad == 0.0:
         clearance_m = float(obstacles.clearance_m(np.array([wished_rad]), radius_m)[0])
         if clearance_m >= lookahead_m:
-            idle = memory.idle_steps + 1
-            kept = replace(memory, steps=max(0, memory.steps - 1), idle_steps=idle)
-            kept = kept if idle < limits.memory_steps else Passing(wished_rad=wished_rad)
-            return Steering(wished_rad, False, "free", clearance_m), kept
-    side = memory.side
-    if memory.deflection_rad == 0.0:
+            return Steering(wished_rad, False, "free", clearance_m), memory.rested(limits)
         side = _easier_side(wished_rad, obstacles, lookahead_m, radius_m, memory.side)
     first_rad = max(0.0, memory.deflection_rad - BACKTRACK_RAD)
     offsets_rad = np.arange(first_rad, first_rad + FULL_TURN_RAD, STEP_RAD)
     headings_rad = wished_rad + side * offsets_rad
     clearances_m = obstacles.clearance_m(headings_rad, radius_m)
-    free = np.flatnonzero(clearances_m >= lookahead_m)
-    if not len(free):
-        free = np.flatnonzero(clearances_m >= limits.lookahead_min_m)
-    if not len(free):
+    chosen = _first_free(clearances_m, lookahead_m, limits.lookahead_min_m)
+    if chosen is None:
         return Steering(wished_rad, True, "no free direction", 0.0, True), replace(memory, side=side)
-    chosen = int(free[0])
     deflection_rad = float(offsets_rad[chosen])
     name = "left" if side > 0 else "right"
     why = f"passing on the {name}, {math.degrees(deflection_rad):.0f} deg off"
@@ -112,6 +140,15 @@ def steer_past(
     return steering, replace(
         memory, side=side, deflection_rad=deflection_rad, steps=memory.steps + 1, idle_steps=0
     )
+
+
+def _first_free(clearances_m: FloatArray, *enough_m: float) -> int | None:
+    """Index of the first direction with the first clearance that any has; None where none has the last."""
+    for least_m in enough_m:
+        free = np.flatnonzero(clearances_m >= least_m)
+        if len(free):
+            return int(free[0])
+    return None
 
 
 def _easier_side(
@@ -123,10 +160,30 @@ def _easier_side(
     for side in (1, -1):
         free = obstacles.clearance_m(wished_rad + side * offsets_rad, radius_m) >= lookahead_m
         best[side] = float(offsets_rad[free.argmax()]) if free.any() else FULL_TURN_RAD
-    if remembered and best[remembered] <= best[-remembered] + LOYALTY_RAD:
+    if remembered and best[remembered] <= best[-remembered] + PREFERENCE_RAD:
         return remembered
     return 1 if best[1] <= best[-1] else -1
 
 
 def _wrap(angle_rad: float) -> float:
     return math.remainder(angle_rad, FULL_TURN_RAD)
+
+
+def obstacle_heading(
+    angles_rad: tuple[float, ...], distances_m: tuple[float, ...], range_m: float
+) -> float | None:
+    """The thesis's direction of obstacles nearer than `range_m` (section 4.3): sum of their unit vectors."""
+    near = [angle for angle, distance in zip(angles_rad, distances_m, strict=True) if distance < range_m]
+    if not near:
+        return None
+    return math.atan2(sum(map(math.sin, near)), sum(map(math.cos, near)))
+
+
+def steer_away(heading_rad: float, obstacle_rad: float | None, rng: np.random.Generator) -> Steering:
+    """Blend w1 (away from the obstacle) with 1 - w1 (the estimate), w1 uniform in (0.5, 1.0), figure 4.9."""
+    if obstacle_rad is None:
+        return Steering(heading_rad, False, "free")
+    weight = float(rng.uniform(0.5, 1.0))
+    x = (1.0 - weight) * math.cos(heading_rad) - weight * math.cos(obstacle_rad)
+    y = (1.0 - weight) * math.sin(heading_rad) - weight * math.sin(obstacle_rad)
+    return Steering(math.atan2(y, x), True, f"away from obstacle at {math.degrees(obstacle_rad):.0f} deg")

@@ -5,14 +5,14 @@ from typing import Literal
 
 from pydantic_settings import SettingsConfigDict
 
-from services.drive.core import DriveLimits
+from services.drive.core import DriveLimits, WheelLimits
 from services.drive.passing import PassingLimits
-from services.drive.velocity import WheelLimits
 from shared.settings import ServiceSettings
 
 ProfileName = Literal["default", "outdoor", "thesis", "thesis_outdoor"]
 
-OUTDOOR_WHEELS = WheelLimits(max_radps=10.0, min_radps=6.0)
+OUTDOOR_WHEELS = WheelLimits(max_radps=10.0, min_radps=6.0)  # section 6.2 of the thesis
+# chosen: at twice the speed twice the look-ahead, and 4 cm more to spare beside the robot
 OUTDOOR_PASSING = PassingLimits(radius_m=0.33, radius_slow_m=0.29, lookahead_m=0.9, lookahead_min_m=0.15)
 
 

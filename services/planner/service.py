@@ -22,7 +22,17 @@ from shared.messages import (
 )
 from shared.messages.missions import EventValue
 from shared.queries import QueryError, RefusedError, Request
-from shared.topics import EVENT, FEATURES, HEADING, MAP_DELTA, MISSION, MISSION_KINDS, RANGES, STATUS, STOPPED
+from shared.topics import (
+    ESTOP_STATE,
+    EVENT,
+    FEATURES,
+    HEADING,
+    MAP_DELTA,
+    MISSION,
+    MISSION_KINDS,
+    RANGES,
+    STATUS,
+)
 from shared.wire import WireError
 
 log = logging.getLogger(__name__)
@@ -44,7 +54,7 @@ class Planner:
         self._features_in = bus.subscribe(FEATURES, robot=robot)
         self._ranges_in = bus.subscribe(RANGES, robot=robot)
         self._deltas = bus.subscribe(MAP_DELTA, map="*")
-        self._stops = bus.subscribe(STOPPED, robot=robot)
+        self._stops = bus.subscribe(ESTOP_STATE, robot=robot)
         self._planners = bus.subscribe(STATUS, robot=robot)
         self._requests = bus.requests(MISSION, robot=robot)
         self._kind_requests = bus.requests(MISSION_KINDS, robot=robot)

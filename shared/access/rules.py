@@ -72,8 +72,8 @@ STREAMS: dict[Topic[Any], Grant] = {
     topics.FEATURES: _grant([Role.FEATURES], [Role.PLANNER, *WATCHERS]),
     topics.HEADING: _grant([Role.PLANNER], [Role.DRIVE, *WATCHERS]),
     topics.COMMAND: _grant([Role.DRIVE], [*BODIES, *WATCHERS]),
-    topics.STOPPED: _grant([Role.DRIVE], [*BODIES, Role.PLANNER, *WATCHERS]),
-    topics.STANDING: _grant(BODIES, [Role.DRIVE, *WATCHERS]),
+    topics.ESTOP_STATE: _grant([Role.DRIVE], [*BODIES, Role.PLANNER, *WATCHERS]),
+    topics.ROBOT_ESTOP_STATE: _grant(BODIES, [Role.DRIVE, *WATCHERS]),
     topics.STATUS: _grant([Role.PLANNER], [Role.PLANNER, *WATCHERS]),
     topics.EVENT: _grant([Role.PLANNER], WATCHERS),
     # Only evaluation may know where the robot really is.

@@ -7,37 +7,37 @@ from pathlib import Path
 from shared.bus import Bus, Publisher, Request
 from shared.estop.latch import Latch
 from shared.messages import EStopRequest, EStopState
-from shared.topics import ESTOP, STANDING, STOPPED
+from shared.topics import ESTOP, ESTOP_STATE, ROBOT_ESTOP_STATE
 
 log = logging.getLogger(__name__)
 
 HEARTBEAT_S = 1.0
-"""Both sides repeat their state: who was away, or lost a message, knows it this much later."""
+"""Both sides repeat their state: who was away, or lost a message, knows it so much later (decision 0019)."""
 
 
-class StopDesk:
+class EStopServer:
     """Drive's side: answers requests, never asks who sends them, and tells everybody."""
 
     def __init__(self, bus: Bus, robot: str, folder: Path) -> None:
         self._latch = Latch(robot, folder)
         self._requests = bus.requests(ESTOP, robot=robot)
-        self._standing = bus.subscribe(STANDING, robot=robot)
-        self._voice = _Voice(bus.publisher(STOPPED, robot=robot))
+        self._robot_states = bus.subscribe(ROBOT_ESTOP_STATE, robot=robot)
+        self._told = _RepeatedState(bus.publisher(ESTOP_STATE, robot=robot))
 
     @property
     def state(self) -> EStopState:
         """How it stands now."""
         return self._latch.state
 
-    def turn(self, now_s: float) -> None:
+    def step(self, now_s: float) -> None:
         """Read what came; `now_s` is monotonic."""
         while (request := self._requests.take()) is not None:
             self._answer(request, now_s)
-        robots = self._standing.take()
+        robots = self._robot_states.take()
         if robots is not None and self._latch.learn(robots):
-            self._voice.say(self.state, now_s)
+            self._told.publish(self.state, now_s)
             _save(self._latch)
-        self._voice.repeat(self.state, now_s)
+        self._told.repeat(self.state, now_s)
 
     def _answer(self, request: Request[EStopRequest, EStopState], now_s: float) -> None:
         """The robot hears of a stop before the disk does: writing takes longer than braking may."""
@@ -45,12 +45,12 @@ class StopDesk:
         try:
             if wish.action == "engage":
                 self._latch.engage(wish.who, wish.why, time.time_ns())
-                self._voice.say(self.state, now_s)
+                self._told.publish(self.state, now_s)
                 self._latch.save()
                 log.warning("emergency stop by %r: %s", wish.who, wish.why)
             elif wish.action == "clear":
                 self._latch.clear(wish.who, wish.why, time.time_ns())
-                self._voice.say(self.state, now_s)
+                self._told.publish(self.state, now_s)
                 log.warning("emergency stop cleared by %r: %s", wish.who, wish.why)
         except ValueError as error:
             request.refuse(str(error))
@@ -64,47 +64,47 @@ class StopDesk:
             request.reply(self.state)
 
 
-class StopFollower:
+class RobotEStop:
     """The robot's side: holds what it heard or kept, and says so."""
 
     def __init__(self, bus: Bus, robot: str, folder: Path) -> None:
         self._latch = Latch(robot, folder)
-        self._stopped = bus.subscribe(STOPPED, robot=robot)
-        self._voice = _Voice(bus.publisher(STANDING, robot=robot))
-        self._news = False
+        self._drive_states = bus.subscribe(ESTOP_STATE, robot=robot)
+        self._told = _RepeatedState(bus.publisher(ROBOT_ESTOP_STATE, robot=robot))
+        self._changed = False
 
     def engaged(self) -> bool:
         """Read what came; whether the wheels must stand now."""
-        drives = self._stopped.take()
+        drives = self._drive_states.take()
         if drives is not None and self._latch.follow(drives):
             state = self._latch.state
             log.warning("emergency stop %s by %r", "engaged" if state.engaged else "cleared", state.who)
-            self._news = True
+            self._changed = True
         return self._latch.state.engaged
 
     def tell(self, now_s: float) -> None:
         """Keep what was read and say so. Call it after the wheels: a disk may be slower than brakes may."""
-        if self._news:
-            self._news = False
+        if self._changed:
+            self._changed = False
             _save(self._latch)
-            self._voice.say(self._latch.state, now_s)
-        self._voice.repeat(self._latch.state, now_s)
+            self._told.publish(self._latch.state, now_s)
+        self._told.repeat(self._latch.state, now_s)
 
 
-class _Voice:
-    """Says a state when it changes and every heartbeat."""
+class _RepeatedState:
+    """Publishes a state when it changes and every heartbeat."""
 
     def __init__(self, publisher: Publisher[EStopState]) -> None:
         self._publisher = publisher
-        self._said_s = float("-inf")
+        self._published_s = float("-inf")
 
-    def say(self, state: EStopState, now_s: float) -> None:
+    def publish(self, state: EStopState, now_s: float) -> None:
         self._publisher.put(state)
-        self._said_s = now_s
+        self._published_s = now_s
 
     def repeat(self, state: EStopState, now_s: float) -> None:
-        if now_s - self._said_s >= HEARTBEAT_S:
-            self.say(state, now_s)
+        if now_s - self._published_s >= HEARTBEAT_S:
+            self.publish(state, now_s)
 
 
 def _save(latch: Latch) -> None:

@@ -17,7 +17,7 @@ from shared.access.credentials import credentials_in
 from shared.bus import wait_until
 from shared.messages import EStopRequest, Heading, MapDelta, MapRequest, Ranges
 from shared.queries import AbsentError, RefusedError
-from shared.topics import COMMAND, ESTOP, HEADING, MAP, MAP_DELTA, MAP_READ, RANGES, STOPPED
+from shared.topics import COMMAND, ESTOP, ESTOP_STATE, HEADING, MAP, MAP_DELTA, MAP_READ, RANGES
 from shared.transport.session_config import client_config
 from shared.wire import encode
 from tests.faults.secured import SecuredBus
@@ -57,7 +57,7 @@ class Robot:
     def __init__(self, secured):
         body, planner = secured.bus("simulator"), secured.bus("planner")
         self._ranges = body.publisher(RANGES, robot="r1")
-        self.commands, self.stopped = (body.subscribe(t, robot="r1") for t in (COMMAND, STOPPED))
+        self.commands, self.stopped = (body.subscribe(t, robot="r1") for t in (COMMAND, ESTOP_STATE))
         self._headings = planner.publisher(HEADING, robot="r1")
         self.seq, self.newest_radps = 0, 0.0
 
@@ -186,7 +186,7 @@ def test_the_emergency_stop_is_for_people_and_not_for_watchers(secured, robot):
             ask("viewer", "clear")
         robot.speeds(0.2, robot.wish)  # the first may have been under way
         assert not any(robot.speeds(WHILE_S, robot.wish))
-        secured.bus("viewer")._session.put(STOPPED.key(robot="r1"), b"\xff")
+        secured.bus("viewer")._session.put(ESTOP_STATE.key(robot="r1"), b"\xff")
         settle(secured.bus("viewer"))
     finally:
         assert not ask("gateway", "clear").engaged

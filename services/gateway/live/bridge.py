@@ -9,7 +9,7 @@ from typing import Any
 from services.gateway.live.hub import Hub
 from shared.bus import Bus
 from shared.messages.base import Message
-from shared.topics import COMMAND, EVENT, FRAME, HEADING, NAME, RANGES, STATUS, STOPPED, TRUTH, Topic
+from shared.topics import COMMAND, ESTOP_STATE, EVENT, FRAME, HEADING, NAME, RANGES, STATUS, TRUTH, Topic
 
 PERIOD_S = 0.25
 """Chosen: the bus wakes the thread for whatever it carries; this is for what does not."""
@@ -19,9 +19,9 @@ BEAT_S = 2.0
 """A third of the silence after which the console connects again, less what a beat may be late."""
 
 QUEUED: tuple[Topic[Any], ...] = (STATUS, EVENT, TRUTH)
-NEWEST: tuple[Topic[Any], ...] = (FRAME, RANGES, HEADING, COMMAND, STOPPED)
+NEWEST: tuple[Topic[Any], ...] = (FRAME, RANGES, HEADING, COMMAND, ESTOP_STATE)
 """Of these an inbox keeps the newest only: under '*' robots would displace each other."""
-TELLING: tuple[Topic[Any], ...] = (RANGES, STOPPED)
+TELLING: tuple[Topic[Any], ...] = (RANGES, ESTOP_STATE)
 """Of these enough arrives under '*' to tell that there is another robot."""
 
 Inbox = Callable[[], Sequence[Message]]

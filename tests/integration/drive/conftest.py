@@ -12,7 +12,7 @@ import pytest
 
 from shared.bus import Bus, open_bus, wait_until
 from shared.messages import Command, EStopRequest, EStopState, Heading, Ranges
-from shared.topics import COMMAND, ESTOP, HEADING, RANGES, STANDING, STOPPED
+from shared.topics import COMMAND, ESTOP, ESTOP_STATE, HEADING, RANGES, ROBOT_ESTOP_STATE
 
 START_S, SOON_S = 60.0, 30.0
 """Long enough where other processes take most of the machine, and may stop ours for seconds."""
@@ -24,11 +24,11 @@ class Neighbours:
     def __init__(self, bus: Bus) -> None:
         self.bus = bus
         self._headings, self._ranges = bus.publisher(HEADING, robot="r1"), bus.publisher(RANGES, robot="r1")
-        self.standing = bus.publisher(STANDING, robot="r1")
+        self.robot_estop = bus.publisher(ROBOT_ESTOP_STATE, robot="r1")
         self._commands = bus.subscribe(COMMAND, robot="r1")
         self.newest: Command | None = None
         self._frames = count(1)
-        self.stopped = bus.subscribe(STOPPED, robot="r1")
+        self.estop_states = bus.subscribe(ESTOP_STATE, robot="r1")
 
     def frame(self) -> int:
         """Number of the next frame: an answer to the same one again and again soon is one to an old one."""

@@ -87,18 +87,18 @@ def test_a_file_that_cannot_be_read_is_an_engaged_stop(start, neighbours, tmp_pa
 
 def test_the_state_is_told_on_change_and_again_and_again(start, neighbours):
     start()
-    assert wait_until(lambda: (s := neighbours.stopped.take()) is not None and not s.engaged, SOON_S)
+    assert wait_until(lambda: (s := neighbours.estop_states.take()) is not None and not s.engaged, SOON_S)
     neighbours.estop("engage", why="x")
     for _ in range(2):
-        assert wait_until(lambda: (s := neighbours.stopped.take()) is not None and s.engaged, SOON_S)
+        assert wait_until(lambda: (s := neighbours.estop_states.take()) is not None and s.engaged, SOON_S)
 
 
 def test_a_stop_that_only_the_robot_remembers_is_taken_over(start, neighbours):
     start()
-    neighbours.standing.put(EStopState(robot="r1", seq=4, engaged=True, who="anna"))
+    neighbours.robot_estop.put(EStopState(robot="r1", seq=4, engaged=True, who="anna"))
 
     def taken_over():
-        neighbours.standing.put(EStopState(robot="r1", seq=4, engaged=True, who="anna"))
+        neighbours.robot_estop.put(EStopState(robot="r1", seq=4, engaged=True, who="anna"))
         return neighbours.estop("status").engaged
 
     assert wait_until(taken_over, SOON_S)

@@ -15,7 +15,7 @@ QUIET_S = 0.3
 
 
 class Clocked:
-    """A drive controller in this process that turns when it is told to, at the time it is told."""
+    """A drive controller in this process that steps when it is told to, at the time it is told."""
 
     def __init__(self, bus: Bus, neighbours: Neighbours, state_dir: Path) -> None:
         self._bus, self._neighbours = bus, neighbours
@@ -27,21 +27,21 @@ class Clocked:
         def moves() -> bool:
             self._neighbours.see(1)
             self._neighbours.wish(1)
-            self._drive.turn(BEGIN_S)
+            self._drive.step(BEGIN_S)
             return self.moving()
 
         assert wait_until(moves, SOON_S)
         while self._bus.wait(QUIET_S):
-            self._drive.turn(BEGIN_S)
+            self._drive.step(BEGIN_S)
         self.moving()
 
-    def turn(self, now_s: float, say: Callable[[], None] | None = None) -> bool:
-        """Turn once `say` has arrived; whether the newest command so far moves the robot."""
+    def step(self, now_s: float, say: Callable[[], None] | None = None) -> bool:
+        """Step once `say` has arrived; whether the newest command so far moves the robot."""
         if say is not None:
             self._bus.wake.clear()
             say()
             assert self._bus.wait(SOON_S)
-        self._drive.turn(now_s)
+        self._drive.step(now_s)
         return self.moving()
 
     def moving(self) -> bool:
@@ -59,20 +59,20 @@ def drive(router_endpoint: str, neighbours: Neighbours, tmp_path: Path) -> Itera
 
 
 def test_a_heading_that_was_read_late_lives_no_longer_for_it(drive: Clocked, neighbours: Neighbours):
-    assert drive.turn(BEGIN_S + 0.3, lambda: neighbours.wish(2)), "it may have come 0.3 s ago and lives 0.5 s"
+    assert drive.step(BEGIN_S + 0.3, lambda: neighbours.wish(2)), "it may have come 0.3 s ago and lives 0.5 s"
     for seq, now_s in enumerate((0.35, 0.4, 0.45), start=2):
-        assert drive.turn(BEGIN_S + now_s, lambda seq=seq: neighbours.see(seq))
-    assert not drive.turn(BEGIN_S + 0.52, lambda: neighbours.see(5))
+        assert drive.step(BEGIN_S + now_s, lambda seq=seq: neighbours.see(seq))
+    assert not drive.step(BEGIN_S + 0.52, lambda: neighbours.see(5))
 
 
 def test_a_burst_after_a_cut_is_thrown_away_however_late_it_is_read(drive: Clocked, neighbours: Neighbours):
     silent_s = [BEGIN_S + 0.05 * number for number in range(1, 21)]
-    assert not [drive.turn(now_s) for now_s in silent_s][-1]
+    assert not [drive.step(now_s) for now_s in silent_s][-1]
     healed_s = silent_s[-1] + 0.05
-    drive.turn(healed_s, lambda: neighbours.see(2))
-    drive.turn(healed_s + 0.3, lambda: neighbours.wish(2))
-    assert not drive.turn(healed_s + 0.31, lambda: neighbours.see(3)), "held up for longer than a burst lasts"
+    drive.step(healed_s, lambda: neighbours.see(2))
+    drive.step(healed_s + 0.3, lambda: neighbours.wish(2))
+    assert not drive.step(healed_s + 0.31, lambda: neighbours.see(3)), "held up for longer than a burst lasts"
     for number in range(1, 5):
-        drive.turn(healed_s + 0.31 + 0.05 * number)
-    drive.turn(healed_s + 0.52, lambda: neighbours.see(4))
-    assert drive.turn(healed_s + 0.54, lambda: neighbours.wish(4)), "it listens again"
+        drive.step(healed_s + 0.31 + 0.05 * number)
+    drive.step(healed_s + 0.52, lambda: neighbours.see(4))
+    assert drive.step(healed_s + 0.54, lambda: neighbours.wish(4)), "it listens again"

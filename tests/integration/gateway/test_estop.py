@@ -13,7 +13,7 @@ from websockets.sync.client import connect
 from services.gateway.http.rates import RateLimits
 from services.gateway.live.bridge import Bridge
 from shared.bus import Bus, wait_until
-from shared.estop.sides import StopDesk
+from shared.estop.sides import EStopServer
 from tests.integration.gateway.gateway_process import WAIT_S, sees
 from tests.integration.gateway.standins import Peer
 
@@ -25,8 +25,8 @@ def drive(endpoint: str, gateway: str, patient_stops: None) -> Iterator[None]:  
     """A drive service that only knows the emergency stop, and that the gateway has met."""
 
     def setup(bus: Bus) -> Callable[[], None]:
-        desk = StopDesk(bus, "e1", Path(folder))
-        return lambda: desk.turn(time.monotonic())
+        estop = EStopServer(bus, "e1", Path(folder))
+        return lambda: estop.step(time.monotonic())
 
     with tempfile.TemporaryDirectory() as folder, Peer(endpoint, "drive", setup):
         assert wait_until(lambda: sees(gateway, ["drive"]), WAIT_S)

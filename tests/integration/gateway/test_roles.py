@@ -14,7 +14,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from shared.bus import Bus, wait_until
-from shared.estop.sides import StopDesk
+from shared.estop.sides import EStopServer
 from tests.integration.gateway.conftest import serve_gateway
 from tests.integration.gateway.gateway_process import WAIT_S, sees
 from tests.integration.gateway.keys import NAMES, bearer, write_file
@@ -56,8 +56,8 @@ def drive(
     folder = tmp_path_factory.mktemp("drive")
 
     def setup(bus: Bus) -> Callable[[], None]:
-        desk = StopDesk(bus, ROBOT, folder)
-        return lambda: desk.turn(time.monotonic())
+        estop = EStopServer(bus, ROBOT, folder)
+        return lambda: estop.step(time.monotonic())
 
     with Peer(endpoint, "drive", setup):
         assert wait_until(lambda: sees(guarded, ["drive"]), WAIT_S)

@@ -5,7 +5,7 @@ import pytest
 from shared.bus import Bus, wait_until
 from shared.messages import EStopState
 from shared.queries import RefusedError
-from shared.topics import STOPPED
+from shared.topics import ESTOP_STATE
 from tests.integration.map_store.conftest import START_S
 from tests.integration.map_store.conftest import bus as bus
 from tests.integration.map_store.conftest import process as process
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.usefixtures("patient_sessions")
 
 def test_a_mission_that_the_emergency_stop_holds_is_resumed_only_after_it_was_cleared(bus: Bus, planner):
     planner()
-    drive = bus.publisher(STOPPED, robot="r1")
+    drive = bus.publisher(ESTOP_STATE, robot="r1")
 
     def stands(engaged: bool) -> EStopState:
         state = EStopState(robot="r1", seq=1 + (not engaged), engaged=engaged, who="anna", why="a child")

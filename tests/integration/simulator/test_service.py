@@ -11,7 +11,7 @@ from shared.bus import Bus, open_bus, wait_until
 from shared.messages import Command, EStopState, SimulationRequest
 from shared.messages.simulation import Pose
 from shared.queries import RefusedError
-from shared.topics import COMMAND, FRAME, RANGES, SIMULATION, STANDING, STOPPED, TRUTH
+from shared.topics import COMMAND, ESTOP_STATE, FRAME, RANGES, ROBOT_ESTOP_STATE, SIMULATION, TRUTH
 
 pytestmark = [pytest.mark.render, pytest.mark.usefixtures("patient_sessions")]
 START_S, SOON_S = 90.0, 60.0
@@ -30,8 +30,8 @@ class Peer:
         self.bus = bus
         self._in = [bus.subscribe(topic, robot="r1") for topic in (FRAME, RANGES, TRUTH)]
         self._commands = bus.publisher(COMMAND, robot="r1")
-        self._stopped = bus.publisher(STOPPED, robot="r1")
-        self.standing = bus.subscribe(STANDING, robot="r1")
+        self._estop_states = bus.publisher(ESTOP_STATE, robot="r1")
+        self.robot_estop = bus.subscribe(ROBOT_ESTOP_STATE, robot="r1")
         self.frame = self.ranges = self.truth = None
         self.frames = 0
         self.truths = []
@@ -66,7 +66,7 @@ class Peer:
         self.wait_for(lambda: self.complete(seq + 1) or self.command(seq))
 
     def drive_says(self, seq, engaged, who=""):
-        self._stopped.put(EStopState(robot="r1", seq=seq, engaged=engaged, who=who))
+        self._estop_states.put(EStopState(robot="r1", seq=seq, engaged=engaged, who=who))
 
     def ask(self, **request):
         return self.bus.ask(SIMULATION, SimulationRequest(**request), timeout_s=SOON_S, robot="r1")
@@ -178,7 +178,7 @@ def test_a_killed_simulator_finds_its_textures_and_light_again(start, tmp_path):
 
 def says(peer, engaged):
     """Whether the robot has just said that its emergency stop is engaged, or not; it repeats its state."""
-    news = peer.standing.take_all()
+    news = peer.robot_estop.take_all()
     return bool(news) and news[-1].engaged is engaged
 
 

@@ -1,10 +1,12 @@
-"""Drive core: hold stops, obstacles come first, the answer carries the question's frame."""
+"""Drive core: hold stops, obstacles come first, the answer carries the question's frame; the velocity law."""
 
 import math
 
 import numpy as np
+import pytest
+from pydantic import ValidationError
 
-from services.drive.core import DriveLimits, compute_command
+from services.drive.core import DriveLimits, WheelLimits, compute_command, velocity_gain, wheel_speed
 from services.drive.passing import Passing
 from shared.messages import Heading, Ranges
 
@@ -48,3 +50,25 @@ def test_momentary_rule_depends_only_on_its_inputs():
     limits = DriveLimits(avoidance="momentary")
     heading = Heading(robot="r1", heading_rad=0.2)
     assert command(heading, ranges(0.4), limits) == command(heading, ranges(0.4), limits)
+
+
+@pytest.mark.parametrize(("similarity", "gain"), [(0, 1.0), (90, 1.0), (110, 1.0 - 20 / 150), (150, 0.6)])
+def test_gain_of_the_thesis(similarity, gain):
+    assert velocity_gain(similarity, s_slow=90, s_max=150) == pytest.approx(gain)
+
+
+def test_outdoor_speed_falls_from_ten_to_six():
+    limits = WheelLimits(max_radps=10.0, min_radps=6.0)
+    assert wheel_speed(60, 90, 150, 1.0, limits) == 10.0
+    assert wheel_speed(150, 90, 150, 1.0, limits) == pytest.approx(6.0)
+
+
+def test_minimum_speed_is_kept_until_the_planner_asks_for_less():
+    limits = WheelLimits(max_radps=5.0, min_radps=4.0)
+    assert wheel_speed(150, 90, 150, 1.0, limits) == 4.0
+    assert wheel_speed(150, 90, 150, 0.25, limits) == 1.0
+
+
+def test_minimum_above_maximum_is_refused():
+    with pytest.raises(ValidationError, match="min_radps must be at most max_radps"):
+        WheelLimits(max_radps=3.0, min_radps=5.0)

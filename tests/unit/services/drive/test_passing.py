@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from services.drive.passing import Passing, PassingLimits, steer_past
+from services.drive.passing import Passing, PassingLimits, obstacle_heading, steer_away, steer_past
 from shared.geometry.clearance import Obstacles
 
 LIMITS = PassingLimits()
@@ -99,3 +99,35 @@ def test_enclosed_robot_stands_still():
     ring = Obstacles(0.32 * np.stack([np.cos(around), np.sin(around)], axis=-1))
     steering, _ = steer_past(0.0, ring, Passing(), 1.0, LIMITS)
     assert steering.blocked
+
+
+ANGLES = tuple(math.remainder(i * math.tau / 12, math.tau) for i in range(12))
+
+
+def distances(**near):
+    readings = [4.0] * 12
+    for sector, value in near.items():
+        readings[int(sector[1:])] = value
+    return tuple(readings)
+
+
+def test_obstacle_heading_is_the_near_sensor():
+    assert obstacle_heading(ANGLES, distances(s3=0.4), 0.5) == pytest.approx(math.pi / 2)
+
+
+def test_two_near_sensors_give_the_direction_between():
+    assert obstacle_heading(ANGLES, distances(s0=0.4, s1=0.4), 0.5) == pytest.approx(math.radians(15.0))
+
+
+def test_nothing_near_is_no_obstacle():
+    assert obstacle_heading(ANGLES, distances(), 0.5) is None
+    assert steer_away(0.3, None, np.random.default_rng(0)).heading_rad == 0.3
+
+
+def test_blend_leans_away_and_keeps_part_of_the_estimate():
+    rng = np.random.default_rng(1)
+    for _ in range(200):
+        steering = steer_away(math.pi / 2, 0.0, rng)
+        assert steering.avoiding
+        assert math.pi / 2 < steering.heading_rad < math.pi, "between the estimate and straight away"
+        assert steering.heading_rad > math.radians(135.0) - 1e-9, "w1 is above one half"

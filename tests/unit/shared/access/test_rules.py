@@ -20,7 +20,7 @@ FOLDERS = {
 # Plays simulator and planner of many robots on a bus of its own, which is not secured.
 IMPERSONATORS = {"experiments/scale/asking_robot.py"}
 # The emergency stop is in shared code: drive holds the desk, a body follows.
-SIDES = {"StopDesk": Role.DRIVE, "StopFollower": Role.SIMULATOR}
+SIDES = {"EStopServer": Role.DRIVE, "RobotEStop": Role.SIMULATOR}
 CALLS = {
     "publisher": (STREAMS, "speakers"),
     "subscribe": (STREAMS, "hearers"),
@@ -85,11 +85,11 @@ def test_the_reader_would_notice_a_planner_that_commands():
 def test_one_role_each_moves_the_robot_and_decides_where_to():
     assert STREAMS[topics.COMMAND].speakers == {Role.DRIVE}
     assert STREAMS[topics.HEADING].speakers == {Role.PLANNER}
-    assert STREAMS[topics.STOPPED].speakers == {Role.DRIVE}
+    assert STREAMS[topics.ESTOP_STATE].speakers == {Role.DRIVE}
 
 
 def test_only_bodies_say_what_a_robot_senses_and_only_the_simulator_where_it_is():
-    for stream in (topics.FRAME, topics.RANGES, topics.STANDING):
+    for stream in (topics.FRAME, topics.RANGES, topics.ROBOT_ESTOP_STATE):
         assert STREAMS[stream].speakers == set(BODIES)
     assert STREAMS[topics.TRUTH].speakers == {Role.SIMULATOR}
 

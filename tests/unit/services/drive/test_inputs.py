@@ -1,6 +1,6 @@
 """How old frames are: counted from the first news of them, whatever clocks say."""
 
-from services.drive.ages import MOST_FRAMES, FrameAges
+from services.drive.inputs import MOST_FRAMES, FrameAges
 
 
 def test_a_frame_is_as_old_as_the_first_news_of_it():
