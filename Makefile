@@ -51,7 +51,8 @@ bench: setup
 	$(BIN)/topnav study scale --json runs/bench/scale.json --plot runs/bench/scale.png
 	$(BIN)/python -m pytest -q -s tests/benchmarks/test_console_graph.py tests/benchmarks/test_rendering.py
 	$(BIN)/python -m pytest -q -s tests/benchmarks/test_gateway_load.py tests/benchmarks/test_secured_bus.py \
-		tests/benchmarks/test_map_store_databases.py tests/benchmarks/test_late_feature_service.py
+		tests/benchmarks/test_map_store_databases.py tests/benchmarks/test_late_feature_service.py \
+		tests/benchmarks/test_two_view_effort.py
 
 fuzz: setup
 	$(BIN)/python -m tests.fuzz $(FUZZ_ARGS)

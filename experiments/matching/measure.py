@@ -21,7 +21,7 @@ from services.features.matching.nearest_neighbours import find_neighbours
 from services.features.pipeline.extraction import extract
 from services.features.pipeline.interfaces import Distance, FeatureSet, Representation, View
 from services.features.pipeline.pipeline import Pipeline
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 
 BORDER_PX = 6.0
 """Keypoints this near the picture's edge are found because of the edge (thesis 3.1)."""

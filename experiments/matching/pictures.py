@@ -8,8 +8,7 @@ import numpy as np
 
 from experiments.matching.placing import FOV_RAD, Image
 from services.launcher.client.failure import ExperimentError
-from shared.geometry.perspective import PerspectiveView
-from shared.geometry.resampling import view_table
+from shared.geometry.perspective import PerspectiveView, view_table
 from shared.geometry.sphere import EquirectGrid
 from simulator.settings import CameraSettings, SimulationSettings
 from simulator.world.freespace import free_space

@@ -7,10 +7,8 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from shared.geometry.angles import FloatArray
-from shared.geometry.perspective import PerspectiveView
-from shared.geometry.resampling import pixel_centres
-from shared.geometry.sphere import EquirectGrid, bearings_from_lonlat
+from shared.geometry.perspective import PerspectiveView, pixel_centres
+from shared.geometry.sphere import EquirectGrid, FloatArray, bearings_from_lonlat
 
 Image = npt.NDArray[np.uint8]
 FOV_RAD = math.pi / 2

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 
 THRESHOLDS = 25
 

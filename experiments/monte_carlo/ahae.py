@@ -7,7 +7,7 @@ import numpy as np
 from experiments.monte_carlo.scene import Placement, draw_scene, generator_of
 from experiments.monte_carlo.votes import draw_choices, headings, vote_table
 from services.planner.heading.weights import WeightSettings
-from shared.geometry.angles import FloatArray, wrap_rad
+from shared.geometry.sphere import FloatArray, wrap_rad
 
 METHODS = ("1", "2", "3", "4", "5", "6")
 COUNTS = (5, 8, 13, 21, 34, 60, 100, 150)

@@ -11,7 +11,7 @@ from experiments.monte_carlo.scene import MonteCarloScene, Placement, draw_scene
 from experiments.monte_carlo.tracking import DEG, STEP_M, follow, lonlat_of
 from experiments.monte_carlo.votes import IndexArray, draw_choices
 from services.planner.heading.votes import latitude_votes, pair_votes
-from shared.geometry.angles import FloatArray, wrap_rad
+from shared.geometry.sphere import FloatArray, wrap_rad
 
 COUNT = 34
 

@@ -9,7 +9,7 @@ from experiments.monte_carlo.scene import MonteCarloScene, Placement, draw_scene
 from experiments.monte_carlo.tracking import follow
 from experiments.monte_carlo.votes import draw_choices
 from services.planner.heading.methods import heading_estimate
-from shared.geometry.angles import FloatArray, wrap_rad
+from shared.geometry.sphere import FloatArray, wrap_rad
 from shared.geometry.two_view import two_view
 from shared.geometry.two_view_types import TwoViewSettings
 

@@ -10,7 +10,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 
 Placement = Literal["centre", "north", "north_east"]
 PLACEMENTS: tuple[Placement, ...] = get_args(Placement)

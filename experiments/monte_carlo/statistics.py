@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from experiments.monte_carlo.ahae import METHODS
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

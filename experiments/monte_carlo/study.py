@@ -15,7 +15,7 @@ from experiments.monte_carlo.sweep import FUNCTIONS, WEIGHTED, SweepPlan, scene_
 from experiments.monte_carlo.tracking import DcpePlan, scene_paths
 from experiments.plots.boxes import draw_boxes, draw_comparison
 from services.planner.heading.weights import WeightSettings
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 
 NOISES_DEG = (0.0, 0.25, 0.5, 1.0)
 OUTLIERS = (0.0, 0.2, 0.4)

@@ -8,7 +8,7 @@ from experiments.monte_carlo.scene import Placement, draw_scene, generator_of, l
 from experiments.monte_carlo.votes import draw_choices
 from services.planner.heading.methods import heading_estimate
 from services.planner.heading.weights import WeightSettings
-from shared.geometry.angles import FloatArray, wrap_rad
+from shared.geometry.sphere import FloatArray, wrap_rad
 
 WEIGHTED = ("2", "4", "5", "6")
 FUNCTIONS: dict[str, WeightSettings] = {

@@ -16,7 +16,7 @@ from experiments.monte_carlo.ahae import METHODS
 from experiments.monte_carlo.batched import batch_headings
 from experiments.monte_carlo.scene import MonteCarloScene, Placement, draw_scene, generator_of
 from experiments.monte_carlo.votes import IndexArray, draw_choices
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 
 STEP_M = 0.2
 """Speed times time step; also how near counts as reached. The thesis states neither (Q27)."""

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from experiments.monte_carlo.scene import MonteCarloScene, lonlat_from
 from services.planner.heading.votes import latitude_votes, pair_votes
 from services.planner.heading.weights import WeightSettings
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 
 ComplexArray = npt.NDArray[np.complex128]
 IndexArray = npt.NDArray[np.intp]

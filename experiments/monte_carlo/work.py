@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from experiments.studies.workers import workers
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 
 
 def results_of(

@@ -10,7 +10,7 @@ from experiments.monte_carlo.ahae import METHODS
 from experiments.monte_carlo.statistics import Statistics
 from experiments.plots.colours import MARKERS, SERIES
 from services.launcher.drawing.saving import save
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 
 
 def draw_boxes(path: Path, title: str, unit: str, figures: Statistics) -> None:

@@ -27,7 +27,7 @@ from services.planner.mapping.strategies import ThesisExploration
 from services.planner.missions.goto import Goto
 from services.planner.ports import Decision, Mission, Observation
 from services.planner.profiles import THESIS, Profile
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 from shared.messages.features import Features
 from shared.messages.sensors import Ranges
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from services.planner.heading.votes import signed_bisectors, vote_signs
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 
 
 def keypoint_unit_vectors(keypoints_ang: FloatArray) -> FloatArray:

@@ -10,12 +10,21 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 HALF_BEAM_RAD = math.radians(12.0)
+"""Part of a beam of 30 degrees (decision 0006) that an echo is spread over to either side; chosen: 3 degrees
+less, as its neighbour covers the rest."""
 ARC_POINTS = 5
+"""Points per echo; chosen: 6 degrees apart, 5 cm at the look-ahead of half a metre."""
 NEARER_M = 0.08
-"""A neighbour that reads this much less has the nearer end of the same surface."""
-
+"""A neighbour that reads this much less has the nearer end of the same surface; chosen: more than five
+standard deviations of the difference of two readings with 1 cm of noise."""
 GAP_M = 0.4
-"""A neighbour that reads this much more looks past the end of the surface."""
+"""A neighbour that reads this much more looks past the end of the surface; chosen: more than the
+steps of furniture, less than what lies behind a doorway."""
+MIDDLE = 0.2
+"""Share of the half beam at which the half that holds an echo begins: beyond the middle where the neighbour
+reads less, before it beside a gap; chosen: 2.4 degrees."""
+SEEN = 0.98
+"""Share of the largest range from which on nothing was seen: its noise of 1 cm stays within 2 % of 4 m."""
 
 
 @dataclass(frozen=True)
@@ -46,14 +55,14 @@ class Obstacles:
         """
         angles, distances = np.asarray(angles_rad), np.asarray(distances_m)
         left, right = np.roll(distances, -1), np.roll(distances, 1)
-        low = np.where((left < distances - NEARER_M) & (left <= right), 0.2, -1.0)
-        high = np.where((right < distances - NEARER_M) & (right < left), -0.2, 1.0)
-        low = np.where((np.abs(left - distances) < NEARER_M) & (right > distances + GAP_M), -0.2, low)
-        high = np.where((np.abs(right - distances) < NEARER_M) & (left > distances + GAP_M), 0.2, high)
+        low = np.where((left < distances - NEARER_M) & (left <= right), MIDDLE, -1.0)
+        high = np.where((right < distances - NEARER_M) & (right < left), -MIDDLE, 1.0)
+        low = np.where((np.abs(left - distances) < NEARER_M) & (right > distances + GAP_M), -MIDDLE, low)
+        high = np.where((np.abs(right - distances) < NEARER_M) & (left > distances + GAP_M), MIDDLE, high)
         low, high = low * HALF_BEAM_RAD, high * HALF_BEAM_RAD
         share = np.linspace(0.0, 1.0, ARC_POINTS)
         arcs_rad = angles[:, None] + low[:, None] + (high - low)[:, None] * share
-        seen = distances < max_range_m * 0.98
+        seen = distances < max_range_m * SEEN
         arc_rad, reach_m = arcs_rad[seen].ravel(), np.repeat(distances[seen], ARC_POINTS)
         return Obstacles(np.stack([reach_m * np.cos(arc_rad), reach_m * np.sin(arc_rad)], axis=-1))
 
@@ -71,11 +80,3 @@ class Obstacles:
         chord_m = np.sqrt(np.clip(radius_m**2 - lateral_m**2, 0.0, None))
         free_m: FloatArray = np.where(touches, np.maximum(forward_m - chord_m, 0.0), np.inf).min(axis=1)
         return free_m
-
-    def nearest(self) -> tuple[float, float]:
-        """Distance (m) and bearing (rad) of the nearest point; infinity and 0 when nothing is seen."""
-        if not len(self.points_m):
-            return np.inf, 0.0
-        distances = np.hypot(self.points_m[:, 0], self.points_m[:, 1])
-        nearest = int(distances.argmin())
-        return float(distances[nearest]), float(np.arctan2(*self.points_m[nearest, ::-1]))

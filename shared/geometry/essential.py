@@ -3,25 +3,31 @@
 import numpy as np
 import numpy.typing as npt
 
-from shared.geometry.angles import FloatArray, wrap_rad
 from shared.geometry.essential_model import (
     Pose,
     PoseEvaluation,
+    draw_fives,
     evaluate_pose,
+    five_point,
     poses_of,
     refine_pose,
     score_essentials,
 )
-from shared.geometry.five_point import draw_fives, five_point
-from shared.geometry.general_rotation import fit_rotation
-from shared.geometry.planar_refine import noise_rad
-from shared.geometry.sphere import angle_between_rad, bearings_from_lonlat
-from shared.geometry.two_view_judge import confidence, log_nfa, parallax_share, parallax_z, sign_margin
-from shared.geometry.two_view_types import BoolArray, TwoViewResult, TwoViewSettings, checked_matches, refused
+from shared.geometry.evidence import confidence, log_nfa, noise_rad, parallax_share, parallax_z, sign_margin
+from shared.geometry.rotation import fit_rotation
+from shared.geometry.sphere import BoolArray, FloatArray, angle_between_rad, bearings_from_lonlat, wrap_rad
+from shared.geometry.two_view_types import TwoViewResult, TwoViewSettings, checked_matches, refused
 
 REFINED = 3
+"""Matrices refined: 1 and 6 answer as many scenes (tests/benchmarks/test_two_view_effort.py)."""
 CHANCE_SHIFTS = 16
-MIN_HORIZONTAL = 0.5  # a travel direction steeper than 60 degrees has no heading
+"""As in planar."""
+MIN_HORIZONTAL = 0.5
+"""Cosine of 60 degrees: a travel direction that is steeper has no heading; chosen."""
+SEARCHED = 10
+"""The refinement searches beyond the samples: they count as so many times as many tests; chosen."""
+AS_WELL = 0.85
+"""Share of the inliers that a turn alone must explain to be considered; chosen: chance adds some to both."""
 
 
 def estimate_essential(
@@ -43,10 +49,9 @@ def estimate_essential(
     scores = score_essentials(essentials, b, bt, settings.threshold_rad)
     best = np.argsort(-scores, kind="stable")[:REFINED]
     pose, covariance = _best_pose(essentials[best], b, bt, settings.threshold_rad)
-    # The refinement searches beyond the samples: count it as ten times as many tests.
-    answer = _judge(pose, covariance, b, bt, 10 * len(essentials), settings)
+    answer = _judge(pose, covariance, b, bt, SEARCHED * len(essentials), settings)
     rotation, turned = fit_rotation(b, bt, rng, settings.threshold_rad)
-    if turned.sum() >= settings.min_inliers and turned.sum() >= 0.85 * answer.inliers:
+    if turned.sum() >= settings.min_inliers and turned.sum() >= AS_WELL * answer.inliers:
         displacement = float(np.median(angle_between_rad(b[turned], bt[turned] @ rotation.T)))
         if not answer.usable or displacement <= settings.no_baseline_noise * (answer.noise_rad or 0.0):
             return _turn_only(rotation, turned, displacement)

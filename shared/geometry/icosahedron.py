@@ -9,13 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from shared.geometry.angles import FloatArray
 from shared.geometry.perspective import PerspectiveView
-from shared.geometry.sphere import bearings_from_lonlat, lonlat_from_bearings, with_last_axis
+from shared.geometry.sphere import FloatArray, bearings_from_lonlat, lonlat_from_bearings, with_last_axis
 
-MARGIN_RAD = float(
-    np.deg2rad(2.0)
-)  # picture beyond the face, so that descriptors at its border see their surroundings
+MARGIN_RAD = float(np.deg2rad(2.0))
+"""Picture beyond the face; chosen: ten pixels, so that descriptors at its border see their surroundings."""
 
 
 @dataclass(frozen=True, eq=False)

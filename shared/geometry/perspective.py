@@ -3,15 +3,19 @@
 The view has its own frame: x into the picture, y left, z up. With f = (W / 2) / tan(fov / 2) pixels,
 pixel (u, v) lies at (1, (W/2 - u) / f, (H/2 - v) / f); u grows to the right, so a view at longitude 0,
 latitude 0 shows what the centre of the equirectangular image shows.
+
+Tables are for `cv2.remap` with INTER_LINEAR or better and BORDER_WRAP, which joins the columns across the
+seam. It would also join the top row to the bottom row, so rows are kept inside the image: what the crop cut
+away repeats the last row kept.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from shared.geometry.angles import FloatArray
-from shared.geometry.sphere import lonlat_from_bearings, with_last_axis
+from shared.geometry.sphere import EquirectGrid, FloatArray, lonlat_from_bearings, with_last_axis
 
 
 def rotation_z(angle_rad: float) -> FloatArray:
@@ -26,12 +30,6 @@ def rotation_y(angle_rad: float) -> FloatArray:
     return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
 
 
-def rotation_x(angle_rad: float) -> FloatArray:
-    """Rotation about x, (3, 3); a positive angle turns y towards z."""
-    c, s = np.cos(angle_rad), np.sin(angle_rad)
-    return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
-
-
 @dataclass(frozen=True)
 class PerspectiveView:
     """A pinhole picture of part of the sphere.
@@ -42,7 +40,6 @@ class PerspectiveView:
         fov_rad: horizontal opening, radians, below pi.
         lon_rad: longitude of its centre, radians.
         lat_rad: latitude of its centre, radians.
-        roll_rad: turn about the line of sight, radians.
     """
 
     width: int
@@ -50,7 +47,6 @@ class PerspectiveView:
     fov_rad: float
     lon_rad: float = 0.0
     lat_rad: float = 0.0
-    roll_rad: float = 0.0
 
     def __post_init__(self) -> None:
         """Reject a picture that no plane can hold."""
@@ -68,7 +64,7 @@ class PerspectiveView:
     @property
     def rotation(self) -> FloatArray:
         """R_camera_view (3, 3): maps view-frame bearings to the camera frame."""
-        return rotation_z(self.lon_rad) @ rotation_y(-self.lat_rad) @ rotation_x(self.roll_rad)
+        return rotation_z(self.lon_rad) @ rotation_y(-self.lat_rad)
 
     def bearings_from_pixels(self, pixels: npt.ArrayLike) -> FloatArray:
         """Map (..., 2) pixels (u, v) of the view to (..., 3) unit bearings in the camera frame."""
@@ -89,3 +85,29 @@ class PerspectiveView:
         u = self.width / 2.0 - self.focal_px * local[..., 1] / depth
         v = self.height / 2.0 - self.focal_px * local[..., 2] / depth
         return np.stack([u, v], axis=-1)
+
+
+class RemapTable(NamedTuple):
+    """Where each output pixel (H, W) comes from.
+
+    Attributes:
+        map_x: (H, W) float32 source column, in OpenCV's count (0 is the centre of the first pixel).
+        map_y: (H, W) float32 source row, the same count, clamped to the image.
+    """
+
+    map_x: npt.NDArray[np.float32]
+    map_y: npt.NDArray[np.float32]
+
+
+def view_table(view: PerspectiveView, source: EquirectGrid) -> RemapTable:
+    """Table that renders a perspective view from an equirectangular image."""
+    centres = pixel_centres(view.width, view.height)
+    pixels = source.pixels_from_bearings(view.bearings_from_pixels(centres)) - 0.5
+    rows = np.clip(pixels[..., 1], 0.0, source.height - 1.0)
+    return RemapTable(pixels[..., 0].astype(np.float32), rows.astype(np.float32))
+
+
+def pixel_centres(width: int, height: int) -> FloatArray:
+    """Continuous coordinates (H, W, 2) of all pixel centres of a picture, pixels."""
+    u, v = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+    return np.stack([u, v], axis=-1)

@@ -5,14 +5,20 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from shared.geometry.evidence import confidence, log_nfa, parallax_share
 from shared.geometry.planar_fit import NoFit, PlanarFit, fit_planar, leverage_weights
 from shared.geometry.planar_model import PlanarMatches, evaluate
-from shared.geometry.rotation_only import RotationFit, fit_yaw
-from shared.geometry.two_view_judge import confidence, log_nfa, parallax_share
-from shared.geometry.two_view_types import BoolArray, TwoViewResult, TwoViewSettings, checked_matches, refused
+from shared.geometry.rotation import RotationFit, fit_yaw
+from shared.geometry.sphere import BoolArray
+from shared.geometry.two_view_types import TwoViewResult, TwoViewSettings, checked_matches, refused
 
 CHANCE_SHIFTS = 16
-WIDE = 4.0  # thresholds within which a match counts as nearly right
+"""Wrong pairings of each match that tell what chance does: with 8, 1 in 100 unrelated pairs of frames is
+answered, with 16 and 32 none (tests/benchmarks/test_two_view_effort.py)."""
+WIDE = 4.0
+"""Thresholds within which a match counts as nearly right; chosen: 2.8 degrees, a small tilt."""
+SPREAD = 0.8
+"""Quantile of the displacements that must be small too, for a few near points to make a baseline; chosen."""
 
 
 def estimate_planar(
@@ -50,7 +56,10 @@ def estimate_planar(
 
 
 def _only_turned(rotation: RotationFit, fit: PlanarFit, chance: float, settings: TwoViewSettings) -> bool:
-    """Whether a yaw alone explains what the planar model explains, wrong matches that fit by chance aside."""
+    """Whether a yaw alone explains what the planar model explains, wrong matches that fit by chance aside.
+
+    Chance may have added twice its mean, and noise a tenth of all inliers, to the planar model's.
+    """
     both = fit.mask & rotation.mask
     inliers, count = int(fit.mask.sum()), len(fit.mask)
     stray = (count - inliers) * chance / (1.0 - chance)
@@ -60,9 +69,8 @@ def _only_turned(rotation: RotationFit, fit: PlanarFit, chance: float, settings:
         return True
     residual = rotation.residual_rad[both]
     bound = max(settings.no_baseline_rad, settings.no_baseline_noise * fit.noise_rad)
-    # A few near points with parallax among many far ones still make a baseline: look at the upper part as
-    # well.
-    return bool(np.median(residual) <= bound and np.quantile(residual, 0.8) <= 2.0 * bound)
+    # A few near points with parallax among many far ones still make a baseline: look at the upper part too.
+    return bool(np.median(residual) <= bound and np.quantile(residual, SPREAD) <= 2.0 * bound)
 
 
 def _rotation_result(fit: RotationFit) -> TwoViewResult:

@@ -21,8 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from shared.geometry.angles import FloatArray
-from shared.geometry.two_view_types import BoolArray
+from shared.geometry.sphere import BoolArray, FloatArray
 
 ComplexArray = npt.NDArray[np.complex128]
 

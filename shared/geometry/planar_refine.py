@@ -2,23 +2,22 @@
 
 import numpy as np
 
-from shared.geometry.angles import FloatArray
 from shared.geometry.planar_model import PlanarMatches, seen_along
+from shared.geometry.sphere import FloatArray
 
-NOISE_FLOOR_RAD = 5e-4  # a twentieth of a pixel at 800 columns: quantisation, not a model of it
 RIDGE = 1e-9
+"""Added to the normal matrix, whose entries are of the order of 1 per match: a degenerate model gets a huge
+covariance, not an exception."""
+MOST_STEP_RAD = 0.3
+"""Longest Gauss-Newton step; chosen: 17 degrees, so that no step leaves the start that it refines."""
+WIDE_STEPS = 3
+"""Steps with the wide weights, before the measured noise sets them; chosen: half of the steps."""
+TUKEY = 4.7
+"""Width of the biweight in standard deviations, 4.685 for 95 % efficiency (Holland and Welsch 1977)."""
+MAD = 1.4826
+"""Standard deviation of normal noise over its median absolute deviation."""
 Symmetric = tuple[FloatArray, FloatArray, FloatArray]
 """(K,) matrices of 2 x 2: both diagonal entries outside, the other one between."""
-
-
-def noise_rad(residual: FloatArray, fitted: int = 2) -> float:
-    """Standard deviation of inlier residuals (rad) after `fitted` parameters.
-
-    Not the median: over a short baseline the fit picks the direction that makes the central residuals small,
-    and the median then reads half of the true noise.
-    """
-    freedom = max(len(residual) - fitted, 1)
-    return float(max(np.sqrt(np.sum(residual**2) / freedom), NOISE_FLOOR_RAD))
 
 
 def refine(
@@ -26,7 +25,7 @@ def refine(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Refine K models.
 
-    Tukey's biweight, first wide (twice the threshold), then at 4.7 times the measured noise.
+    Tukey's biweight, first wide (twice the threshold), then at TUKEY times the measured noise.
 
     Args:
         matches: prepared matches.
@@ -43,9 +42,11 @@ def refine(
         residual, jacobian, weight = _linearise(matches, phi, phi_target, threshold, scale)
         weighted = weight * jacobian
         gradient = _sums(weighted, residual)
-        step = np.clip(-_times(_inverse(_normal(jacobian, weighted)), gradient), -0.3, 0.3)
+        step = np.clip(
+            -_times(_inverse(_normal(jacobian, weighted)), gradient), -MOST_STEP_RAD, MOST_STEP_RAD
+        )
         phi, phi_target = phi + step[0], phi_target + step[1]
-        if i >= 2:
+        if i >= WIDE_STEPS - 1:
             scale = _scales(residual, weight, threshold)
     _, jacobian, weight = _linearise(matches, phi, phi_target, threshold, scale)
     a, b, d = _inverse(_normal(jacobian, weight * jacobian))
@@ -53,11 +54,11 @@ def refine(
 
 
 def _scales(residual: FloatArray, weight: FloatArray, threshold: float) -> FloatArray:
-    """Width of the biweight, (K,): 4.7 robust standard deviations of the inliers, radians."""
+    """Width of the biweight, (K,): TUKEY standard deviations of the inliers, radians."""
     size = np.sort(np.where(weight > 0.0, np.abs(residual), np.inf), axis=1)
     middle = np.maximum(np.sum(size <= threshold, axis=1) // 2, 0)
     median = np.minimum(size[np.arange(len(size)), middle], threshold)
-    return np.asarray(np.clip(4.7 * 1.4826 * median, 0.5 * threshold, 2.0 * threshold), dtype=np.float64)
+    return np.asarray(np.clip(TUKEY * MAD * median, 0.5 * threshold, 2.0 * threshold), dtype=np.float64)
 
 
 def _linearise(
@@ -96,7 +97,7 @@ def _sums(weighted: FloatArray, values: FloatArray) -> FloatArray:
 
 
 def _normal(jacobian: FloatArray, weighted: FloatArray) -> Symmetric:
-    """Normal matrices; a degenerate model gets a huge covariance, not an exception."""
+    """Normal matrices."""
     by_phi, by_target = _sums(weighted, jacobian[0]), _sums(weighted[1:], jacobian[1])
     return by_phi[0] + RIDGE, by_phi[1], by_target[0] + RIDGE
 

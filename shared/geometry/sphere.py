@@ -12,7 +12,16 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from shared.geometry.angles import FloatArray, wrap_rad
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+
+def wrap_rad(angle_rad: npt.ArrayLike) -> FloatArray:
+    """Wrap angles of any shape to [-pi, pi), radians."""
+    angle = np.asarray(angle_rad, dtype=np.float64)
+    wrapped = np.mod(angle + np.pi, 2.0 * np.pi) - np.pi
+    # The modulo of a tiny negative number rounds up to the modulus: keep the interval half open.
+    return np.asarray(np.where(wrapped >= np.pi, -np.pi, wrapped), dtype=np.float64)
 
 
 def bearings_from_lonlat(lonlat_rad: npt.ArrayLike) -> FloatArray:
@@ -112,11 +121,6 @@ class EquirectGrid:
     def pixels_from_bearings(self, bearings: npt.ArrayLike) -> FloatArray:
         """Map (..., 3) bearings of any non-zero length to (..., 2) pixels."""
         return self.pixels_from_lonlat(lonlat_from_bearings(bearings))
-
-    def contains_pixels(self, pixels: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        """Say for (..., 2) pixels whether their row lies inside the crop; columns wrap."""
-        v = with_last_axis("pixels", pixels, 2)[..., 1]
-        return np.asarray((v >= 0.0) & (v < self.height), dtype=np.bool_)
 
 
 def with_last_axis(name: str, array: npt.ArrayLike, size: int) -> FloatArray:

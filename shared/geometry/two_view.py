@@ -57,7 +57,7 @@ def _settled(planar: TwoViewResult, limits: TwoViewSettings) -> bool:
         return True
     if not planar.usable:
         return planar.near_misses < limits.fallback_probe
-    doubtful = planar.noise_rad is None or planar.noise_rad > limits.fallback_noise * limits.threshold_rad
+    noisy = planar.noise_rad is None or planar.noise_rad > limits.fallback_noise * limits.threshold_rad
     out_of_reach = planar.near_misses > limits.fallback_near * len(planar.inlier_mask) + 2.0
     few = planar.inliers < limits.fallback_share * len(planar.inlier_mask)
-    return not (doubtful or out_of_reach or few) and planar.confidence >= 0.5
+    return not (noisy or out_of_reach or few) and planar.confidence >= 0.5

@@ -12,7 +12,7 @@ from services.features.pipeline.interfaces import BoolArray, FloatArray, Image, 
 from services.features.pipeline.named_pipelines import Profile
 from services.features.representations.strip import cropped_strip
 from shared.geometry.icosahedron import tangent_layout
-from shared.geometry.resampling import view_table
+from shared.geometry.perspective import view_table
 from shared.geometry.sphere import EquirectGrid, lonlat_from_bearings
 
 BASE_LEVEL = 9

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shared.geometry.angles import FloatArray, wrap_rad
+from shared.geometry.sphere import FloatArray, wrap_rad
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ Method 1 is biased where the matches lie on one side: half a turn without any me
 import numpy as np
 import numpy.typing as npt
 
-from shared.geometry.angles import FloatArray, wrap_rad
+from shared.geometry.sphere import FloatArray, wrap_rad
 
 BINS = 18
 """Sectors of 20 degrees (section 6.1.2)."""

@@ -21,7 +21,7 @@ from services.planner.heading.estimate import HeadingEstimate, Resultant, weight
 from services.planner.heading.histogram import method_by_histogram
 from services.planner.heading.votes import Votes, latitude_votes, pair_votes
 from services.planner.heading.weights import UNWEIGHTED, WeightSettings
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 from shared.geometry.two_view_types import checked_matches
 
 MethodName = Literal["epipolar", "histogram", "1", "2", "3", "4", "5", "6"]

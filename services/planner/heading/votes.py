@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shared.geometry.angles import FloatArray, wrap_rad
+from shared.geometry.sphere import FloatArray, wrap_rad
 
 TOLERANCE = 1e-12
 """Rounding of a dot product of unit vectors: below it two angles are equal, and identical frames do not

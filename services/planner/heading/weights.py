@@ -9,7 +9,7 @@ from typing import Literal, get_args
 import numpy as np
 from pydantic import BaseModel, ConfigDict, PositiveFloat
 
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 
 WeightName = Literal["exp", "one", "power", "sigmoid", "rank"]
 AngleUnit = Literal["deg", "rad"]

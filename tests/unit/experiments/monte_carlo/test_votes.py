@@ -18,7 +18,7 @@ from experiments.monte_carlo.tracking import DEG, DcpePlan, follow, scene_paths
 from experiments.monte_carlo.votes import draw_choices, headings, vote_table
 from services.planner.heading.methods import heading_estimate
 from services.planner.heading.weights import WeightSettings
-from shared.geometry.angles import wrap_rad
+from shared.geometry.sphere import wrap_rad
 
 COUNTS = (5, 21, 40)
 

@@ -16,7 +16,7 @@ from services.features.pipeline.named_pipelines import LIGHTGLUE, Profile, combi
 from services.features.pipeline.pipeline import Pipeline  # noqa: E402
 from services.features.pipeline.plugins import KEYPOINT_NETWORKS, PATCH_NETWORKS  # noqa: E402
 from services.features.pipeline.registry import Runtime, create_matcher  # noqa: E402
-from shared.geometry.angles import wrap_rad  # noqa: E402
+from shared.geometry.sphere import wrap_rad  # noqa: E402
 
 WIDTHS = {"aliked-t16": 64, "xfeat": 64, "superpoint": 256, "dedode": 256}
 SLOW = ("dedode",)

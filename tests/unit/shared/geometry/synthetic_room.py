@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shared.geometry.angles import difference_rad
-from shared.geometry.perspective import rotation_x, rotation_y, rotation_z
-from shared.geometry.sphere import lonlat_from_bearings
+from shared.geometry.perspective import rotation_y, rotation_z
+from shared.geometry.sphere import lonlat_from_bearings, wrap_rad
 
 SIZE_M = np.array([8.0, 7.0, 2.6])
 CAMERA_HEIGHT_M = 1.0
@@ -43,14 +42,20 @@ def make_scene(rng, count, outliers=0, distance_m=1.0, noise_deg=0.3, tilt_deg=0
     return Scene(
         current[order],
         target[order],
-        float(difference_rad(travel, yaw_c)),
-        float(difference_rad(yaw_t, yaw_c)),
+        float(wrap_rad(travel - yaw_c)),
+        float(wrap_rad(yaw_t - yaw_c)),
         (np.arange(count) >= outliers)[order],
     )
 
 
+def rotation_x(angle_rad):
+    """Rotation about x; a positive angle turns y towards z."""
+    c, s = np.cos(angle_rad), np.sin(angle_rad)
+    return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+
+
 def error_deg(estimate_rad, truth_rad):
-    return float(np.rad2deg(np.abs(difference_rad(estimate_rad, truth_rad))))
+    return float(np.rad2deg(np.abs(wrap_rad(estimate_rad - truth_rad))))
 
 
 def _room_points(rng, count):

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 
 from shared.geometry.essential import estimate_essential
-from shared.geometry.essential_model import Pose, evaluate_pose, poses_of
-from shared.geometry.five_point import draw_fives, five_point
-from shared.geometry.general_rotation import fit_rotation
-from shared.geometry.perspective import rotation_x, rotation_y, rotation_z
-from shared.geometry.sphere import bearings_from_lonlat
+from shared.geometry.essential_model import Pose, draw_fives, evaluate_pose, five_point, poses_of
+from shared.geometry.perspective import rotation_y, rotation_z
+from shared.geometry.rotation import fit_rotation
+from shared.geometry.sphere import bearings_from_lonlat, lonlat_from_bearings
 from shared.geometry.two_view import TwoViewSettings, two_view
-from tests.unit.shared.geometry.synthetic_room import error_deg, make_scene
+from tests.unit.shared.geometry.synthetic_room import error_deg, make_scene, rotation_x
 
 LIMITS = TwoViewSettings()
 ALWAYS = TwoViewSettings(fallback_probe=0.0)
@@ -141,3 +140,22 @@ def test_same_bearings_everywhere_raise_nothing():
     assert two_view(one, one, np.random.default_rng(0)).status in ("no_baseline", "inconsistent")
     b = bearings_from_lonlat(one)
     assert five_point(b[None, :5], b[None, :5]).shape[1:] == (3, 3)
+
+
+def test_following_the_heading_step_by_step_reaches_the_goal():
+    rng = np.random.default_rng(6)
+    points = rng.uniform([-4, -4, -1], [4, 4, 1.6], (80, 3))
+    points = points[np.hypot(points[:, 0], points[:, 1]) > 2.0]
+    goal, position, yaw = np.array([1.0, 0.6, 0.0]), np.array([-0.9, -0.5, 0.0]), 0.4
+
+    def seen(place, turned_rad):
+        return lonlat_from_bearings((points - place) @ rotation_z(turned_rad))
+
+    for _ in range(60):
+        result = two_view(seen(position, yaw), seen(goal, -2.0), rng)
+        if not result.usable:
+            break
+        course = result.heading_rad + yaw
+        position = position + 0.05 * np.array([np.cos(course), np.sin(course), 0.0])
+        yaw += 0.05
+    assert np.linalg.norm(position - goal) < 0.06

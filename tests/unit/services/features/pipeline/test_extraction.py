@@ -9,9 +9,8 @@ from services.features.pipeline.extraction import extract
 from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.named_pipelines import PROFILES, Profile
 from services.features.pipeline.pipeline import Pipeline
-from shared.geometry.angles import wrap_rad
 from shared.geometry.icosahedron import tangent_layout
-from shared.geometry.sphere import bearings_from_lonlat
+from shared.geometry.sphere import bearings_from_lonlat, wrap_rad
 
 CLASSIC = ("sift", "thesis", "orb", "beblid")
 TURNS = 5

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from shared.geometry.angles import wrap_rad
+from shared.geometry.sphere import wrap_rad
 
 
 def deg(*rows):

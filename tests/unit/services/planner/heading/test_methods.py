@@ -6,7 +6,7 @@ import pytest
 from services.planner.heading.methods import METHODS, heading_estimate, heading_vector
 from services.planner.heading.votes import latitude_votes, pair_votes
 from services.planner.heading.weights import UNWEIGHTED, WeightSettings
-from shared.geometry.angles import difference_rad
+from shared.geometry.sphere import wrap_rad
 from tests.unit.services.planner.heading.scenes import deg, ring, see
 
 EXP = WeightSettings()
@@ -117,7 +117,7 @@ def test_features_all_around_give_the_direction_of_travel(name, heading_deg):
     heading = np.deg2rad(heading_deg)
     target = see(points, 0.4 * np.array([np.cos(heading), np.sin(heading)]), yaw_rad=0.3)
     estimate = heading_estimate(name, see(points), target, WeightSettings(gain=0.2))
-    assert abs(np.rad2deg(difference_rad(estimate.heading_rad, heading))) < 8.0
+    assert abs(np.rad2deg(wrap_rad(estimate.heading_rad - heading))) < 8.0
     assert 0.0 < estimate.strength <= 1.0
 
 
@@ -127,7 +127,7 @@ def test_yaw_of_the_target_does_not_alter_the_heading(name, yaw):
     current = see(ring())
     straight = heading_estimate(name, current, see(ring(), (0.5, 0.4)))
     turned = heading_estimate(name, current, see(ring(), (0.5, 0.4), yaw))
-    assert abs(float(difference_rad(straight.heading_rad, turned.heading_rad))) < 1e-9
+    assert abs(float(wrap_rad(straight.heading_rad - turned.heading_rad))) < 1e-9
 
 
 @pytest.mark.parametrize("name", THESIS_NAMES)
@@ -135,7 +135,7 @@ def test_turning_the_current_frame_turns_the_heading_with_it(name):
     target = see(ring(), (0.5, 0.4))
     straight = heading_estimate(name, see(ring()), target)
     turned = heading_estimate(name, see(ring(), yaw_rad=0.7), target)
-    assert abs(float(difference_rad(straight.heading_rad - 0.7, turned.heading_rad))) < 1e-9
+    assert abs(float(wrap_rad(straight.heading_rad - 0.7 - turned.heading_rad))) < 1e-9
 
 
 @pytest.mark.parametrize("name", THESIS_NAMES)

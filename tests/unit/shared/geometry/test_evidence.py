@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
+from shared.geometry.evidence import confidence, log_nfa, parallax_share, sign_margin
 from shared.geometry.planar import estimate_planar
-from shared.geometry.two_view_judge import confidence, log_nfa, parallax_share, sign_margin
 from shared.geometry.two_view_types import TwoViewSettings
 from tests.unit.shared.geometry.synthetic_room import make_scene
 

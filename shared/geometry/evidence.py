@@ -1,8 +1,31 @@
-"""How far a two-view answer can be trusted."""
+"""How far a two-view answer can be trusted: against chance, by its parallax, by its spread."""
 
 import numpy as np
 
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
+
+NOISE_FLOOR_RAD = 5e-4
+"""A sixteenth of a pixel at 800 columns: no keypoint is localised better, however well few matches agree."""
+PRECISE_RAD = float(np.deg2rad(10.0))
+"""Spread of a heading that halves the confidence; chosen: half of TwoViewSettings.max_heading_std_rad."""
+SURE_LOG_NFA = -5.0
+"""Evidence at which chance is out of the question: confidence 1 - 1/e; chosen with max_log_nfa = -2 in mind,
+which gives 0.33."""
+CLIP = 3.0
+"""Noises beyond which a displacement counts no more: three standard deviations, so that no match decides."""
+NOISE_DISPARITY = 1.6651
+"""Median displacement by noise alone: 2 sqrt(ln 2), the median sqrt(2 ln 2) of a Rayleigh variable for the
+difference of two bearings, sqrt(2) noises per axis."""
+
+
+def noise_rad(residual: FloatArray, fitted: int = 2) -> float:
+    """Standard deviation of inlier residuals (rad) after `fitted` parameters.
+
+    Not the median: over a short baseline the fit picks the direction that makes the central residuals small,
+    and the median then reads half of the true noise.
+    """
+    freedom = max(len(residual) - fitted, 1)
+    return float(max(np.sqrt(np.sum(residual**2) / freedom), NOISE_FLOOR_RAD))
 
 
 def log_nfa(inliers: int, count: int, chance: float, sample: int, tests: int) -> float:
@@ -38,26 +61,26 @@ def confidence(
     precision 1 / (1 + (heading_std / 10 deg)^2);
     sign      the margin by which the parallax tells forwards from backwards.
     """
-    evidence = 1.0 - np.exp(min(log_alarms, 0.0) / 5.0)
+    evidence = 1.0 - np.exp(min(log_alarms, 0.0) / -SURE_LOG_NFA)
     stray = (count - inliers) * chance / (1.0 - chance)
     purity = np.clip(1.0 - stray / max(inliers, 1), 0.0, 1.0)
-    precision = 1.0 / (1.0 + (heading_std_rad / np.deg2rad(10.0)) ** 2)
+    precision = 1.0 / (1.0 + (heading_std_rad / PRECISE_RAD) ** 2)
     return float(np.clip(evidence * purity * precision * sign_margin, 0.0, 1.0))
 
 
 def parallax_share(disparity_rad: float, noise_rad: float) -> float:
     """Share of the squared median disparity that is parallax, [1e-3, 1].
 
-    Noise of both views alone gives a median of 1.18 sqrt(2) noise. It enters the normal matrix as if it were
-    parallax and would make a direction look sharp that rests on nothing.
+    Noise enters the normal matrix as if it were parallax and would make a direction look sharp that rests on
+    nothing.
     """
-    noise_disparity = 1.6651 * noise_rad
+    noise_disparity = NOISE_DISPARITY * noise_rad
     return float(np.clip(1.0 - (noise_disparity / max(disparity_rad, 1e-12)) ** 2, 1e-3, 1.0))
 
 
 def sign_margin(forward: FloatArray, weight: FloatArray, noise: float) -> float:
     """Net share of the evidence, clipped at three noises, that matches move away from the heading."""
-    evidence = weight * np.clip(forward / (3.0 * noise), -1.0, 1.0)
+    evidence = weight * np.clip(forward / (CLIP * noise), -1.0, 1.0)
     total = float(np.sum(np.abs(evidence)))
     return float(np.clip(np.sum(evidence) / max(total, 1e-9), 0.0, 1.0))
 
@@ -66,4 +89,4 @@ def parallax_z(forward: FloatArray, noise: float) -> float:
     """Evidence for any motion: without one, the normalised displacement has the deviation `noise`."""
     if len(forward) == 0:
         return 0.0
-    return float(np.sum(np.clip(forward / noise, -3.0, 3.0)) / np.sqrt(len(forward)))
+    return float(np.sum(np.clip(forward / noise, -CLIP, CLIP)) / np.sqrt(len(forward)))
