@@ -3,7 +3,8 @@
 from dataclasses import dataclass, replace
 
 from experiments.matching.placing import Change
-from services.features.pipeline.named_pipelines import Profile, combined
+from services.features.pipeline.interfaces import Profile
+from services.features.pipeline.named_pipelines import combined
 
 LATITUDES_DEG = (-60.0, -45.0, -30.0, -15.0, 0.0, 15.0, 30.0, 45.0, 60.0)
 LONGITUDES_DEG = (45.0, 90.0, 135.0, 180.0)

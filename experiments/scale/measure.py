@@ -9,11 +9,11 @@ import numpy as np
 
 from experiments.scale.frames import Seen
 from experiments.scale.maps import as_message
-from services.features.matching.matching_requests import pair, verify_paired
+from services.features.map_features.map_features import MapFeatures
+from services.features.matching.requests import match_candidates, verify_candidates
 from services.features.matching.verification import Candidate, verify
 from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.pipeline import Pipeline
-from services.features.places.places import Places
 from services.launcher.terminal.output import rounded
 from shared.messages.matching import MatchRequest, NodeMatch
 
@@ -30,10 +30,10 @@ class Found:
     ms: float
 
 
-def load(words: Iterable[FeatureSet], pipeline: Pipeline) -> tuple[Places, float]:
+def load(words: Iterable[FeatureSet], pipeline: Pipeline) -> tuple[MapFeatures, float]:
     """Places of a map, numbered from zero, and the seconds it took to take them over."""
     messages = (as_message(each, pipeline.identity) for each in words)
-    places = Places.of(pipeline)
+    places = MapFeatures.of(pipeline)
     took_s = 0.0
     for node_id, message in enumerate(messages):
         start_s = time.perf_counter()
@@ -44,7 +44,7 @@ def load(words: Iterable[FeatureSet], pipeline: Pipeline) -> tuple[Places, float
     return places, took_s + time.perf_counter() - start_s
 
 
-def localise(queries: Sequence[Seen], places: Places, pipeline: Pipeline) -> list[Found]:
+def localise(queries: Sequence[Seen], places: MapFeatures, pipeline: Pipeline) -> list[Found]:
     """The most similar place of each picture as the running service finds it, verified."""
     return [
         _ask(query, MatchRequest(seq=n, map="scale", best_k=1), places, pipeline)
@@ -53,7 +53,7 @@ def localise(queries: Sequence[Seen], places: Places, pipeline: Pipeline) -> lis
 
 
 def track(
-    queries: Sequence[Seen], near: Sequence[Sequence[int]], places: Places, pipeline: Pipeline
+    queries: Sequence[Seen], near: Sequence[Sequence[int]], places: MapFeatures, pipeline: Pipeline
 ) -> list[Found]:
     """Each picture compared with the few places given for it, verified."""
     return [
@@ -62,11 +62,11 @@ def track(
     ]
 
 
-def _ask(query: Seen, request: MatchRequest, places: Places, pipeline: Pipeline) -> Found:
+def _ask(query: Seen, request: MatchRequest, places: MapFeatures, pipeline: Pipeline) -> Found:
     message = as_message(query.words, pipeline.identity)
     start_s = time.perf_counter()
-    answers: tuple[NodeMatch, ...] = verify_paired(
-        pipeline, request, pair(pipeline, request, message, places)
+    answers: tuple[NodeMatch, ...] = verify_candidates(
+        pipeline, request, match_candidates(pipeline, request, message, places)
     )
     took_ms = (time.perf_counter() - start_s) * 1e3
     best = answers[0] if answers else None

@@ -9,10 +9,10 @@ import numpy as np
 from experiments.matching.study import pipeline_with_weights
 from experiments.scale.poses import SPACING_M, place_poses, query_poses
 from experiments.studies.rendered_views import eye
+from services.features.map_features.packing import Packing
 from services.features.matching.verification import Candidate, verify
 from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.pipeline import Pipeline
-from services.features.places.packing import Packing
 from services.launcher.terminal.output import rounded
 from shared.messages.simulation import Pose
 from simulator.world.freespace import free_space

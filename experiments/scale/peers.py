@@ -14,8 +14,7 @@ from kornia.feature import match_smnn
 
 from services.features.matching.nearest_neighbours import as_vectors
 from services.features.pipeline.interfaces import FeatureSet, Float32Array
-from services.features.retrieval.model import learn
-from services.features.retrieval.vlad import unit
+from services.features.retrieval.global_descriptor import learn, unit
 
 RATIO = 0.85
 BAG_WORDS = 1000

@@ -12,9 +12,9 @@ from experiments.scale.maps import places_of
 from experiments.scale.measure import TRACKED, Found, exhaustive, load, localise, times, track
 from experiments.scale.peers import peers, timed
 from experiments.scale.refusal import calibrated, refusal_curve
+from services.features.map_features.map_features import MapFeatures
 from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.pipeline import Pipeline
-from services.features.places.places import Places
 from services.launcher.terminal.output import rounded
 
 Row = dict[str, Any]
@@ -39,7 +39,7 @@ class ScaleStudy:
         self._places = _shuffled([seen for each in frames for seen in each.places], rng)
         self._queries = _shuffled([seen for each in frames for seen in each.queries], rng)
 
-    def point(self, count: int) -> tuple[Row, Places]:
+    def point(self, count: int) -> tuple[Row, MapFeatures]:
         """Figures of a map of `count` places, and the map."""
         rng = np.random.default_rng([self._seed, count])
         real = [seen.words for seen in self._places]
@@ -62,7 +62,7 @@ class ScaleStudy:
         }
         return row, places
 
-    def refusal(self, places: Places, count: int) -> Row:
+    def refusal(self, places: MapFeatures, count: int) -> Row:
         """Errors of "not in this map" in a map."""
         own = [each.inliers for each in localise(self._near(count), places, self._pipeline)]
         foreign = [each.inliers for each in localise(self._foreign, places, self._pipeline)]
@@ -109,10 +109,10 @@ class ScaleStudy:
         return real and _is_near(query, self._places[found.node_id])
 
     def _exhaustive(
-        self, places: Places, queries: Sequence[Seen], count: int
+        self, places: MapFeatures, queries: Sequence[Seen], count: int
     ) -> list[tuple[np.ndarray, float]]:
         asked = next((n for most, n in EXHAUSTIVE_PICTURES.items() if count <= most), 0)
-        words: list[FeatureSet] = [places.words(node_id) for node_id in range(count)] if asked else []
+        words: list[FeatureSet] = [places.features(node_id) for node_id in range(count)] if asked else []
         return [exhaustive(query, words, self._pipeline) for query in queries[:asked]]
 
 

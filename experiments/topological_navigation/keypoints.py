@@ -9,10 +9,9 @@ import torch
 
 from experiments.topological_navigation.pictures import Image, picture_of, resized
 from services.features.pipeline.extraction import extract
-from services.features.pipeline.interfaces import FeatureSet, FloatArray, IndexArray
-from services.features.pipeline.named_pipelines import Profile, combined
+from services.features.pipeline.interfaces import FeatureSet, FloatArray, IndexArray, Profile, Runtime
+from services.features.pipeline.named_pipelines import combined
 from services.features.pipeline.pipeline import Pipeline
-from services.features.pipeline.registry import Runtime
 from shared.geometry.sphere import EquirectGrid
 
 DESCRIPTORS = {

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 from experiments.topological_navigation.memory_map import MemoryMap
-from services.features.matching.matching_requests import pair, verify_paired
+from services.features.map_features.map_features import MapFeatures
+from services.features.matching.requests import match_candidates, verify_candidates
 from services.features.pipeline.pipeline import Pipeline
-from services.features.places.places import Places
 from shared.messages.features import Features
 from shared.messages.matching import MatchRequest, NodeMatch
 
@@ -17,7 +17,7 @@ class LocalMatcher:
 
     def __init__(self, pipeline: Pipeline, maps: MemoryMap) -> None:
         self._pipeline, self._maps = pipeline, maps
-        self._places = Places.of(pipeline)
+        self._places = MapFeatures.of(pipeline)
         self.current: Features | None = None
 
     def match(
@@ -39,5 +39,5 @@ class LocalMatcher:
         for node_id, found in self._maps.features.items():
             if node_id not in self._places:
                 self._places.put(node_id, found)
-        paired = pair(self._pipeline, request, features, self._places)
-        return {m.node_id: m for m in verify_paired(self._pipeline, request, paired)}
+        raw = match_candidates(self._pipeline, request, features, self._places)
+        return {m.node_id: m for m in verify_candidates(self._pipeline, request, raw)}

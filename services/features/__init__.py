@@ -1,1 +1,1 @@
-"""Feature service: visual words of every frame, and how frames relate to places of the map."""
+"""Feature service: features of every frame, and how frames relate to nodes of the map."""

@@ -1,4 +1,4 @@
-"""Feature service: the Zenoh loop around `pipeline` and `matching_requests`. One thread does everything."""
+"""Feature service: the Zenoh loop around `pipeline` and `matching`. One thread does everything."""
 
 import logging
 import time
@@ -7,12 +7,17 @@ from threading import Event
 import cv2
 
 from services.features.frame_cache import FrameKey
-from services.features.matching.matching_requests import FrameNotKeptError, RequestError, pair, verify_paired
+from services.features.map_features.map_cache import CachedMap, MapCache
+from services.features.map_features.map_features import MapFeatures
+from services.features.map_features.map_reader import MapReader
+from services.features.matching.requests import (
+    FrameNotKeptError,
+    RequestError,
+    match_candidates,
+    verify_candidates,
+)
 from services.features.pipeline.decoding import BadPictureError
 from services.features.pipeline.pipeline import Pipeline
-from services.features.places.map_cache import MapCache, MapWords
-from services.features.places.map_reader import MapReader
-from services.features.places.places import Places
 from services.features.robot_streams import RobotStreams
 from services.features.settings import FeaturesSettings
 from shared.bus import Bus, Request
@@ -25,6 +30,7 @@ from shared.topics import EXTRACT
 log = logging.getLogger(__name__)
 
 IDLE_S = 0.5
+"""How soon it notices that it is to end; whatever arrives wakes it before."""
 
 
 class FeatureService:
@@ -35,16 +41,16 @@ class FeatureService:
         self._bus = bus
         thumbnail = settings.thumbnail_width_px, settings.thumbnail_quality
         self._pipeline = Pipeline(settings.profile(), *thumbnail, settings.runtime())
-        self._maps = MapReader(bus, MapCache(self._no_places), settings.map_timeout_s)
+        self._maps = MapReader(bus, MapCache(self._no_nodes), settings.map_timeout_s)
         self._robots = tuple(RobotStreams.open(bus, name, settings.frames_kept) for name in settings.served)
         self._extracts = bus.requests(EXTRACT)
 
     def work(self) -> None:
         """Handle everything that has arrived."""
-        while any([self._turn(robot) for robot in self._robots]):  # a list: every robot has its turn
+        while any([self._step(robot) for robot in self._robots]):  # a list: every robot has its turn
             pass
 
-    def _turn(self, robot: RobotStreams) -> bool:
+    def _step(self, robot: RobotStreams) -> bool:
         """One of each kind: on a machine too slow for all frames, questions must have their turn too."""
         self._maps.follow()
         if (frame := robot.frames.take()) is not None:
@@ -86,30 +92,28 @@ class FeatureService:
 
     def _match(self, robot: RobotStreams, request: MatchRequest) -> MatchReply:
         current = _current(robot, request)
-        needs_map = bool(request.node_ids or request.best_k)
-        words = (
-            self._maps.words(request.map, request.node_ids, request.map_revision)
-            if needs_map
-            else MapWords(0, self._no_places())
-        )
+        if request.node_ids or request.best_k:
+            known = self._maps.read(request.map, request.node_ids, request.map_revision)
+        else:
+            known = CachedMap(0, self._no_nodes())
         start_s = time.perf_counter()
-        paired = pair(self._pipeline, request, current, words.places)
-        paired_s = time.perf_counter()
-        results = verify_paired(self._pipeline, request, paired)
+        raw = match_candidates(self._pipeline, request, current, known.nodes)
+        matched_s = time.perf_counter()
+        results = verify_candidates(self._pipeline, request, raw)
         return MatchReply(
             seq=current.seq,
             stamp_ns=current.stamp_ns,
             map=request.map,
-            map_revision=words.revision,
+            map_revision=known.revision,
             pipeline=self._pipeline.identity,
             max_similarity=self._pipeline.profile.keypoints,
             results=results,
-            match_ms=(paired_s - start_s) * 1e3,
-            verify_ms=(time.perf_counter() - paired_s) * 1e3,
+            match_ms=(matched_s - start_s) * 1e3,
+            verify_ms=(time.perf_counter() - matched_s) * 1e3,
         )
 
-    def _no_places(self) -> Places:
-        return Places.of(self._pipeline)
+    def _no_nodes(self) -> MapFeatures:
+        return MapFeatures.of(self._pipeline)
 
     def _on_extract(self, request: Request[ExtractRequest, Features]) -> None:
         try:

@@ -6,8 +6,8 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, PositiveFloat, field_validator, model_validator
 from pydantic_settings import NoDecode, SettingsConfigDict
 
-from services.features.pipeline.named_pipelines import Profile, find_profile
-from services.features.pipeline.registry import Runtime
+from services.features.pipeline.interfaces import Profile, Runtime
+from services.features.pipeline.named_pipelines import find_profile
 from shared.access.credentials import credentials_in
 from shared.settings import ServiceSettings
 from shared.topics import NAME
@@ -18,9 +18,9 @@ class FeaturesSettings(ServiceSettings):
 
     Attributes:
         robots: whose frames and questions this process takes, as r1,r2; empty: those of `robot` alone.
-        pipeline: a named profile or extractor/representation/matcher, see `pipelines`.
+        pipeline: a named profile or extractor/representation/matcher, see `named_pipelines`.
         uneven_ground: verify by any motion of the camera where the plane explains too little.
-        extractor: in place of `pipeline` where not empty.
+        extractor: instead of `pipeline` where not empty.
         device: where networks run: cpu or cuda.
         threads: cores OpenCV may use.
         frames_kept: newest frames whose features a MATCH can name by number.

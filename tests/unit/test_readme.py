@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from services.features.pipeline.extraction import extract
-from services.features.pipeline.named_pipelines import Profile
-from services.features.pipeline.registry import create_representation
+from services.features.pipeline.interfaces import Profile
+from services.features.pipeline.plugins import create_representation
 from tests.readme import PAGES, README, REPOSITORY, examples
 
 FEATURES_PAGE = REPOSITORY / "deploy" / "FEATURES.md"

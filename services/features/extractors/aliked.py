@@ -5,7 +5,7 @@ import torch
 
 from services.features.networks.keypoint_network import CANDIDATES, Found, KeypointNetwork
 from services.features.networks.runtime import loading
-from services.features.pipeline.named_pipelines import Profile
+from services.features.pipeline.interfaces import Profile
 
 THRESHOLD = 0.01
 """Far below the 0.2 of its authors: plain walls answer weakly, and only the strongest are kept anyway."""

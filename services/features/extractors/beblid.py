@@ -8,13 +8,13 @@ import numpy.typing as npt
 
 from services.features.extractors.opencv_keypoints import describe_chosen, detections_from_keypoints
 from services.features.extractors.orb import create_orb
-from services.features.pipeline.interfaces import Detections, Distance, Image, IndexArray
-from services.features.pipeline.named_pipelines import Profile
+from services.features.pipeline.interfaces import Detections, Distance, Image, IndexArray, Profile
 
 ORB_SCALE = 1.0
 """Sampling window for ORB key points, from OpenCV's documentation of BEBLID."""
 
 WIDTH = 64
+"""Bytes: 512 bits."""
 
 
 class Beblid:
@@ -35,7 +35,4 @@ class Beblid:
         self, gray: Image, detections: Detections, chosen: IndexArray
     ) -> tuple[IndexArray, npt.NDArray[Any]]:
         """Describe the chosen ones, 64 bytes each."""
-        if self._upright:
-            for index in chosen:
-                detections.handle[index].angle = 0.0
-        return describe_chosen(self._beblid, gray, detections, chosen, WIDTH)
+        return describe_chosen(self._beblid, gray, detections, chosen, WIDTH, self._upright)

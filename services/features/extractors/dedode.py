@@ -5,7 +5,7 @@ import torch
 
 from services.features.networks.keypoint_network import Found, KeypointNetwork
 from services.features.networks.runtime import loading
-from services.features.pipeline.named_pipelines import Profile
+from services.features.pipeline.interfaces import Profile
 
 
 class DeDoDe(KeypointNetwork):

@@ -17,7 +17,12 @@ def detections_from_keypoints(keypoints: Sequence[Any]) -> Detections:
 
 
 def describe_chosen(
-    descriptor: Any, gray: Image, detections: Detections, chosen: IndexArray, width: int
+    descriptor: Any,
+    gray: Image,
+    detections: Detections,
+    chosen: IndexArray,
+    width: int,
+    upright: bool = False,
 ) -> tuple[IndexArray, npt.NDArray[Any]]:
     """Let `descriptor` describe the chosen key points; it may drop some, so each carries its index along.
 
@@ -27,11 +32,14 @@ def describe_chosen(
         detections: as returned by detections_from_keypoints.
         chosen: indices of those to describe.
         width: D, the width of an empty answer.
+        upright: describe them without turning them.
     """
     keypoints = []
     for index in chosen:
         keypoint = detections.handle[index]
         keypoint.class_id = int(index)
+        if upright:
+            keypoint.angle = 0.0
         keypoints.append(keypoint)
     if not keypoints:
         return chosen, np.zeros((0, width), np.uint8)

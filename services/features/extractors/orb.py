@@ -7,8 +7,7 @@ import cv2
 import numpy.typing as npt
 
 from services.features.extractors.opencv_keypoints import describe_chosen, detections_from_keypoints
-from services.features.pipeline.interfaces import Detections, Distance, Image, IndexArray
-from services.features.pipeline.named_pipelines import Profile
+from services.features.pipeline.interfaces import Detections, Distance, Image, IndexArray, Profile
 
 CANDIDATES = 8
 """Corners looked for per keypoint kept, so that no level of the pyramid runs into its quota."""
@@ -17,6 +16,7 @@ FAST_THRESHOLD = 5
 """Grey levels; OpenCV's 20 leaves plain walls empty."""
 
 WIDTH = 32
+"""Bytes: 256 comparisons."""
 
 
 def create_orb(profile: Profile) -> Any:
@@ -41,7 +41,4 @@ class Orb:
         self, gray: Image, detections: Detections, chosen: IndexArray
     ) -> tuple[IndexArray, npt.NDArray[Any]]:
         """Describe the chosen ones, 32 bytes each."""
-        if self._upright:
-            for index in chosen:
-                detections.handle[index].angle = 0.0
-        return describe_chosen(self._orb, gray, detections, chosen, WIDTH)
+        return describe_chosen(self._orb, gray, detections, chosen, WIDTH, self._upright)

@@ -11,14 +11,17 @@ import numpy as np
 import numpy.typing as npt
 
 from services.features.extractors.opencv_keypoints import describe_chosen, detections_from_keypoints
-from services.features.pipeline.interfaces import Detections, Distance, Image, IndexArray
-from services.features.pipeline.named_pipelines import Profile
+from services.features.pipeline.interfaces import Detections, Distance, Image, IndexArray, Profile
 
 CONTRAST = 0.02
 """Below OpenCV's 0.04, because plaster carries faint texture only; 56 apartment frames had 826 or more."""
 
 BYTE_SCALE = 512.0
+"""OpenCV's SIFT_INT_DESCR_FCTR; a bin that holds more than a quarter of all is clipped."""
 WIDTH = 128
+"""4 x 4 cells of 8 orientations (Lowe 2004)."""
+EDGE, SIGMA = 10.0, 1.6
+"""Largest ratio of principal curvatures, and blur of the first octave (Lowe 2004, OpenCV's defaults)."""
 
 
 class Sift:
@@ -27,7 +30,7 @@ class Sift:
     distance: Distance = "euclidean"
 
     def __init__(self, profile: Profile) -> None:
-        self._sift = cv2.SIFT.create(nfeatures=0, contrastThreshold=CONTRAST, edgeThreshold=10.0, sigma=1.6)
+        self._sift = cv2.SIFT.create(nfeatures=0, contrastThreshold=CONTRAST, edgeThreshold=EDGE, sigma=SIGMA)
         self._upright = profile.upright
 
     def detect(self, grays: Sequence[Image]) -> list[Detections]:
@@ -49,17 +52,14 @@ class Sift:
         self, gray: Image, detections: Detections, chosen: IndexArray
     ) -> tuple[IndexArray, npt.NDArray[np.uint8]]:
         """Describe the chosen ones as bytes."""
-        if self._upright:
-            for index in chosen:
-                detections.handle[index].angle = 0.0
-        kept, raw = describe_chosen(self._sift, gray, detections, chosen, WIDTH)
+        kept, raw = describe_chosen(self._sift, gray, detections, chosen, WIDTH, self._upright)
         return kept, root_bytes(raw)
 
 
 def first_of_each(rows: npt.NDArray[np.float64]) -> IndexArray:
     """Indices of the first of each group of equal rows (N, K), ascending.
 
-    SIFT reports a place once per dominant orientation; to match, it is one place.
+    SIFT reports a point once per dominant orientation; to match, it is one point.
     """
     order = np.lexsort(rows.T)
     new = np.ones(len(rows), dtype=np.bool_)

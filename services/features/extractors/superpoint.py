@@ -3,9 +3,8 @@
 import torch
 
 from services.features.networks.keypoint_network import Found, KeypointNetwork
-from services.features.networks.non_commercial import require_consent
-from services.features.networks.runtime import loading
-from services.features.pipeline.named_pipelines import Profile
+from services.features.networks.runtime import loading, require_consent
+from services.features.pipeline.interfaces import Profile
 
 REPOSITORY = "magic-leap-community/superpoint"
 

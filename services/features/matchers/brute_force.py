@@ -4,9 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from services.features.matching.nearest_neighbours import find_neighbours
-from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray
-from services.features.pipeline.named_pipelines import Profile
+from services.features.matching.nearest_neighbours import Neighbours, match_by
+from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray, Profile
 
 
 class BruteForce:
@@ -18,15 +17,11 @@ class BruteForce:
 
     def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[IndexArray]:
         """(M, 2) index pairs per other, in the order of the query."""
-        pairs = []
-        for found in find_neighbours(
-            query.descriptors, [other.descriptors for other in others], self._distance
-        ):
-            if found is None:
-                pairs.append(np.zeros((0, 2), dtype=np.intp))
-                continue
-            order = np.argsort(found.first, kind="stable")
-            _, first = np.unique(found.nearest[order], return_index=True)
-            rows = np.sort(order[first])
-            pairs.append(np.stack([rows, found.nearest[rows]], axis=1))
-        return pairs
+        return match_by(_closest, query, others, self._distance)
+
+
+def _closest(found: Neighbours) -> IndexArray:
+    """Of the rows that share a nearest descriptor, the closest one."""
+    order = np.argsort(found.first, kind="stable")
+    _, first = np.unique(found.nearest[order], return_index=True)
+    return np.sort(order[first])

@@ -6,22 +6,19 @@ import kornia.feature as kf
 import numpy as np
 import torch
 
-from services.features.matchers.pixels import HEIGHT_PX, WIDTH_PX, pixels_of
-from services.features.networks.runtime import device_named, loading
-from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray
-from services.features.pipeline.named_pipelines import LIGHTGLUE, Profile
+from services.features.networks.runtime import HEIGHT_PX, WIDTH_PX, device_named, loading, pixels_of
+from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray, Profile, Runtime
+from services.features.pipeline.named_pipelines import LIGHTGLUE
 
 
 class LightGlue:
     """Mutual assignments above the network's own threshold."""
 
-    def __init__(
-        self, profile: Profile, distance: Distance, device: str = "cpu", *, trained: bool = True
-    ) -> None:
+    def __init__(self, profile: Profile, distance: Distance, runtime: Runtime) -> None:
         del distance
-        self._device = device_named(device)
+        self._device = device_named(runtime.device)
         features = LIGHTGLUE[profile.extractor]
-        self._network = _build(features, trained=trained).to(self._device).eval()
+        self._network = _build(features, trained=runtime.trained).to(self._device).eval()
         self._size = torch.tensor([[WIDTH_PX, HEIGHT_PX]], dtype=torch.float32, device=self._device)
 
     def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[IndexArray]:
@@ -37,10 +34,12 @@ class LightGlue:
             pairs.append(found.cpu().numpy().astype(np.intp).reshape(-1, 2))
         return pairs
 
-    def _picture(self, words: FeatureSet) -> dict[str, torch.Tensor]:
+    def _picture(self, features: FeatureSet) -> dict[str, torch.Tensor]:
         return {
-            "keypoints": pixels_of(words.lonlat_rad, self._device),
-            "descriptors": torch.as_tensor(words.descriptors[None].astype(np.float32), device=self._device),
+            "keypoints": pixels_of(features.lonlat_rad, self._device),
+            "descriptors": torch.as_tensor(
+                features.descriptors[None].astype(np.float32), device=self._device
+            ),
             "image_size": self._size,
         }
 

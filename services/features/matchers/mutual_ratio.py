@@ -4,9 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from services.features.matching.nearest_neighbours import find_neighbours
-from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray
-from services.features.pipeline.named_pipelines import Profile
+from services.features.matching.nearest_neighbours import Neighbours, match_by
+from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray, Profile
 
 
 class MutualRatio:
@@ -19,13 +18,8 @@ class MutualRatio:
 
     def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[IndexArray]:
         """(M, 2) index pairs per other, in the order of the query."""
-        pairs = []
-        for found in find_neighbours(
-            query.descriptors, [other.descriptors for other in others], self._distance
-        ):
-            if found is None:
-                pairs.append(np.zeros((0, 2), dtype=np.intp))
-                continue
-            rows = np.flatnonzero(found.mutual & (found.first < self._ratio * found.second))
-            pairs.append(np.stack([rows, found.nearest[rows]], axis=1))
-        return pairs
+
+        def clearly_nearest(found: Neighbours) -> IndexArray:
+            return np.flatnonzero(found.mutual & (found.first < self._ratio * found.second))
+
+        return match_by(clearly_nearest, query, others, self._distance)

@@ -5,11 +5,15 @@ from collections.abc import Sequence
 import numpy as np
 import torch
 
-from services.features.matchers.pixels import HEIGHT_PX, WIDTH_PX, pixels_of
-from services.features.networks.non_commercial import require_consent
-from services.features.networks.runtime import device_named, loading
-from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray
-from services.features.pipeline.named_pipelines import Profile
+from services.features.networks.runtime import (
+    HEIGHT_PX,
+    WIDTH_PX,
+    device_named,
+    loading,
+    pixels_of,
+    require_consent,
+)
+from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray, Profile, Runtime
 
 REPOSITORY = "magic-leap-community/superglue_{}"
 
@@ -17,18 +21,16 @@ REPOSITORY = "magic-leap-community/superglue_{}"
 class SuperGlue:
     """Indoor weights, or outdoor ones by the plugin's name (Q23)."""
 
-    def __init__(
-        self, profile: Profile, distance: Distance, device: str = "cpu", *, trained: bool = True
-    ) -> None:
+    def __init__(self, profile: Profile, distance: Distance, runtime: Runtime) -> None:
         del distance
         from transformers import SuperGlueConfig, SuperGlueForKeypointMatching
 
-        self._device = device_named(device)
-        if trained:
+        self._device = device_named(runtime.device)
+        if runtime.trained:
             require_consent("superglue")
-            place = "outdoor" if profile.matcher.endswith("outdoor") else "indoor"
-            with loading(f"superglue-{place}"):
-                network = SuperGlueForKeypointMatching.from_pretrained(REPOSITORY.format(place))
+            weights = "outdoor" if profile.matcher.endswith("outdoor") else "indoor"
+            with loading(f"superglue-{weights}"):
+                network = SuperGlueForKeypointMatching.from_pretrained(REPOSITORY.format(weights))
         else:
             network = SuperGlueForKeypointMatching(SuperGlueConfig())
         self._network = network.to(self._device).eval()
@@ -45,11 +47,11 @@ class SuperGlue:
         descriptors = torch.zeros(1, 2, count, query.descriptors.shape[1], device=self._device)
         scores = torch.zeros(1, 2, count, device=self._device)
         mask = torch.zeros(1, 2, count, dtype=torch.int, device=self._device)
-        for side, words in enumerate((query, other)):
-            size = len(words)
-            keypoints[0, side, :size] = pixels_of(words.lonlat_rad, self._device)[0]
-            descriptors[0, side, :size] = torch.as_tensor(words.descriptors.astype(np.float32))
-            scores[0, side, :size] = torch.as_tensor(words.scores)
+        for side, features in enumerate((query, other)):
+            size = len(features)
+            keypoints[0, side, :size] = pixels_of(features.lonlat_rad, self._device)[0]
+            descriptors[0, side, :size] = torch.as_tensor(features.descriptors.astype(np.float32))
+            scores[0, side, :size] = torch.as_tensor(features.scores)
             mask[0, side, :size] = 1
         with torch.inference_mode():
             # The public call detects anew with SuperPoint; this is the matching alone.

@@ -6,14 +6,14 @@ Bits count as +1 and -1, which makes this four times the Hamming distance. Descr
 whole numbers that float32 holds exactly, so the result does not depend on the number of threads.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from services.features.pipeline.interfaces import BoolArray, Distance, Float32Array, IndexArray
+from services.features.pipeline.interfaces import BoolArray, Distance, FeatureSet, Float32Array, IndexArray
 
 BATCH = 4
 """Frames per matrix product: 4 x 300 columns of distances stay in the processor's cache (measured: 26 ms per
@@ -63,6 +63,21 @@ def find_neighbours(
             block = squared[:, column : column + len(other)]
             column += len(other)
             yield _neighbours(block) if block.size else None
+
+
+def match_by(
+    choose: Callable[[Neighbours], IndexArray],
+    query: FeatureSet,
+    others: Sequence[FeatureSet],
+    distance: Distance,
+) -> list[IndexArray]:
+    """(M, 2) index pairs per other: the rows of the query that `choose` picks, each with its nearest."""
+    pairs = []
+    for found in find_neighbours(query.descriptors, [other.descriptors for other in others], distance):
+        rows = choose(found) if found is not None else np.zeros(0, dtype=np.intp)
+        nearest = found.nearest[rows] if found is not None else rows
+        pairs.append(np.stack([rows, nearest], axis=1))
+    return pairs
 
 
 def _neighbours(block: Float32Array) -> Neighbours:

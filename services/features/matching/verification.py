@@ -12,7 +12,7 @@ from shared.messages.matching import NodeMatch
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """A frame to compare with: its number in the reply and its words."""
+    """A frame to compare with: its number in the reply and its features."""
 
     node_id: int
     features: FeatureSet
@@ -29,8 +29,8 @@ def verify(
     """Verify the matches of one candidate.
 
     Args:
-        query: words of the current frame.
-        candidate: words of the other.
+        query: features of the current frame.
+        candidate: features of the other.
         pairs: (M, 2) indices into both.
         seq: number of the current frame; with node_id it seeds the draws: one question, one answer.
         settings: limits of the two-view estimation.
@@ -58,13 +58,13 @@ def two_view_settings(verification_deg: float, *, uneven_ground: bool = False) -
     """Defaults of the estimation with the pipeline's own threshold, degrees.
 
     On a flat floor the essential-matrix fallback added 0.2 % inliers and took two thirds more time, as much
-    on wrong places as on right ones; it is for a camera that tilts.
+    on wrong nodes as on right ones; it is for a camera that tilts.
     """
     return TwoViewSettings(threshold_rad=float(np.deg2rad(verification_deg)), fallback=uneven_ground)
 
 
 def feature_set(features: Features) -> FeatureSet:
-    """Words of a message."""
+    """Features of a message."""
     return FeatureSet(features.lonlat_rad, features.scores, features.descriptors)
 
 

@@ -22,7 +22,7 @@ def hub_folder() -> Path:
     return Path(home) / "hub"
 
 
-def place_of(model: TrainedModel) -> Path:
+def path_of(model: TrainedModel) -> Path:
     """File or folder of a model, whether or not it is there."""
     if model.source == "transformers":
         return hub_folder() / f"models--{model.file.replace('/', '--')}"
@@ -31,11 +31,11 @@ def place_of(model: TrainedModel) -> Path:
 
 def state_of(model: TrainedModel) -> State:
     """Read and check a model; 'unpinned' is there without a checksum to hold it against."""
-    place = place_of(model)
-    if not place.exists():
+    path = path_of(model)
+    if not path.exists():
         return "absent"
     if not model.sha256:
         return "unpinned"
-    with place.open("rb") as file:
+    with path.open("rb") as file:
         found = hashlib.file_digest(file, "sha256").hexdigest()
     return "verified" if found == model.sha256 else "broken"

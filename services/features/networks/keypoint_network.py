@@ -9,8 +9,7 @@ import numpy.typing as npt
 import torch
 
 from services.features.networks.runtime import batch_of, device_named, unit_descriptors
-from services.features.pipeline.interfaces import Detections, Distance, Image, IndexArray
-from services.features.pipeline.named_pipelines import Profile
+from services.features.pipeline.interfaces import Detections, Distance, Image, IndexArray, Profile, Runtime
 
 CANDIDATES = 3
 """Keypoints asked of the network per keypoint kept: some lie beyond the seam or too near others."""
@@ -34,10 +33,10 @@ class KeypointNetwork(ABC):
     distance: Distance = "euclidean"
     channels = 3
 
-    def __init__(self, profile: Profile, device: str = "cpu", *, trained: bool = True) -> None:
-        self._device = device_named(device)
+    def __init__(self, profile: Profile, runtime: Runtime) -> None:
+        self._device = device_named(runtime.device)
         self._most = CANDIDATES * profile.keypoints
-        self._network = self._build(profile, trained=trained).to(self._device).eval()
+        self._network = self._build(profile, trained=runtime.trained).to(self._device).eval()
 
     @abstractmethod
     def _build(self, profile: Profile, *, trained: bool) -> torch.nn.Module:

@@ -5,8 +5,8 @@ from collections.abc import Callable
 import kornia.feature as kf
 
 from services.features.networks.catalogue import TrainedModel
-from services.features.pipeline.named_pipelines import Profile
-from services.features.pipeline.registry import Runtime, create_extractor, create_matcher
+from services.features.pipeline.interfaces import Profile, Runtime
+from services.features.pipeline.plugins import create_extractor, create_matcher
 
 LIGHTGLUE_EXTRACTORS = {
     "lightglue-aliked": "aliked-n16",
@@ -18,8 +18,6 @@ PARTS: dict[str, Callable[[], object]] = {
     "affnet": lambda: kf.LAFAffNetShapeEstimator(pretrained=True),
     "orinet": lambda: kf.OriNet(pretrained=True),
     "keynet": lambda: kf.KeyNetDetector(pretrained=True),
-    "dedode-detector": lambda: create_extractor(Profile("dedode"), Runtime()),
-    "dedode-descriptor": lambda: create_extractor(Profile("dedode"), Runtime()),
 }
 
 

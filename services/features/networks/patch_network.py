@@ -10,11 +10,14 @@ import numpy.typing as npt
 import torch
 
 from services.features.networks.runtime import batch_of, device_named, loading, unit_descriptors
-from services.features.pipeline.interfaces import Detections, Distance, Image, IndexArray
-from services.features.pipeline.named_pipelines import Profile
+from services.features.pipeline.interfaces import Detections, Distance, Image, IndexArray, Profile, Runtime
 
 CANDIDATES = 3
+"""Keypoints asked of the detector per keypoint kept, as in keypoint_network."""
 PATCH_PX = 32
+"""Side of the patches that all of these were trained on."""
+HARRIS_K = 0.04
+"""Harris's constant, as in kornia's example and OpenCV's manual."""
 
 
 class PatchNetwork(ABC):
@@ -22,8 +25,8 @@ class PatchNetwork(ABC):
 
     distance: Distance = "euclidean"
 
-    def __init__(self, profile: Profile, device: str = "cpu", *, trained: bool = True) -> None:
-        self._device = device_named(device)
+    def __init__(self, profile: Profile, runtime: Runtime) -> None:
+        self._device, trained = device_named(runtime.device), runtime.trained
         self._detector = _detector(profile, trained=trained).to(self._device).eval()
         self._steps: list[torch.nn.Module] = []
         if profile.affnet:
@@ -72,5 +75,5 @@ def _detector(profile: Profile, *, trained: bool) -> torch.nn.Module:
     if profile.detector == "keynet":
         with loading("keynet"):
             return kf.KeyNetDetector(pretrained=trained, num_features=count)
-    response = kf.CornerGFTT() if profile.detector == "gftt" else kf.CornerHarris(0.04)
+    response = kf.CornerGFTT() if profile.detector == "gftt" else kf.CornerHarris(HARRIS_K)
     return kf.MultiResolutionDetector(response, num_features=count)

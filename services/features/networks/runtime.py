@@ -1,5 +1,6 @@
-"""Where networks run and how their weights are loaded."""
+"""Where networks run, how their weights are loaded, and which of them need consent."""
 
+import os
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -9,6 +10,13 @@ import numpy.typing as npt
 import torch
 
 from services.features.pipeline.interfaces import Image
+from shared.geometry.sphere import EquirectGrid
+
+WIDTH_PX, HEIGHT_PX = 800, 400
+"""Flat picture in which learned matchers see keypoints: the thesis's size (appendix A)."""
+
+NON_COMMERCIAL = "TOPNAV_NON_COMMERCIAL"
+"""Variable by which somebody says that the use is not commercial."""
 
 
 class WeightsError(RuntimeError):
@@ -31,9 +39,7 @@ def loading(what: str) -> Iterator[None]:
     """Turn whatever a library raises while it loads weights into one line that says what to do."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter(
-                "ignore", UserWarning
-            )  # kornia tells every retry; one line at the end will do
+            warnings.simplefilter("ignore", UserWarning)  # kornia tells every retry; one line will do
             yield
     except (OSError, RuntimeError, ValueError) as error:
         first = str(error).strip().splitlines()[0][:200] if str(error).strip() else type(error).__name__
@@ -41,6 +47,19 @@ def loading(what: str) -> Iterator[None]:
             f"the weights of {what} could not be loaded ({first}): run 'topnav models pull {what}' where "
             "there is a network, or copy the file into the cache that 'topnav models list' names"
         ) from error
+
+
+def require_consent(model: str) -> None:
+    """Refuse weights whose licence forbids commercial use unless the environment says that this is none.
+
+    Raises:
+        ValueError: it does not; the text names the licence and the variable.
+    """
+    if os.environ.get(NON_COMMERCIAL, "").lower() not in ("1", "true", "yes"):
+        raise ValueError(
+            f"the weights of {model} are licensed by Magic Leap for non-commercial research only: "
+            f"set {NON_COMMERCIAL}=1 if that is your use, or choose another pipeline, for example aliked-n16"
+        )
 
 
 def unit_descriptors(found: torch.Tensor) -> npt.NDArray[np.float16]:
@@ -53,3 +72,9 @@ def batch_of(grays: Sequence[Image], channels: int, device: torch.device) -> tor
     """Grey pictures of one size as a batch (B, channels, H, W), 0 to 1."""
     stacked = torch.from_numpy(np.stack(grays)).to(device)
     return (stacked.float() / 255.0)[:, None].expand(-1, channels, -1, -1)
+
+
+def pixels_of(lonlat_rad: npt.NDArray[np.float32], device: torch.device) -> torch.Tensor:
+    """Equirectangular pixels (1, N, 2), x from 0 to WIDTH_PX, of longitudes and latitudes (N, 2)."""
+    pixels = EquirectGrid(WIDTH_PX, HEIGHT_PX).pixels_from_lonlat(lonlat_rad)
+    return torch.as_tensor(pixels[None], dtype=torch.float32, device=device)

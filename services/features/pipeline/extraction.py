@@ -1,4 +1,4 @@
-"""Picture -> visual words. Pure: the same picture gives the same words."""
+"""Picture -> features. Pure: the same picture gives the same features."""
 
 import cv2
 import numpy as np
@@ -7,13 +7,14 @@ from services.features.pipeline.interfaces import (
     Detections,
     Extractor,
     FeatureSet,
+    Float32Array,
     FloatArray,
     Image,
+    IndexArray,
+    Profile,
     Representation,
     View,
 )
-from services.features.pipeline.named_pipelines import Profile
-from services.features.pipeline.selection import strongest
 
 
 def extract(
@@ -28,7 +29,7 @@ def extract(
         profile: how many, and where none may be.
 
     Returns:
-        At most profile.keypoints words, strongest first, none beyond the cropped latitudes.
+        At most profile.keypoints features, strongest first, none beyond the cropped latitudes.
     """
     gray = (
         picture
@@ -46,8 +47,8 @@ def extract(
         if len(of_view) == 0 and len(views) > 1:
             continue
         kept, descriptors = extractor.describe(view.gray, detections, own_index[of_view])
-        place = dict(zip(own_index[of_view].tolist(), of_view.tolist(), strict=True))
-        parts.append((np.array([place[index] for index in kept.tolist()], dtype=np.intp), descriptors))
+        row_of = dict(zip(own_index[of_view].tolist(), of_view.tolist(), strict=True))
+        parts.append((np.array([row_of[index] for index in kept.tolist()], dtype=np.intp), descriptors))
     if not parts:
         parts = [extractor.describe(views[0].gray, found[0], np.zeros(0, dtype=np.intp))]
     rows = np.concatenate([part[0] for part in parts])
@@ -57,17 +58,32 @@ def extract(
     return FeatureSet(lonlat[rows].astype(np.float32), scores[rows], descriptors)
 
 
+def strongest(lonlat_rad: FloatArray, scores: Float32Array, count: int) -> IndexArray:
+    """Indices of the `count` largest scores, largest first; equal ones by direction, not by input order.
+
+    Wherever they are: spreading them over a grid, or by suppression round stronger ones, was measured on 84
+    pairs of apartment frames and lost a quarter of the verified matches below 1 m: the choice then depends on
+    where a thing stands in the picture, so that two frames keep different ones.
+
+    Args:
+        lonlat_rad: (N, 2) longitude, latitude, radians.
+        scores: (N,) larger is better.
+        count: most to take.
+    """
+    return np.lexsort((lonlat_rad[:, 1], lonlat_rad[:, 0], -scores))[:count]
+
+
 def _merge(
     views: list[View], found: list[Detections], max_lat_rad: float
 ) -> tuple[np.ndarray, np.ndarray, FloatArray, np.ndarray]:
     """Keypoints the views own within the latitudes: view number, index in it, lonlat, score."""
     view_index, own_index, lonlat, scores = [], [], [], []
     for number, (view, detections) in enumerate(zip(views, found, strict=True)):
-        place = view.lonlat_from_pixels(detections.pixels)
-        keep = np.flatnonzero(view.owns(detections.pixels) & (np.abs(place[:, 1]) <= max_lat_rad))
+        directions = view.lonlat_from_pixels(detections.pixels)
+        keep = np.flatnonzero(view.owns(detections.pixels) & (np.abs(directions[:, 1]) <= max_lat_rad))
         view_index.append(np.full(len(keep), number, dtype=np.intp))
         own_index.append(keep)
-        lonlat.append(place[keep])
+        lonlat.append(directions[keep])
         scores.append(detections.scores[keep])
     return (
         np.concatenate(view_index),

@@ -1,4 +1,4 @@
-"""What plugins take and return."""
+"""What plugins take and return. Pure data."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,6 +13,57 @@ Float32Array = npt.NDArray[np.float32]
 BoolArray = npt.NDArray[np.bool_]
 IndexArray = npt.NDArray[np.intp]
 Distance = Literal["euclidean", "hamming"]
+
+
+@dataclass(frozen=True)
+class Profile:
+    """One pipeline: three plugins and their figures.
+
+    Attributes:
+        extractor: plugin of `extractors`.
+        representation: plugin of `representations`.
+        matcher: plugin of `matchers`.
+        keypoints: most keypoints kept per frame, which is S_max (thesis: 150; decision 0011: 300).
+        ratio: largest distance of the best candidate relative to the second best (decision 0011).
+        crop_deg: angle cut away above and below (thesis, section 6.1.1: 25), degrees.
+        resize: rows and columns the whole picture is resized to (thesis: 400, 800); None = as it comes.
+        upright: describe keypoints without turning them; the robot's camera always stands upright.
+        verification_deg: largest angle off the epipolar plane of a verified match, degrees (decision 0011).
+        uneven_ground: where the plane explains too little, try any motion of the camera.
+        detector: of the patch networks: gftt, harris or keynet (kornia's).
+        affnet: fit the shape of patches with AffNet; `upright` false turns them with OriNet (appendix A).
+    """
+
+    extractor: str
+    representation: str = "equirectangular"
+    matcher: str = "mutual_ratio"
+    keypoints: int = 300
+    ratio: float = 0.85
+    crop_deg: float = 25.0
+    resize: tuple[int, int] | None = (400, 800)
+    upright: bool = True
+    verification_deg: float = 0.7
+    uneven_ground: bool = False
+    detector: str = "gftt"
+    affnet: bool = False
+
+    @property
+    def identity(self) -> str:
+        """What must be equal for two frames to be compared; travels as `Features.pipeline`."""
+        return f"{self.extractor}-{self.representation}-{self.keypoints}"
+
+
+@dataclass(frozen=True)
+class Runtime:
+    """Where and how learned plugins run.
+
+    Attributes:
+        device: cpu or cuda.
+        trained: load trained weights; False leaves what torch's generator draws, to test shapes.
+    """
+
+    device: str = "cpu"
+    trained: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +98,7 @@ class Detections:
 
 @dataclass(frozen=True, eq=False)
 class FeatureSet:
-    """Visual words of one panorama.
+    """Keypoints and descriptors of one panorama.
 
     Attributes:
         lonlat_rad: (N, 2) longitude, latitude, camera frame.
@@ -88,7 +139,7 @@ class Representation(Protocol):
 
 
 class Matcher(Protocol):
-    """Pairs the words of one frame with those of many others."""
+    """Pairs the features of one frame with those of many others."""
 
     def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[IndexArray]:
         """(M, 2) index pairs per other: index in the query, index in the other."""

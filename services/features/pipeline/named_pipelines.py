@@ -1,47 +1,7 @@
 """Named pipelines: which plugins work together, with which figures. Pure data, nothing heavy is imported."""
 
-from dataclasses import dataclass
-
+from services.features.pipeline.interfaces import Profile
 from services.features.pipeline.plugins import PLUGINS
-
-
-@dataclass(frozen=True)
-class Profile:
-    """One pipeline.
-
-    Attributes:
-        extractor: plugin of `extractors`.
-        representation: plugin of `representations`.
-        matcher: plugin of `matchers`.
-        keypoints: most keypoints kept per frame, which is S_max (thesis: 150).
-        ratio: largest distance of the best candidate relative to the second best.
-        crop_deg: angle cut away above and below (thesis, section 6.1.1: 25), degrees.
-        resize: rows and columns the whole picture is resized to (thesis: 400, 800); None = as it comes.
-        upright: describe keypoints without turning them; the robot's camera always stands upright.
-        verification_deg: largest angle off the epipolar plane of a verified match, degrees.
-        uneven_ground: where the plane explains too little, try any motion of the camera.
-        detector: of the patch networks: gftt, harris or keynet (kornia's).
-        affnet: fit the shape of patches with AffNet; `upright` false turns them with OriNet (THESIS row 13).
-    """
-
-    extractor: str
-    representation: str = "equirectangular"
-    matcher: str = "mutual_ratio"
-    keypoints: int = 300
-    ratio: float = 0.85
-    crop_deg: float = 25.0
-    resize: tuple[int, int] | None = (400, 800)
-    upright: bool = True
-    verification_deg: float = 0.7
-    uneven_ground: bool = False
-    detector: str = "gftt"
-    affnet: bool = False
-
-    @property
-    def identity(self) -> str:
-        """What must be equal for two frames to be compared; travels as `Features.pipeline`."""
-        return f"{self.extractor}-{self.representation}-{self.keypoints}"
-
 
 # Verified matches (medians of 14 pairs of apartment frames each), by distance of the two frames in metres:
 #   keypoints   0.2-0.5  0.5-1  1-1.5  1.5-2  2-2.5  2.5-3.5   pairs with a direction

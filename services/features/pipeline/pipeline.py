@@ -1,18 +1,17 @@
 """One pipeline put together from its plugins: frame -> features message, and matches of two. Pure."""
 
+import cv2
+
 from services.features.matching.verification import two_view_settings
 from services.features.pipeline.decoding import decode_picture
 from services.features.pipeline.extraction import extract
-from services.features.pipeline.named_pipelines import Profile
-from services.features.pipeline.registry import (
-    Runtime,
-    create_extractor,
-    create_matcher,
-    create_representation,
-)
-from services.features.pipeline.thumbnail import make_thumbnail
+from services.features.pipeline.interfaces import Image, Profile, Runtime
+from services.features.pipeline.plugins import create_extractor, create_matcher, create_representation
 from shared.messages.features import Features
 from shared.messages.sensors import Frame
+
+MOST_THUMBNAIL_BYTES = 200_000
+"""A larger one is left out: the limit of the message (shared/messages/features.py)."""
 
 
 class Pipeline:
@@ -36,21 +35,28 @@ class Pipeline:
         self._thumbnail = (thumbnail_width_px, thumbnail_quality)
 
     def features_of(self, frame: Frame) -> Features:
-        """Extract a frame's visual words; the number, time and robot of the frame go with them.
+        """Extract a frame's features; the number, time and robot of the frame go with them.
 
         Raises:
             BadPictureError: the frame holds no usable picture.
         """
         picture = decode_picture(frame, self._enough_px)
-        words = extract(picture, self.extractor, self.representation, self.profile)
+        found = extract(picture, self.extractor, self.representation, self.profile)
         return Features(
             seq=frame.seq,
             stamp_ns=frame.stamp_ns,
             robot=frame.robot,
             lockstep=frame.lockstep,
             pipeline=self.identity,
-            lonlat_rad=words.lonlat_rad,
-            scores=words.scores,
-            descriptors=words.descriptors,
-            thumbnail=make_thumbnail(picture, *self._thumbnail),
+            lonlat_rad=found.lonlat_rad,
+            scores=found.scores,
+            descriptors=found.descriptors,
+            thumbnail=_thumbnail(picture, *self._thumbnail),
         )
+
+
+def _thumbnail(picture: Image, width_px: int, quality: int) -> bytes:
+    """JPEG of (H, 2H, 3) BGR for people, width_px columns; empty when it would not fit into a message."""
+    small = cv2.resize(picture, (width_px, width_px // 2), interpolation=cv2.INTER_AREA)
+    packed, data = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, quality])
+    return data.tobytes() if packed and data.size <= MOST_THUMBNAIL_BYTES else b""

@@ -1,39 +1,73 @@
-"""Every plugin's name and class. Pure data: a class is imported when it is chosen, see `registry`."""
+"""Every plugin's name and class, imported when it is chosen: `sift` loads no network's libraries."""
 
-CLASSIC = {
-    "sift": "services.features.extractors.sift:Sift",
-    "orb": "services.features.extractors.orb:Orb",
-    "beblid": "services.features.extractors.beblid:Beblid",
-}
+from importlib import import_module
+from typing import Any
+
+from services.features.pipeline.interfaces import (
+    Distance,
+    Extractor,
+    Matcher,
+    Profile,
+    Representation,
+    Runtime,
+)
+
+CLASSIC = {"sift": "Sift", "orb": "Orb", "beblid": "Beblid"}
 PATCH_NETWORKS = {
-    "tfeat": "services.features.extractors.tfeat:TFeat",
-    "hardnet": "services.features.extractors.hardnet:HardNet",
-    "hardnet8": "services.features.extractors.hardnet8:HardNet8",
-    "sosnet": "services.features.extractors.sosnet:SosNet",
-    "mkd": "services.features.extractors.mkd:Mkd",
+    "tfeat": "TFeat",
+    "hardnet": "HardNet",
+    "hardnet8": "HardNet8",
+    "sosnet": "SosNet",
+    "mkd": "Mkd",
 }
 KEYPOINT_NETWORKS = {
-    "aliked-t16": "services.features.extractors.aliked:Aliked",
-    "aliked-n16": "services.features.extractors.aliked:Aliked",
-    "aliked-n16rot": "services.features.extractors.aliked:Aliked",
-    "aliked-n32": "services.features.extractors.aliked:Aliked",
-    "disk": "services.features.extractors.disk:Disk",
-    "xfeat": "services.features.extractors.xfeat:XFeat",
-    "dedode": "services.features.extractors.dedode:DeDoDe",
-    "superpoint": "services.features.extractors.superpoint:SuperPoint",
+    "aliked-t16": "Aliked",
+    "aliked-n16": "Aliked",
+    "aliked-n16rot": "Aliked",
+    "aliked-n32": "Aliked",
+    "disk": "Disk",
+    "xfeat": "XFeat",
+    "dedode": "DeDoDe",
+    "superpoint": "SuperPoint",
 }
-PLUGINS: dict[str, dict[str, str]] = {
+CLASSIC_MATCHERS = {"mutual_ratio": "MutualRatio", "brute_force": "BruteForce"}
+PLUGINS = {
     "extractor": CLASSIC | PATCH_NETWORKS | KEYPOINT_NETWORKS,
-    "representation": {
-        "equirectangular": "services.features.representations.equirectangular:Equirectangular",
-        "tangent": "services.features.representations.tangent:Tangent",
-        "planar": "services.features.representations.planar:Planar",
-    },
-    "matcher": {
-        "mutual_ratio": "services.features.matchers.mutual_ratio:MutualRatio",
-        "brute_force": "services.features.matchers.brute_force:BruteForce",
-        "lightglue": "services.features.matchers.lightglue:LightGlue",
-        "superglue": "services.features.matchers.superglue:SuperGlue",
-        "superglue-outdoor": "services.features.matchers.superglue:SuperGlue",
-    },
+    "representation": {"equirectangular": "Equirectangular", "tangent": "Tangent", "planar": "Planar"},
+    "matcher": CLASSIC_MATCHERS
+    | {"lightglue": "LightGlue", "superglue": "SuperGlue", "superglue-outdoor": "SuperGlue"},
 }
+"""Kind -> name -> class. A file in the kind's folder has the plugin's name, without what follows a dash."""
+
+
+def create(kind: str, name: str, *arguments: Any) -> Any:
+    """Import and build one plugin.
+
+    Raises:
+        ValueError: no plugin of this kind has this name; the text lists those there are.
+    """
+    choices = PLUGINS[kind]
+    if name not in choices:
+        raise ValueError(f"{kind} must be one of {sorted(choices)}, got {name!r}")
+    module = import_module(f"services.features.{kind}s.{name.partition('-')[0]}")
+    return getattr(module, choices[name])(*arguments)
+
+
+def create_extractor(profile: Profile, runtime: Runtime) -> Extractor:
+    """Build the profile's extractor."""
+    where = () if profile.extractor in CLASSIC else (runtime,)
+    built: Extractor = create("extractor", profile.extractor, profile, *where)
+    return built
+
+
+def create_representation(profile: Profile) -> Representation:
+    """Build the profile's representation."""
+    built: Representation = create("representation", profile.representation, profile)
+    return built
+
+
+def create_matcher(profile: Profile, distance: Distance, runtime: Runtime) -> Matcher:
+    """Build the profile's matcher for descriptors compared by `distance`."""
+    where = () if profile.matcher in CLASSIC_MATCHERS else (runtime,)
+    built: Matcher = create("matcher", profile.matcher, profile, distance, *where)
+    return built

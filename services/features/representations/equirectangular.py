@@ -7,8 +7,7 @@ as anywhere else; only those inside the original columns are reported, hence eac
 import cv2
 import numpy as np
 
-from services.features.pipeline.interfaces import BoolArray, FloatArray, Image, View
-from services.features.pipeline.named_pipelines import Profile
+from services.features.pipeline.interfaces import BoolArray, FloatArray, Image, Profile, View
 from services.features.representations.strip import cropped_strip
 
 PAD_COLUMNS = 64

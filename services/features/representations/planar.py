@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from services.features.pipeline.interfaces import BoolArray, FloatArray, Image, View
-from services.features.pipeline.named_pipelines import Profile
+from services.features.pipeline.interfaces import BoolArray, FloatArray, Image, Profile, View
 from services.features.representations.strip import cropped_strip
 
 

@@ -8,15 +8,14 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from services.features.pipeline.interfaces import BoolArray, FloatArray, Image, View
-from services.features.pipeline.named_pipelines import Profile
+from services.features.pipeline.interfaces import BoolArray, FloatArray, Image, Profile, View
 from services.features.representations.strip import cropped_strip
 from shared.geometry.icosahedron import tangent_layout
 from shared.geometry.perspective import view_table
 from shared.geometry.sphere import EquirectGrid, lonlat_from_bearings
 
-BASE_LEVEL = 9
-SUBDIVISION = 1
+BASE_LEVEL, SUBDIVISION = 9, 1
+"""Eighty pictures of 256 x 256 (thesis, section 2.2.1.2)."""
 
 
 class Tangent:

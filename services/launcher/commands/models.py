@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from services.features.networks.cache import place_of, state_of
+from services.features.networks.cache import path_of, state_of
 from services.features.networks.catalogue import MODELS, TrainedModel, find_model
 from services.launcher.client.failure import ExperimentError
 from services.launcher.terminal.tables import print_rows, wide_console
@@ -34,7 +34,7 @@ def list_models() -> None:
         for model in MODELS
     ]
     print_rows("trained models", rows)
-    wide_console().print(f"files of kornia: {place_of(MODELS[0]).parent}")
+    wide_console().print(f"files of kornia: {path_of(MODELS[0]).parent}")
 
 
 @app.command()
@@ -72,11 +72,10 @@ def _named(names: list[str]) -> list[TrainedModel]:
 
 def _load(model: TrainedModel) -> None:
     from services.features.networks.loaders import load
-    from services.features.networks.non_commercial import VARIABLE
-    from services.features.networks.runtime import WeightsError
+    from services.features.networks.runtime import NON_COMMERCIAL, WeightsError
 
     if not model.commercial:
-        os.environ[VARIABLE] = "1"
+        os.environ[NON_COMMERCIAL] = "1"
     try:
         load(model)
     except (WeightsError, ImportError) as error:
@@ -85,5 +84,5 @@ def _load(model: TrainedModel) -> None:
 
 def _print_state(model: TrainedModel) -> str:
     state = state_of(model)
-    wide_console().print(f"{model.name}: {state}, {place_of(model)}")
+    wide_console().print(f"{model.name}: {state}, {path_of(model)}")
     return state

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from services.features.places.map_reader import PIECE
+from services.features.map_features.map_reader import PIECE
 from shared.bus import Bus, wait_until
 from shared.messages.features import ExtractRequest, Features
 from shared.messages.matching import MatchReply, MatchRequest
@@ -77,7 +77,9 @@ def test_extract_of_a_goal_picture_equals_the_features_of_the_same_frame(bus: Bu
 
 @pytest.mark.usefixtures("service")
 def test_match_finds_the_places_in_order_and_follows_deltas(bus: Bus, store, monkeypatch) -> None:
-    monkeypatch.setattr("services.features.places.map_reader.DELTA_WAIT_S", ANSWER_S / 2)  # else it asks
+    monkeypatch.setattr(
+        "services.features.map_features.map_reader.DELTA_WAIT_S", ANSWER_S / 2
+    )  # else it asks
     for node_id, place in enumerate(PLACES_M[:3]):
         store.add(node_id, extract(bus, frame_at(*place)), tell=False)
     current = extract(bus, frame_at(0.0, 0.0))

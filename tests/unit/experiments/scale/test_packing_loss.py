@@ -39,5 +39,5 @@ def test_words_like_real_ones_lose_next_to_nothing(pipeline):
 
 
 def test_a_packing_that_keeps_too_little_shows(pipeline, monkeypatch):
-    monkeypatch.setattr("services.features.places.packing.LEVELS", 1)
+    monkeypatch.setattr("services.features.map_features.packing.LEVELS", 1)
     assert loss(pipeline, [pictures(120)])["lost"] > 0.02

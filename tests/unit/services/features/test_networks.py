@@ -12,10 +12,14 @@ torch = pytest.importorskip("torch")
 from services.features.networks.catalogue import MODELS  # noqa: E402
 from services.features.networks.runtime import WeightsError, device_named  # noqa: E402
 from services.features.pipeline.extraction import extract  # noqa: E402
-from services.features.pipeline.named_pipelines import LIGHTGLUE, Profile, combined  # noqa: E402
+from services.features.pipeline.interfaces import Profile, Runtime  # noqa: E402
+from services.features.pipeline.named_pipelines import LIGHTGLUE, combined  # noqa: E402
 from services.features.pipeline.pipeline import Pipeline  # noqa: E402
-from services.features.pipeline.plugins import KEYPOINT_NETWORKS, PATCH_NETWORKS  # noqa: E402
-from services.features.pipeline.registry import Runtime, create_matcher  # noqa: E402
+from services.features.pipeline.plugins import (  # noqa: E402
+    KEYPOINT_NETWORKS,
+    PATCH_NETWORKS,
+    create_matcher,
+)
 from shared.geometry.sphere import wrap_rad  # noqa: E402
 
 WIDTHS = {"aliked-t16": 64, "xfeat": 64, "superpoint": 256, "dedode": 256}

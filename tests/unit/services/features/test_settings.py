@@ -8,8 +8,7 @@ import pytest
 
 from services.features.pipeline.named_pipelines import PROFILES, find_profile
 from services.features.pipeline.pipeline import Pipeline
-from services.features.pipeline.plugins import PLUGINS
-from services.features.pipeline.registry import create
+from services.features.pipeline.plugins import PLUGINS, create
 from services.features.settings import FeaturesSettings
 from shared.certificates.holders import everyone
 from shared.certificates.issuing import make
@@ -41,7 +40,7 @@ def test_every_profile_names_plugins_that_exist(name):
     assert profile.matcher in PLUGINS["matcher"]
 
 
-def test_an_extractor_alone_takes_the_place_of_the_pipeline(monkeypatch):
+def test_an_extractor_alone_replaces_the_pipeline(monkeypatch):
     monkeypatch.setenv("FEATURES_EXTRACTOR", "aliked-t16")
     assert FeaturesSettings().profile().extractor == "aliked-t16"
     monkeypatch.setenv("FEATURES_EXTRACTOR", "orb/tangent/brute_force")
@@ -59,10 +58,12 @@ def test_pipelines_that_cannot_be_are_refused_at_the_start(name):
         FeaturesSettings(pipeline=name)
 
 
-def test_a_plugin_file_has_the_name_of_its_plugin():
-    for choices in PLUGINS.values():
-        for name, path in choices.items():
-            assert path.split(":")[0].rsplit(".", 1)[1] == name.split("-")[0]  # a variant follows the dash
+@pytest.mark.parametrize(
+    ("kind", "name"), [(kind, name) for kind, names in PLUGINS.items() for name in names]
+)
+def test_a_plugin_file_has_the_name_of_its_plugin(repository, kind, name):
+    file = repository / "services/features" / f"{kind}s" / f"{name.partition('-')[0]}.py"
+    assert f"class {PLUGINS[kind][name]}" in file.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,7 @@ import pytest
 from services.features.matchers.brute_force import BruteForce
 from services.features.matchers.mutual_ratio import MutualRatio
 from services.features.matching.nearest_neighbours import find_neighbours
-from services.features.pipeline.interfaces import FeatureSet
-from services.features.pipeline.named_pipelines import Profile
+from services.features.pipeline.interfaces import FeatureSet, Profile
 
 
 def words(descriptors: np.ndarray) -> FeatureSet:

@@ -1,13 +1,13 @@
-"""Verified matches tell the direction of another place, the same every time."""
+"""Verified matches tell the direction of another node, the same every time."""
 
 import numpy as np
 import pytest
 
-from services.features.matching.matching_requests import RequestError, pair, verify_paired
+from services.features.map_features.map_features import MapFeatures
+from services.features.matching.requests import RequestError, match_candidates, verify_candidates
 from services.features.pipeline.extraction import extract
 from services.features.pipeline.named_pipelines import PROFILES
 from services.features.pipeline.pipeline import Pipeline
-from services.features.places.places import Places
 from shared.messages.features import Features
 from shared.messages.matching import MatchRequest
 
@@ -21,18 +21,18 @@ def pipeline(request) -> Pipeline:
 
 
 def features(pipeline: Pipeline, picture: np.ndarray) -> Features:
-    words = extract(picture, pipeline.extractor, pipeline.representation, pipeline.profile)
+    found = extract(picture, pipeline.extractor, pipeline.representation, pipeline.profile)
     return Features(
         seq=3,
         pipeline=pipeline.identity,
-        lonlat_rad=words.lonlat_rad,
-        scores=words.scores,
-        descriptors=words.descriptors,
+        lonlat_rad=found.lonlat_rad,
+        scores=found.scores,
+        descriptors=found.descriptors,
     )
 
 
-def places(pipeline: Pipeline, **of: Features) -> Places:
-    kept = Places.of(pipeline)
+def nodes(pipeline: Pipeline, **of: Features) -> MapFeatures:
+    kept = MapFeatures.of(pipeline)
     for name, found in of.items():
         kept.put(int(name.removeprefix("n")), found)
     return kept
@@ -40,9 +40,12 @@ def places(pipeline: Pipeline, **of: Features) -> Places:
 
 def test_heading_and_yaw_of_another_place(room, pipeline):
     here = features(pipeline, room(0.0, 0.0, 0.0, 400))
-    there = places(pipeline, n8=features(pipeline, room(*STEP_M, YAW_RAD, 400)))
+    there = nodes(pipeline, n8=features(pipeline, room(*STEP_M, YAW_RAD, 400)))
     request = MatchRequest(map="flat", node_ids=(8,))
-    answers = [verify_paired(pipeline, request, pair(pipeline, request, here, there))[0] for _ in range(2)]
+    answers = [
+        verify_candidates(pipeline, request, match_candidates(pipeline, request, here, there))[0]
+        for _ in range(2)
+    ]
     found = answers[0]
     assert found.status == "ok"
     assert found.inliers > 0.8 * found.raw_matches > 60
@@ -54,12 +57,14 @@ def test_heading_and_yaw_of_another_place(room, pipeline):
 
 def test_a_node_of_another_pipeline_is_refused_naming_both(pipeline, room):
     here = features(pipeline, room(0.0, 0.0, 0.0, 400))
-    other = places(pipeline, n8=here.model_copy(update={"pipeline": "superpoint-tangent-150"}))
+    other = nodes(pipeline, n8=here.model_copy(update={"pipeline": "superpoint-tangent-150"}))
     with pytest.raises(RequestError, match=f"node 8 .*'superpoint-tangent-150'.*{pipeline.identity!r}"):
-        pair(pipeline, MatchRequest(map="flat", best_k=1), here, other)
+        match_candidates(pipeline, MatchRequest(map="flat", best_k=1), here, other)
 
 
 def test_an_empty_map_has_no_results(pipeline, room):
     here = features(pipeline, room(0.0, 0.0, 0.0, 400))
     request = MatchRequest(map="flat", best_k=5)
-    assert verify_paired(pipeline, request, pair(pipeline, request, here, places(pipeline))) == ()
+    assert (
+        verify_candidates(pipeline, request, match_candidates(pipeline, request, here, nodes(pipeline))) == ()
+    )

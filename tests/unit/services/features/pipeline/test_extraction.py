@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from services.features.pipeline.extraction import extract
-from services.features.pipeline.interfaces import FeatureSet
-from services.features.pipeline.named_pipelines import PROFILES, Profile
+from services.features.pipeline.extraction import extract, strongest
+from services.features.pipeline.interfaces import FeatureSet, Profile
+from services.features.pipeline.named_pipelines import PROFILES
 from services.features.pipeline.pipeline import Pipeline
 from shared.geometry.icosahedron import tangent_layout
 from shared.geometry.sphere import bearings_from_lonlat, wrap_rad
@@ -143,3 +143,23 @@ def test_tangent_pictures_give_the_same_bearings_each_keypoint_once(room):
     assert np.median(np.abs(difference), axis=0).max() < np.deg2rad(0.3)
     rounded = np.round(words.lonlat_rad / np.deg2rad(0.02))
     assert len(np.unique(rounded, axis=0)) > 0.8 * len(words)  # levels of the pyramid may share a corner
+
+
+def test_the_strongest_come_first():
+    assert strongest(np.zeros((4, 2)), np.array([0.2, 0.9, 0.1, 0.5], np.float32), 2).tolist() == [1, 3]
+
+
+def test_fewer_than_wanted_are_all_taken():
+    assert strongest(np.zeros((2, 2)), np.array([1, 2], np.float32), 10).tolist() == [1, 0]
+
+
+def test_equal_scores_are_ordered_by_direction_not_by_input_order():
+    rng = np.random.default_rng(3)
+    lonlat = rng.uniform(-1.0, 1.0, (50, 2))
+    scores = np.ones(50, np.float32)
+    order = rng.permutation(50)
+    first, shuffled = (
+        lonlat[strongest(lonlat, scores, 20)],
+        lonlat[order][strongest(lonlat[order], scores, 20)],
+    )
+    np.testing.assert_array_equal(first, shuffled)

@@ -3,7 +3,7 @@
 import pytest
 from typer.testing import CliRunner
 
-from services.features.networks.cache import place_of, state_of
+from services.features.networks.cache import path_of, state_of
 from services.features.networks.catalogue import MODELS, find_model
 from services.launcher.client.failure import ExperimentError
 from services.launcher.commands.models import app, pull, verify
@@ -30,7 +30,7 @@ def test_the_list_names_every_model_its_licence_and_the_cache(cache):
 def test_a_file_that_is_not_what_it_should_be_is_broken():
     model = find_model("aliked-t16")
     assert state_of(model) == "absent"
-    place_of(model).write_bytes(b"something else")
+    path_of(model).write_bytes(b"something else")
     assert state_of(model) == "broken"
     with pytest.raises(ExperimentError, match="broken: aliked-t16"):
         verify(None)
@@ -39,7 +39,7 @@ def test_a_file_that_is_not_what_it_should_be_is_broken():
 @pytest.mark.usefixtures("cache")
 def test_a_file_without_a_known_checksum_is_told_apart():
     model = find_model("sosnet")
-    place_of(model).write_bytes(b"weights")
+    path_of(model).write_bytes(b"weights")
     assert state_of(model) == "unpinned"
     verify(["sosnet"])
 

@@ -1,10 +1,10 @@
-"""Map words follow deltas exactly, and are forgotten as soon as they might be wrong."""
+"""Cached maps follow deltas exactly, and are forgotten as soon as they might be wrong."""
 
 import numpy as np
 import pytest
 
-from services.features.places.map_cache import MapCache
-from services.features.places.places import Places
+from services.features.map_features.map_cache import MapCache
+from services.features.map_features.map_features import MapFeatures
 from shared.messages.features import Features
 from shared.messages.maps import AddNode, DeleteNode, MapDelta, Node, NodeFeatures
 
@@ -24,7 +24,7 @@ def add(node_id: int) -> AddNode:
 
 @pytest.fixture
 def cache() -> MapCache:
-    kept = MapCache(lambda: Places("sift", 1, "euclidean"))
+    kept = MapCache(lambda: MapFeatures("sift", 1, "euclidean"))
     kept.load("flat", 3, [NodeFeatures(node_id=1, features=features())])
     return kept
 
@@ -39,14 +39,14 @@ def test_nodes_come_and_go_with_deltas_in_order(cache):
     cache.apply(
         MapDelta(map="flat", revision=5, operations=(DeleteNode(node_id=1), add(4), DeleteNode(node_id=4)))
     )
-    assert cache.get("flat").places.ids == [2, 3]
+    assert cache.get("flat").nodes.ids == [2, 3]
     assert cache.get("flat").revision == 5
 
 
 @pytest.mark.parametrize("revision", [1, 3])
 def test_a_delta_already_in_the_map_changes_nothing(cache, revision):
     cache.apply(MapDelta(map="flat", revision=revision, operations=(DeleteNode(node_id=1),)))
-    assert cache.get("flat").places.ids == [1]
+    assert cache.get("flat").nodes.ids == [1]
 
 
 def test_a_gap_forgets_the_map(cache):

@@ -1,16 +1,17 @@
-"""Packed places in a file that is mapped into memory: the operating system keeps in RAM what is used."""
+"""Packed features in a file that is mapped into memory: the operating system keeps in RAM what is used."""
 
 from tempfile import TemporaryFile
 
 import numpy as np
 
+from services.features.map_features.packing import Packing
 from services.features.pipeline.interfaces import FeatureSet
-from services.features.places.packing import Packing
 
 FIRST_CAPACITY = 256
+"""Nodes that the first file holds; chosen: the map of a house (deploy/MEASURED.md); it doubles as needed."""
 
 
-class PlaceRecords:
+class NodeRecords:
     """A growing row of records. The file has no name, so it is gone when nobody uses it."""
 
     def __init__(self, packing: Packing) -> None:
@@ -23,13 +24,13 @@ class PlaceRecords:
         """Room of the records written so far: what lies beyond them was never touched."""
         return self._written * self._packing.record.itemsize
 
-    def put(self, slot: int, words: FeatureSet) -> None:
-        """Write one place, beyond the end too.
+    def put(self, slot: int, features: FeatureSet) -> None:
+        """Write one node, beyond the end too.
 
         Raises:
-            ValueError: words of another kind than the packing's.
+            ValueError: features of another kind than the packing's.
         """
-        record = self._packing.pack(words)
+        record = self._packing.pack(features)
         if slot >= len(self._records):
             larger = self._mapped(max(slot + 1, 2 * len(self._records)))
             larger[: len(self._records)] = self._records
@@ -38,7 +39,7 @@ class PlaceRecords:
         self._written = max(self._written, slot + 1)
 
     def get(self, slot: int) -> FeatureSet:
-        """Words of one place."""
+        """Features of one node."""
         return self._packing.unpack(self._records[slot])
 
     def _mapped(self, capacity: int) -> np.memmap[tuple[int], np.dtype[np.void]]:

@@ -3,8 +3,8 @@
 import logging
 import time
 
-from services.features.matching.matching_requests import RequestError
-from services.features.places.map_cache import MapCache, MapWords
+from services.features.map_features.map_cache import CachedMap, MapCache
+from services.features.matching.requests import RequestError
 from shared.bus import Bus
 from shared.messages.maps import MapReply, MapRequest
 from shared.queries import AbsentError, RefusedError, TimedOutError
@@ -14,9 +14,11 @@ from shared.wire import WireError
 log = logging.getLogger(__name__)
 
 DELTA_WAIT_S = 0.2
+"""How long a delta may still be under way; chosen: it takes milliseconds, to read the map anew seconds."""
 PIECE = 250
-"""Places per question: 10 to 20 MB, so that neither side holds a large map twice."""
+"""Nodes per question: 10 to 20 MB, so that neither side holds a large map twice."""
 READ_TRIES = 3
+"""Readings of a map that changes meanwhile; chosen: nodes are seldom removed."""
 
 
 class MapReader:
@@ -32,7 +34,7 @@ class MapReader:
         for delta in self._deltas.take_all():
             self._cache.apply(delta)
 
-    def words(self, name: str, node_ids: tuple[int, ...], revision: int) -> MapWords:
+    def read(self, name: str, node_ids: tuple[int, ...], revision: int) -> CachedMap:
         """The map as of `revision` or later, with all of `node_ids`.
 
         A planner may ask about what it has just written before the delta gets here: a short wait, then
@@ -45,11 +47,11 @@ class MapReader:
         kept = self._cache.get(name)
         if kept is not None and kept.revision < revision:
             kept = self._await(name, revision)
-        if kept is not None and all(node_id in kept.places for node_id in node_ids):
+        if kept is not None and all(node_id in kept.nodes for node_id in node_ids):
             return kept
-        return self._read(name)
+        return self._read_whole(name)
 
-    def _await(self, name: str, revision: int) -> MapWords | None:
+    def _await(self, name: str, revision: int) -> CachedMap | None:
         """The kept map once deltas have brought it to `revision`; None if they do not come or leave a gap."""
         deadline_s = time.monotonic() + DELTA_WAIT_S
         kept = self._cache.get(name)
@@ -61,8 +63,8 @@ class MapReader:
             kept = self._cache.get(name)
         return kept
 
-    def _read(self, name: str) -> MapWords:
-        """Take over a map piece by piece; a place that goes meanwhile means: once more."""
+    def _read_whole(self, name: str) -> CachedMap:
+        """Take over a map piece by piece; a node that goes meanwhile means: once more."""
         for _ in range(READ_TRIES - 1):
             try:
                 return self._read_once(name)
@@ -73,7 +75,7 @@ class MapReader:
         except RefusedError as error:
             raise RequestError(f"map {name!r} keeps changing while it is read: {error}") from error
 
-    def _read_once(self, name: str) -> MapWords:
+    def _read_once(self, name: str) -> CachedMap:
         self._cache.drop(name)
         try:
             graph = self._ask(name, MapRequest(action="read"))
@@ -86,9 +88,9 @@ class MapReader:
             for piece in pieces
             for part in self._ask(name, MapRequest(action="read_features", node_ids=tuple(piece))).features
         )
-        words = self._cache.load(name, graph.revision, features)
+        loaded = self._cache.load(name, graph.revision, features)
         self.follow()
-        return self._cache.get(name) or words
+        return self._cache.get(name) or loaded
 
     def _ask(self, name: str, request: MapRequest) -> MapReply:
         try:

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from services.features.map_features.packing import Packing
 from services.features.pipeline.interfaces import FeatureSet
-from services.features.places.packing import Packing
 
 
 def words(descriptors: np.ndarray) -> FeatureSet:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from services.features.matching.comparison import answer, is_settled, shortlist
+from services.features.matching.ranking import answer, is_settled, shortlist
 from shared.messages.matching import NodeMatch
 
 

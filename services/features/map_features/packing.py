@@ -1,10 +1,10 @@
-"""Words of a place in half the room: four bits per number of a descriptor. Pure.
+"""Features of a node in half the room: four bits per number of a descriptor. Pure.
 
     d ~ base + step * code, code in 0..15, base and step for each descriptor
 
-The words that are looked for stay exact, only the places are packed. Root SIFT loses 0.2 % of its verified
-matches by this, TFeat 0.1, MKD 0.8, ALIKED 0.4 (`topnav study scale`), for 72 instead of 136 bytes a word of
-root SIFT. Bits are kept as they are.
+The frame that is looked for stays exact, only the nodes are packed. Root SIFT loses 0.2 % of its verified
+matches by this, TFeat 0.1, MKD 0.8, ALIKED 0.4 (`topnav study scale`), for 72 instead of 136 bytes a keypoint
+of root SIFT. Bits are kept as they are.
 """
 
 from dataclasses import dataclass
@@ -17,18 +17,21 @@ import numpy.typing as npt
 from services.features.pipeline.interfaces import Distance, FeatureSet
 
 LEVELS = 15
+"""Largest code of four bits."""
 TURN = 2.0**15 / np.pi
 """Steps of 16 bits per radian: 0.0055 degrees each."""
+TINY = 1e-6
+"""Least step, so that equal numbers do not divide by zero: below what 16 bits resolve."""
 
 Record = npt.NDArray[np.void]
 
 
 @dataclass(frozen=True)
 class Packing:
-    """How the places of one pipeline are kept.
+    """How the nodes of one pipeline are kept.
 
     Attributes:
-        keypoints: most words of a place.
+        keypoints: most keypoints of a node.
         width: numbers per descriptor, bytes where they are bits.
         dtype: of the descriptors as they come.
         distance: of the descriptors.
@@ -40,13 +43,13 @@ class Packing:
     distance: Distance
 
     @classmethod
-    def of(cls, words: FeatureSet, keypoints: int, distance: Distance) -> Self:
-        """For places with words like these, at most `keypoints` of them."""
-        return cls(keypoints, words.descriptors.shape[1], words.descriptors.dtype.name, distance)
+    def of(cls, features: FeatureSet, keypoints: int, distance: Distance) -> Self:
+        """For nodes with features like these, at most `keypoints` of them."""
+        return cls(keypoints, features.descriptors.shape[1], features.descriptors.dtype.name, distance)
 
     @cached_property
     def record(self) -> np.dtype[np.void]:
-        """Layout of one place."""
+        """Layout of one node."""
         scale, bits = ("u1" if self.dtype == "uint8" else "<f2"), self.distance == "hamming"
         fields: list[Any] = [
             ("count", "<u2"),
@@ -58,44 +61,44 @@ class Packing:
             fields += [("base", scale, (self.keypoints,)), ("step", scale, (self.keypoints,))]
         return np.dtype(fields)
 
-    def pack(self, words: FeatureSet) -> Record:
-        """One record, zero beyond the words.
+    def pack(self, features: FeatureSet) -> Record:
+        """One record, zero beyond the keypoints.
 
         Raises:
-            ValueError: more words than a record holds, or descriptors of another kind.
+            ValueError: more keypoints than a record holds, or descriptors of another kind.
         """
-        kind = (words.descriptors.shape[1], words.descriptors.dtype.name)
-        if kind != (self.width, self.dtype) or len(words) > self.keypoints:
+        kind = (features.descriptors.shape[1], features.descriptors.dtype.name)
+        if kind != (self.width, self.dtype) or len(features) > self.keypoints:
             raise ValueError(
                 f"at most {self.keypoints} descriptors of {self.width} x {self.dtype} expected, "
-                f"got {len(words)} of {kind[0]} x {kind[1]}"
+                f"got {len(features)} of {kind[0]} x {kind[1]}"
             )
         record = np.zeros((), self.record)
-        here = slice(0, len(words))
-        record["count"] = len(words)
+        here = slice(0, len(features))
+        record["count"] = len(features)
         # A full turn wraps around to where it began, as 16 bits do.
-        record["lonlat"][here] = np.rint(words.lonlat_rad.astype(np.float64) * TURN).astype(np.int32)
-        record["scores"][here] = words.scores
+        record["lonlat"][here] = np.rint(features.lonlat_rad.astype(np.float64) * TURN).astype(np.int32)
+        record["scores"][here] = features.scores
         if self.distance == "hamming":
-            record["codes"][here] = words.descriptors
-        elif len(words):
-            self._pack_numbers(record, words.descriptors, here)
+            record["codes"][here] = features.descriptors
+        elif len(features):
+            self._pack_numbers(record, features.descriptors, here)
         return record
 
     def _pack_numbers(self, record: Record, descriptors: npt.NDArray[Any], here: slice) -> None:
         numbers = descriptors.astype(np.float32)
         low, high = numbers.min(axis=1), numbers.max(axis=1)
-        steps = np.maximum((high - low) / LEVELS, np.float32(1e-6))
+        steps = np.maximum((high - low) / LEVELS, np.float32(TINY))
         record["base"][here] = low
         record["step"][here] = np.ceil(steps) if self.dtype == "uint8" else steps
         base, step = (record[name][here].astype(np.float32)[:, None] for name in ("base", "step"))
-        codes = np.clip(np.rint((numbers - base) / np.maximum(step, 1e-6)), 0, LEVELS).astype(np.uint8)
+        codes = np.clip(np.rint((numbers - base) / np.maximum(step, TINY)), 0, LEVELS).astype(np.uint8)
         even, odd = codes[:, 0::2], codes[:, 1::2]
         record["codes"][here] = even << 4
         record["codes"][here, : odd.shape[1]] |= odd
 
     def unpack(self, record: Record) -> FeatureSet:
-        """Words of a record; numbers come as float32."""
+        """Features of a record; numbers come as float32."""
         count = int(record["count"])
         lonlat = record["lonlat"][:count].astype(np.float32) / np.float32(TURN)
         codes = record["codes"][:count]

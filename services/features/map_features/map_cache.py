@@ -1,43 +1,43 @@
-"""Words of all places of the maps asked for, filled once and then kept by deltas."""
+"""Features of all nodes of the maps asked for, filled once and then kept by deltas."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from services.features.places.places import Places
+from services.features.map_features.map_features import MapFeatures
 from shared.messages.maps import AddNode, DeleteNode, MapDelta, NodeFeatures
 
 
 @dataclass
-class MapWords:
+class CachedMap:
     """One map at one revision."""
 
     revision: int
-    places: Places
+    nodes: MapFeatures
 
 
 class MapCache:
     """Maps by name. A map whose deltas leave a gap is dropped, to be read again when next asked for.
 
     Args:
-        empty: makes the places of a new map.
+        empty: makes the features of a map without nodes.
     """
 
-    def __init__(self, empty: Callable[[], Places]) -> None:
+    def __init__(self, empty: Callable[[], MapFeatures]) -> None:
         self._empty = empty
-        self._maps: dict[str, MapWords] = {}
+        self._maps: dict[str, CachedMap] = {}
 
-    def get(self, name: str) -> MapWords | None:
+    def get(self, name: str) -> CachedMap | None:
         """The map as far as it is known, None when it must be read."""
         return self._maps.get(name)
 
-    def load(self, name: str, revision: int, features: Iterable[NodeFeatures]) -> MapWords:
-        """Take over a whole map, place by place."""
-        words = MapWords(revision, self._empty())
+    def load(self, name: str, revision: int, features: Iterable[NodeFeatures]) -> CachedMap:
+        """Take over a whole map, node by node."""
+        kept = CachedMap(revision, self._empty())
         for part in features:
-            words.places.put(part.node_id, part.features)
-        words.places.prepare()
-        self._maps[name] = words
-        return words
+            kept.nodes.put(part.node_id, part.features)
+        kept.nodes.prepare()
+        self._maps[name] = kept
+        return kept
 
     def drop(self, name: str) -> None:
         """Forget a map."""
@@ -45,20 +45,20 @@ class MapCache:
 
     def apply(self, delta: MapDelta) -> None:
         """Follow one change of a map that is kept; changes already in it are skipped."""
-        words = self._maps.get(delta.map)
-        if words is None:
+        kept = self._maps.get(delta.map)
+        if kept is None:
             return
         if delta.reset:
             self.drop(delta.map)
             return
-        if delta.revision <= words.revision:
+        if delta.revision <= kept.revision:
             return
-        if delta.revision > words.revision + 1:
+        if delta.revision > kept.revision + 1:
             self.drop(delta.map)
             return
         for operation in delta.operations:
             if isinstance(operation, AddNode):
-                words.places.put(operation.node.node_id, operation.features)
+                kept.nodes.put(operation.node.node_id, operation.features)
             elif isinstance(operation, DeleteNode):
-                words.places.remove(operation.node_id)
-        words.revision = delta.revision
+                kept.nodes.remove(operation.node_id)
+        kept.revision = delta.revision

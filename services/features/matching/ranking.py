@@ -6,18 +6,17 @@ from services.features.pipeline.interfaces import IndexArray
 from shared.messages.matching import NodeMatch
 
 SHORTLIST_FACTOR = 2
-"""Candidates verified per place asked for: at 1 to 3 m about half of the raw matches are wrong,
-so the most similar places are among the first 2 k by raw count, not surely among the first k."""
+"""Candidates verified per node asked for: at 1 to 3 m half of the raw matches are wrong (decision 0003), so
+the most similar nodes are among the first 2 k by raw count, not surely among the first k."""
 
 CONSIDERED_LEAST, CONSIDERED_FACTOR = 24, 8
+"""Nodes of a large map whose features are compared, in all and per node asked for: of 400 pictures all had
+the most similar node among the first 10 by global descriptor, and 99 % of their six most similar ones among
+the first 64 (`topnav study scale`)."""
 
 
 def considered(best_k: int) -> int:
-    """Places of a large map whose words are compared, by their global descriptors.
-
-    Of 400 pictures all had the most similar place among the first 10, and 99 % of their six most similar ones
-    among the first 64 (`topnav study scale`).
-    """
+    """Nodes of a large map whose features are compared, chosen by their global descriptors."""
     return max(CONSIDERED_LEAST, CONSIDERED_FACTOR * best_k)
 
 
