@@ -13,13 +13,12 @@ from zenoh import ext
 
 from shared import queries
 from shared.access.credentials import Credentials, credentials_in
-from shared.inbox import Counters, Inbox
+from shared.inbox import Counters, Inbox, wait_until
 from shared.messages.base import Message
 from shared.queries import Request, Requests
 from shared.topics import Delivery, Query, Topic, alive_key
-from shared.transport.reconnection import PartedPeers
+from shared.transport.reconnection import PeerReconnection
 from shared.transport.session_config import client_config, peer_config
-from shared.waiting import wait_until
 from shared.wire import WireError, encode
 
 M = TypeVar("M", bound=Message)
@@ -27,8 +26,11 @@ Q = TypeVar("Q", bound=Message)
 R = TypeVar("R", bound=Message)
 
 CAPACITY = {Delivery.DATA: 1, Delivery.COMMAND: 1, Delivery.LOG: 1024, Delivery.RECOVERED: 4096}
+"""Messages that may wait: the newest alone where older ones are worthless, seconds of the others; chosen."""
 RECOVERY_CACHE = 256
+"""Deltas that a publisher sends again on demand; chosen: whoever missed more reads the map anew."""
 HEARTBEAT_S = 0.5
+"""How soon a subscriber learns that the last delta was lost; chosen."""
 
 
 class Publisher(Generic[M]):
@@ -213,7 +215,7 @@ def open_bus(endpoint: str, listen: str = "tcp/127.0.0.1:0", certs: Path | None 
         session = _secured_session(endpoint, credentials)
     bus = Bus(session)
     try:
-        with PartedPeers(session, endpoint) if credentials is None else nullcontext():
+        with PeerReconnection(session, endpoint) if credentials is None else nullcontext():
             yield bus
     finally:
         bus.close()

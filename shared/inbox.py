@@ -4,6 +4,7 @@ import logging
 import threading
 import time
 from collections import Counter, deque
+from collections.abc import Callable
 from typing import Generic, TypeVar
 
 from shared.messages.base import Message
@@ -13,7 +14,9 @@ M = TypeVar("M", bound=Message)
 log = logging.getLogger(__name__)
 
 WARN_PERIOD_S = 1.0
+"""Of one kind of fault one line a second is logged, all are counted; chosen."""
 QUEUE_BYTES = 64_000_000
+"""What may wait in one queue, in all: the longest message (topics.FRAME); decision 0022."""
 
 
 def queue_bytes(max_bytes: int) -> int:
@@ -114,3 +117,13 @@ class Inbox(Generic[M]):
             self._wake.wait(left_s)
             self._wake.clear()
         return message
+
+
+def wait_until(condition: Callable[[], bool], timeout_s: float, period_s: float = 0.02) -> bool:
+    """Poll `condition`, which nothing announces, until it holds or `timeout_s` passes; whether it held."""
+    deadline_s = time.monotonic() + timeout_s
+    while not condition():
+        if time.monotonic() > deadline_s:
+            return False
+        time.sleep(period_s)
+    return True

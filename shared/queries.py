@@ -18,8 +18,11 @@ R = TypeVar("R", bound=Message)
 log = logging.getLogger(__name__)
 
 MAX_WAITING = 256
+"""Questions of one kind that may wait; chosen: more are asked by nobody who waits for the answer."""
 MEETING_S = 1.5
+"""Two peers that were just started have met by then; chosen: a few times what gossip takes."""
 MEETING_PERIOD_S = 0.1
+"""Between two tries meanwhile; chosen."""
 CODED = "text/plain;"
 """Zenoh encoding of a refusal: after it stands its code, "" in older services."""
 
@@ -190,5 +193,5 @@ def _variable(template: str, key: str) -> str:
     wanted, found = template.split("/"), key.split("/")
     if len(wanted) != len(found):
         return ""
-    places = [place for place, part in enumerate(wanted) if part.startswith("{")]
-    return found[places[0] if places else -1]
+    variables = [index for index, part in enumerate(wanted) if part.startswith("{")]
+    return found[variables[0] if variables else -1]

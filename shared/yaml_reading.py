@@ -1,4 +1,4 @@
-"""YAML files of strangers: bounded in size, depth and references, without doubled keys. Plain data only."""
+"""YAML files from outside: bounded in size, depth and references, without doubled keys. Plain data only."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,8 +8,11 @@ import yaml
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # LibYAML's is much faster, where it is built in
 MOST_BYTES = 2_000_000
+"""Chosen: a hundred times the longest world that comes along."""
 MOST_VALUES = 200_000
+"""Chosen: read in three seconds; a bomb of references asks for billions (tests/yaml_bomb.py)."""
 MOST_DEPTH = 30
+"""Chosen: no file of ours is deeper than ten."""
 
 
 class YamlFileError(ValueError):

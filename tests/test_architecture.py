@@ -53,7 +53,6 @@ IMPURE_OURS = {
     "shared.transport.reconnection",
     "shared.queries",
     "shared.settings",
-    "shared.waiting",
 }
 FORBIDDEN = {
     "planner": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},

@@ -7,6 +7,7 @@ from threading import Event
 import cv2
 
 from services.features.frame_cache import FrameKey
+from services.features.freed_memory import keep_freed_memory
 from services.features.map_features.map_cache import CachedMap, MapCache
 from services.features.map_features.map_features import MapFeatures
 from services.features.map_features.map_reader import MapReader
@@ -21,7 +22,6 @@ from services.features.pipeline.pipeline import Pipeline
 from services.features.robot_streams import RobotStreams
 from services.features.settings import FeaturesSettings
 from shared.bus import Bus, Request
-from shared.freed_memory import keep_freed_memory
 from shared.messages.features import ExtractRequest, Features
 from shared.messages.matching import MatchReply, MatchRequest
 from shared.messages.sensors import Frame

@@ -30,7 +30,7 @@ class Latch:
     def __init__(self, robot: str, folder: Path) -> None:
         self._path = folder / f"estop-{robot}.json"
         self._saved = True
-        self._doubtful = False
+        self._unreadable = False
         self.state = self._read(robot)
 
     def engage(self, who: str, why: str, since_ns: int) -> None:
@@ -51,7 +51,7 @@ class Latch:
             return
         cleared = self._changed(self.state, engaged=False, who=who.strip(), why=why, since_ns=since_ns)
         self._write(cleared)
-        self.state, self._saved, self._doubtful = cleared, True, False
+        self.state, self._saved, self._unreadable = cleared, True, False
 
     def learn(self, robots: EStopState) -> bool:
         """Drive hears what the robot holds; returns whether this changed anything here.
@@ -79,16 +79,16 @@ class Latch:
         """
         count = _count(drives)
         if drives.engaged:
-            if self.state.engaged and not self._doubtful and count <= self.state.seq:
+            if self.state.engaged and not self._unreadable and count <= self.state.seq:
                 return False
             self._become(drives, seq=max(count, self.state.seq + (not self.state.engaged)))
-        elif self._doubtful:
+        elif self._unreadable:
             self._become(self.state, seq=max(count, self.state.seq) + 1)
         elif count > self.state.seq and (drives.who or not self.state.engaged):
             self._become(drives, seq=count)
         else:
             return False
-        self._doubtful = False
+        self._unreadable = False
         return True
 
     def save(self) -> None:
@@ -114,7 +114,7 @@ class Latch:
             return EStopState(robot=robot, engaged=False)
         except (OSError, ValidationError) as error:
             log.error("%s: %s: engaged", self._path, str(error)[:200])
-            self._doubtful = True
+            self._unreadable = True
             return EStopState(robot=robot, engaged=True, why=UNREADABLE)
 
     def _write(self, state: EStopState) -> None:

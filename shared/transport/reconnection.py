@@ -16,20 +16,25 @@ from typing import Any, Self
 
 import zenoh
 
+from shared.inbox import wait_until
 from shared.transport.session_config import peer_config
-from shared.waiting import wait_until
 
 log = logging.getLogger(__name__)
 
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 0.5, 16.0
-"""Pauses double from one introduction to the next: the other process may stand still a while longer."""
+"""Pauses double from one introduction to the next: the other process may stand still a while longer
+(decision 0027)."""
 GIVE_UP_S = 600.0
+"""Ten minutes: who is away for longer is taken for gone (chosen, decision 0027)."""
 MEET_S = 2.0
+"""Longest life of a second session; chosen: those who live answered after 1.2 s at the latest, pause and all
+(`python -m tests.faults.short_freezes`)."""
 CONNECT_S = 0.5
+"""A port of a machine that is there refuses or accepts within this; chosen."""
 
 
 @dataclass
-class Parted:
+class LostPeer:
     """A peer whose link was lost: its end of the link, when to look for it next, and the pause after that."""
 
     locator: str
@@ -38,17 +43,17 @@ class Parted:
     pause_s: float = FIRST_PAUSE_S
 
 
-class PartedPeers:
+class PeerReconnection:
     """Looks for the peers that `session` had dialled and lost, until they are back or gone."""
 
     def __init__(self, session: zenoh.Session, endpoint: str) -> None:
         self._info, self._endpoint = session.info, endpoint
-        self._parted: dict[str, Parted] = {}
+        self._lost: dict[str, LostPeer] = {}
         self._changed = threading.Condition()
         self._closing = False
-        lost: Any = zenoh.handlers.Callback(self._keep, indirect=False)
-        self._listener = self._info.declare_link_events_listener(lost)
-        self._thread = threading.Thread(target=self._run, name="parted-peers", daemon=True)
+        on_link: Any = zenoh.handlers.Callback(self._note_loss, indirect=False)
+        self._listener = self._info.declare_link_events_listener(on_link)
+        self._thread = threading.Thread(target=self._run, name="peer-reconnection", daemon=True)
         self._thread.start()
 
     def __enter__(self) -> Self:
@@ -63,17 +68,17 @@ class PartedPeers:
         self._listener.undeclare()  # type: ignore[no-untyped-call]
 
     @property
-    def looked_for(self) -> list[str]:
+    def lost(self) -> list[str]:
         """Session ids of the peers that were lost and neither came back nor are known to be gone."""
         with self._changed:
-            return list(self._parted)
+            return list(self._lost)
 
-    def _keep(self, event: zenoh.LinkEvent) -> None:
+    def _note_loss(self, event: zenoh.LinkEvent) -> None:
         if event.kind == zenoh.SampleKind.DELETE:
             now_s = time.monotonic()
             with self._changed:
-                lost = Parted(event.link.dst, now_s + FIRST_PAUSE_S, now_s + GIVE_UP_S)
-                self._parted[str(event.link.zid)] = lost
+                lost = LostPeer(event.link.dst, now_s + FIRST_PAUSE_S, now_s + GIVE_UP_S)
+                self._lost[str(event.link.zid)] = lost
                 self._changed.notify()
 
     def _run(self) -> None:
@@ -84,24 +89,24 @@ class PartedPeers:
                 log.info("lost without having ended, introduced anew: %s", ", ".join(away))
                 self._introduce(away)
 
-    def _wait_for_due(self) -> dict[str, Parted] | None:
+    def _wait_for_due(self) -> dict[str, LostPeer] | None:
         """The peers to look for now; None when closing."""
         with self._changed:
             while not self._closing:
                 now_s = time.monotonic()
-                if due := {zid: peer for zid, peer in self._parted.items() if peer.next_s <= now_s}:
+                if due := {zid: peer for zid, peer in self._lost.items() if peer.next_s <= now_s}:
                     return due
-                next_s = min((peer.next_s for peer in self._parted.values()), default=None)
+                next_s = min((peer.next_s for peer in self._lost.values()), default=None)
                 self._changed.wait(None if next_s is None else next_s - now_s)
         return None
 
-    def _is_away(self, zid: str, peer: Parted) -> bool:
+    def _is_away(self, zid: str, peer: LostPeer) -> bool:
         """Whether it is not heard and may still listen where it did; otherwise it is forgotten."""
         now_s = time.monotonic()
         if self._hears(zid) or now_s > peer.give_up_s or refused(peer.locator):
             with self._changed:
-                if self._parted.get(zid) is peer:
-                    del self._parted[zid]
+                if self._lost.get(zid) is peer:
+                    del self._lost[zid]
             return False
         peer.pause_s = min(2.0 * peer.pause_s, LONGEST_PAUSE_S)
         peer.next_s = now_s + peer.pause_s

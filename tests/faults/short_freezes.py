@@ -95,7 +95,7 @@ def running() -> Iterator[Peers]:
 
 def freeze_often(peers: Peers, freezes: int, least_s: float, most_s: float, rng: random.Random) -> dict:
     """Stop one after the other for a while; how often somebody stayed deaf, and the slowest to meet again."""
-    parted, slowest_s = [], 0.0
+    cut_off, slowest_s = [], 0.0
     for _ in range(freezes):
         victim, frozen_s = rng.randrange(PEERS), rng.uniform(least_s, most_s)
         pid = peers.processes[victim].pid
@@ -107,11 +107,11 @@ def freeze_often(peers: Peers, freezes: int, least_s: float, most_s: float, rng:
         if peers.meet(MEET_S):
             slowest_s = max(slowest_s, time.monotonic() - since_s)
         else:
-            parted.append({"frozen_s": round(frozen_s, 2), "victim": victim, "deaf": peers.deaf()})
+            cut_off.append({"frozen_s": round(frozen_s, 2), "victim": victim, "deaf": peers.deaf()})
             peers.replace(victim)
             peers.meet(START_S)
         time.sleep(rng.uniform(0.2, 1.0))
-    return {"freezes": freezes, "parted": parted, "slowest_s": round(slowest_s, 2)}
+    return {"freezes": freezes, "cut_off": cut_off, "slowest_s": round(slowest_s, 2)}
 
 
 def main() -> None:
@@ -131,7 +131,7 @@ def main() -> None:
     sys.stdout.write(json.dumps(report, indent=1) + "\n")
     if chosen.json is not None:
         chosen.json.write_text(json.dumps(report))
-    raise SystemExit(1 if report["parted"] else 0)
+    raise SystemExit(1 if report["cut_off"] else 0)
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ START_S, ANSWER_S = 60.0, 30.0
 
 
 @pytest.fixture
-def parted(repository, tmp_path, free_port):
+def store_behind_proxy(repository, tmp_path, free_port):
     """An asker, the proxy between, the map store, and its file."""
     with behind_a_proxy(free_port(), f"tcp/127.0.0.1:{free_port()}") as (bus, proxy):
         store = Process(repository, tmp_path, proxy.endpoint, free_port())
@@ -61,8 +61,8 @@ def revision(file):
 
 
 @pytest.mark.parametrize("killed", [False, True], ids=["connection", "map store"])
-def test_a_write_whose_answer_is_lost_is_done_once(parted, killed):
-    bus, proxy, store, file = parted
+def test_a_write_whose_answer_is_lost_is_done_once(store_behind_proxy, killed):
+    bus, proxy, store, file = store_behind_proxy
     bus.ask(MAP, MapRequest(action="create"), ANSWER_S, map="m")
     bus.ask(MAP, MapRequest(action="transact", operations=(place(0), place(1))), ANSWER_S, map="m")
     proxy.lose()

@@ -10,8 +10,8 @@ import pytest
 import zenoh
 
 from shared.bus import Bus, open_bus, wait_until
-from shared.transport import reconnection as parted_peers
-from shared.transport.reconnection import PartedPeers, refused
+from shared.transport import reconnection
+from shared.transport.reconnection import PeerReconnection, refused
 from shared.transport.session_config import peer_config
 
 SOON_S = 30.0
@@ -59,16 +59,16 @@ def test_a_peer_that_ended_is_not_looked_for_long(
     router_endpoint: str, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ):
     caplog.set_level("INFO", logger="shared.transport.reconnection")
-    monkeypatch.setattr(parted_peers, "FIRST_PAUSE_S", 3.0)  # a busy machine takes a while to close a session
+    monkeypatch.setattr(reconnection, "FIRST_PAUSE_S", 3.0)  # a busy machine takes a while to close a session
     with (
         zenoh.open(peer_config(router_endpoint)) as session,
-        PartedPeers(session, router_endpoint) as parted,
+        PeerReconnection(session, router_endpoint) as peers,
     ):
         for _ in range(4):  # of two peers the one with the greater id dials: about half of these were dialled
             with zenoh.open(peer_config(router_endpoint)) as other:
                 assert wait_until(lambda: other.info.zid() in session.info.peers_zid(), SOON_S)
-            assert wait_until(lambda: parted.looked_for, SOON_S)
-        assert wait_until(lambda: not parted.looked_for, SOON_S)
+            assert wait_until(lambda: peers.lost, SOON_S)
+        assert wait_until(lambda: not peers.lost, SOON_S)
     assert "introduced anew" not in caplog.text
 
 

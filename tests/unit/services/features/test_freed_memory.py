@@ -8,7 +8,7 @@ import pytest
 FAULTS = """
 import platform, resource, sys
 import numpy as np
-from shared.freed_memory import keep_freed_memory
+from services.features.freed_memory import keep_freed_memory
 if platform.libc_ver()[0] != "glibc":
     print("other"); sys.exit()
 if sys.argv[1] == "keep":
