@@ -3,6 +3,7 @@
 import logging
 import threading
 import time
+from collections import deque
 from pathlib import Path
 
 from shared.bus import Bus
@@ -12,7 +13,6 @@ from shared.sole_robot import SoleRobot
 from shared.topics import COMMAND, FRAME, RANGES, SIMULATION, TRUTH
 from simulator.experimenter import Experimenter, RequestError
 from simulator.outbox import MessageMaker
-from simulator.robot.command_age import CommandAge
 from simulator.service_settings import SimulatorSettings
 from simulator.simulation import Simulation
 from simulator.world.world_file import WorldFile
@@ -20,7 +20,29 @@ from simulator.world.world_file import WorldFile
 log = logging.getLogger(__name__)
 
 REAL_TIME_STEP_S = 0.02
-CATCH_UP_S = 0.5  # time lost beyond this (a suspended process) is dropped, not driven through
+"""Longest wait between two steps in real time; chosen: two timesteps of the physics."""
+CATCH_UP_S = 0.5
+"""Time lost beyond this (a suspended process) is dropped, not driven through; chosen: a command's ttl."""
+MOST_AGE_S = 3.0
+"""A frame becomes a command within this: what drive allows for deciding, 2 s and a heading's life of 0.5 s,
+and a little more. The answer to an older one was held up: the robot is elsewhere (decision 0019)."""
+
+
+class CommandAge:
+    """How old a command is, counted in the robot's own frames: no clock of another machine has a say."""
+
+    def __init__(self) -> None:
+        self._sent: deque[tuple[int, float]] = deque()
+
+    def sent(self, seq: int, now_s: float) -> None:
+        """Note when one frame went out, monotonic seconds."""
+        self._sent.append((seq, now_s))
+
+    def recent(self, seq: int, now_s: float) -> bool:
+        """Whether frame `seq` went out lately. One that never went out is of a robot before a restart."""
+        while len(self._sent) > 1 and now_s - self._sent[0][1] > MOST_AGE_S:
+            self._sent.popleft()
+        return bool(self._sent) and self._sent[0][0] <= seq <= self._sent[-1][0]
 
 
 class Ports:

@@ -8,17 +8,15 @@ import numpy as np
 import numpy.typing as npt
 
 from simulator.disturbances.camera import Moment
-from simulator.disturbances.outlines import combined
 from simulator.disturbances.rearranging import rearranged
 from simulator.disturbances.walking import Crowd, crowd_of
-from simulator.robot.physics_scene import PhysicsScene
+from simulator.robot.physics_scene import Bodies, PhysicsScene
 from simulator.sensors.ranges import measure, sensor_angles_rad
 from simulator.settings import SimulationSettings
-from simulator.world.bodies import Bodies
 from simulator.world.changes import ChangeError, Changes, changed_world, with_item, with_obstacle
+from simulator.world.contents import expand
 from simulator.world.footprints import clearance_m, footprints
 from simulator.world.freespace import BODY_BAND_M, free_space
-from simulator.world.scene_parts import expand
 from simulator.world.world_file import WorldFile
 
 if TYPE_CHECKING:
@@ -131,7 +129,7 @@ class Simulation:
         """Distances of the twelve sensors, metres; every call is a new reading with its own noise."""
         rng = np.random.default_rng([self._seed, self._readings])
         self._readings += 1
-        shapes = combined(self._shapes, self._crowd.outlines()) if self._walkers else self._shapes
+        shapes = self._shapes.with_walkers(self._crowd.outlines()) if self._walkers else self._shapes
         return measure(*self._physics.robot.pose(), shapes, self.settings.ranges, rng)
 
     def steer_angles_rad(self) -> list[float]:

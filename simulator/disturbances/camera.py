@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 
 from simulator.disturbances.exposure import exposed, stops
-from simulator.disturbances.levels import Disturbances
+from simulator.disturbances.levels import Disturbances, generator
 from simulator.disturbances.noise import noisy
 from simulator.disturbances.rain import rained
-from simulator.disturbances.seeds import generator
 from simulator.sensors.panorama import Image
 
 NIGHT_NOISE = 0.35  # a camera that has little light turns its gain up

@@ -5,7 +5,7 @@ import math
 import cv2
 import numpy as np
 
-from simulator.disturbances.seeds import generator
+from simulator.disturbances.levels import generator
 from simulator.sensors.panorama import Image
 
 STOPS = 2.0  # of the largest error, at level 1: four times too bright or too dark

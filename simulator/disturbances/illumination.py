@@ -8,10 +8,9 @@ was daylight. Shadows and gradients therefore change, as they really do, not jus
 from dataclasses import replace
 from typing import Any
 
-from simulator.scene.parts import Light, Material, Part
+from simulator.scene.parts import Contents, Light, Material
 from simulator.world.world_file import WorldFile
 
-Contents = tuple[tuple[Part, ...], tuple[Light, ...]]
 Rgb = tuple[float, float, float]
 LAMP_SHARE = 0.3  # of the even light
 DARKEST_VIEW = 0.05

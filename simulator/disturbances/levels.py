@@ -1,7 +1,8 @@
-"""How strongly each disturbance acts: one level each, 0 (off) to 1, and the text form that sets them."""
+"""How strongly each disturbance acts: one level each, 0 (off) to 1, its text form, and the seeded draws."""
 
 from typing import Any, Self
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 HOW = 'write them as "fog=0.5,noise=0.3"'
@@ -55,6 +56,13 @@ class Disturbances(BaseModel):
     def text(self) -> str:
         """The text form; levels of 0 are left out."""
         return ",".join(f"{name}={level:g}" for name, level in self if level)
+
+
+def generator(seed: int, purpose: str, *numbers: float) -> np.random.Generator:
+    """The same arguments give the same draws, whatever was drawn before; numbers count in millionths."""
+    return np.random.default_rng(
+        [seed, *purpose.encode(), *(round(number * 1e6) % 2**32 for number in numbers)]
+    )
 
 
 def _levels(text: str) -> dict[str, float]:

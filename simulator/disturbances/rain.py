@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from simulator.disturbances.seeds import generator
+from simulator.disturbances.levels import generator
 from simulator.sensors.panorama import Image
 
 STREAKS = 1800  # at level 1

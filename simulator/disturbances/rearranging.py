@@ -8,15 +8,14 @@ import math
 
 import numpy as np
 
-from simulator.disturbances.seeds import generator
+from simulator.disturbances.levels import generator
 from simulator.furniture.catalogue import FURNITURE
 from simulator.scene.mesh_shapes import mesh_of
-from simulator.scene.parts import Part, moved
-from simulator.scene.surface_points import surface_points
+from simulator.scene.meshes import surface_points
 from simulator.world.changes import Changes, at_pose, changed_world, item_names
+from simulator.world.contents import expand, placed
 from simulator.world.footprints import Footprints, clearance_m, footprints
 from simulator.world.freespace import BODY_BAND_M, FreeSpace, free_space
-from simulator.world.scene_parts import expand
 from simulator.world.world_file import Item, WorldFile
 
 LARGEST_M = 1.3
@@ -99,18 +98,13 @@ def _moved(
 
 def _fits(world: WorldFile, item: Item, standing: Footprints) -> bool:
     """Whether an item touches no outline, stands on floor and leaves the start free."""
-    solids = [part for part in _parts(item) if part.solid]
+    solids = [part for part in placed(item).parts if part.solid]
     points = np.concatenate([surface_points(mesh_of(part), SPACING_M) for part in solids])[:, :2]
     if not all(world.holds(x_m, y_m) for x_m, y_m in points.tolist()):
         return False
     if np.hypot(*(points - [world.start.x_m, world.start.y_m]).T).min() < START_M:
         return False
     return bool(clearance_m(points, standing).min() > 0.0)
-
-
-def _parts(item: Item) -> tuple[Part, ...]:
-    piece = FURNITURE[item.kind].build(item.options, item.seed)
-    return moved(piece, *item.at_m, math.radians(item.yaw_deg), item.z_m).parts
 
 
 def _reachable(world: WorldFile) -> float:

@@ -2,7 +2,7 @@
 
 import math
 
-from simulator.disturbances.seeds import generator
+from simulator.disturbances.levels import generator
 
 MOST_RAD = math.radians(5.0)  # constant and sway together, at level 1
 SWAY_SHARE = 0.3

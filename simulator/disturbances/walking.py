@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from simulator.disturbances.levels import generator
 from simulator.disturbances.people import Figure, cart, person
 from simulator.disturbances.routes import STEP_M, FloatArray, closed_route
-from simulator.disturbances.seeds import generator
 from simulator.scene.parts import Piece, moved
 from simulator.world.footprints import Footprints, clearance_m, footprints
 from simulator.world.freespace import BODY_BAND_M, FreeSpace, Point

@@ -1,50 +1,35 @@
-"""Furniture kinds by name. A kind is a function whose keyword arguments, with defaults, are its options."""
+"""Furniture kinds by name: every function in this folder that makes a `Piece`.
+
+Its keyword arguments, with defaults, are the options of the kind. What no furniture needs is refused before
+anything is built.
+"""
 
 import inspect
+import math
+import pkgutil
+import reprlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from importlib import import_module
 from typing import Any, Literal
 
 import numpy as np
 from pydantic import ConfigDict, ValidationError, validate_call
 
+from simulator import furniture
 from simulator.assets.folder import AssetFolder
-from simulator.furniture import (
-    basket,
-    bench,
-    bookshelf,
-    chair,
-    clock,
-    coat_rack,
-    coffee_table,
-    console,
-    curtained_window,
-    door,
-    house,
-    industry,
-    lamps,
-    loads,
-    lorries,
-    mesh,
-    office,
-    paintings,
-    panels,
-    pantry,
-    plant,
-    radiator,
-    rug,
-    seating,
-    shoe_cabinet,
-    sideboard,
-    street,
-    table,
-    television,
-    trees,
-    vehicles,
-)
 from simulator.scene.parts import Piece
-from simulator.world.option_limits import MOST_PARTS, MOST_SIZE_M, check_value, short
+
+# Bounds on what a world file may ask for: untrusted input. All chosen, several times what our worlds have.
+MOST_NUMBER = 1000.0
+MOST_COUNT = 200  # shelves, doors, leaves
+MOST_LENGTH_M = 100.0
+MOST_VALUES = 100
+MOST_TEXT = 200
+MOST_DEPTH = 3
+MOST_PARTS = 3000
+MOST_SIZE_M = 400.0
 
 FileKind = Literal["model", "picture"]
 
@@ -89,13 +74,13 @@ class Kind:
                 f"{self.name} has no option {', '.join(unknown)[:80]}; it has {', '.join(known) or 'none'}"
             )
         for name, value in options.items():
-            check_value(f"{self.name} options: {name}", value)
+            _check_value(f"{self.name} options: {name}", value)
         try:
             with np.errstate(divide="raise", invalid="raise"):
                 piece = self.build(options, 0)
         except ValidationError as error:
             faults = "; ".join(
-                f"{e['loc'][0]}: {e['msg']}, got {short(e['input'])}" for e in error.errors() if e["loc"]
+                f"{e['loc'][0]}: {e['msg']}, got {_short(e['input'])}" for e in error.errors() if e["loc"]
             )
             raise ValueError(f"{self.name} options: {faults or error}") from error
         except (ArithmeticError, LookupError, TypeError, ValueError) as error:
@@ -118,72 +103,42 @@ class Kind:
         return self._checked(np.random.default_rng([seed, *self.name.encode()]), **options)
 
 
-FURNITURE: dict[str, Kind] = {
-    function.__name__: Kind(function.__name__, function)
-    for function in (
-        seating.sofa,
-        seating.armchair,
-        seating.pouf,
-        table.dining_table,
-        chair.chair,
-        coffee_table.coffee_table,
-        bookshelf.bookshelf,
-        bench.tv_bench,
-        television.television,
-        sideboard.sideboard,
-        console.console_table,
-        rug.rug,
-        paintings.picture,
-        lamps.ceiling_light,
-        lamps.floor_lamp,
-        lamps.table_lamp,
-        curtained_window.window,
-        door.door,
-        plant.plant,
-        radiator.radiator,
-        coat_rack.coat_rack,
-        shoe_cabinet.shoe_cabinet,
-        panels.thermostat,
-        panels.switch,
-        panels.fuse_box,
-        panels.mirror,
-        clock.clock,
-        basket.basket,
-        pantry.kitchen_counter,
-        pantry.fridge,
-        pantry.vending_machine,
-        pantry.water_cooler,
-        office.office_chair,
-        office.round_table,
-        office.whiteboard,
-        office.notice_board,
-        office.lockers,
-        office.copier,
-        office.recycling_bins,
-        house.house,
-        trees.tree,
-        trees.hedge,
-        trees.flower_bed,
-        street.street_light,
-        street.bus_stop,
-        street.park_bench,
-        street.litter_bin,
-        street.mailbox,
-        street.fountain,
-        vehicles.car,
-        lorries.truck,
-        lorries.forklift,
-        loads.pallet_stack,
-        loads.drums,
-        loads.container,
-        industry.machine_tool,
-        industry.press,
-        industry.workbench,
-        industry.pallet_rack,
-        industry.pallet_pile,
-        industry.conveyor,
-        industry.hall_lamp,
-        industry.bollard,
-        industry.floor_mark,
-    )
-} | {"mesh": Kind("mesh", mesh.mesh, {"file": "model", "texture": "picture"})}
+def _check_value(name: str, value: object, depth: int = 0) -> None:
+    """Raise ValueError if an option holds a number out of bounds, or too much."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        if not (math.isfinite(value) and abs(value) <= MOST_NUMBER):
+            raise ValueError(f"{name}: must be a number within +-{MOST_NUMBER:g}, got {_short(value)}")
+        if depth == 0 and isinstance(value, int) and abs(value) > MOST_COUNT:
+            raise ValueError(f"{name}: must be at most {MOST_COUNT}, got {_short(value)}")
+        if name.endswith("_m") and not 0 <= value <= MOST_LENGTH_M:
+            raise ValueError(f"{name}: must be a length of 0 to {MOST_LENGTH_M:g} m, got {_short(value)}")
+    elif isinstance(value, str):
+        if len(value) > MOST_TEXT:
+            raise ValueError(f"{name}: must have at most {MOST_TEXT} characters, got {len(value)}")
+    elif isinstance(value, list | tuple | dict):
+        if len(value) > MOST_VALUES or depth > MOST_DEPTH:
+            raise ValueError(f"{name}: must hold at most {MOST_VALUES} values, got {_short(value)}")
+        for one in value.values() if isinstance(value, dict) else value:
+            _check_value(name, one, depth + 1)
+
+
+def _short(value: object) -> str:
+    """Representation of a value, cut to a line."""
+    return reprlib.repr(value)[:80]
+
+
+def _kinds() -> dict[str, Kind]:
+    """All functions beside this file that make a `Piece`; FILES of a module are options that name files."""
+    found = {}
+    for entry in pkgutil.iter_modules(furniture.__path__):
+        if entry.name == "catalogue":
+            continue
+        module = import_module(f"{furniture.__name__}.{entry.name}")
+        for name, function in inspect.getmembers(module, inspect.isfunction):
+            own = function.__module__ == module.__name__
+            if own and inspect.signature(function).return_annotation is Piece:
+                found[name] = Kind(name, function, getattr(module, "FILES", {}))
+    return found
+
+
+FURNITURE = _kinds()

@@ -9,12 +9,13 @@ from pydantic import InstanceOf
 
 from simulator.assets.model import AssetError, Model, Patch, UpAxis
 from simulator.scene.mesh_shapes import GRAIN_M
-from simulator.scene.meshes import Mesh, joined
+from simulator.scene.meshes import Mesh, joined, refined
 from simulator.scene.parts import Geometry, Material, Part, Picture, Piece
 from simulator.scene.prisms import SKIN_M, Prism, hull_outline, prisms_of
-from simulator.scene.refine import refined
 
 FloatArray = npt.NDArray[np.float64]
+FILES = {"file": "model", "texture": "picture"}
+"""Options that name files, see catalogue."""
 Collision = Literal["convex", "box", "none"]
 Sides = tuple[float | None, float | None, float | None]
 SMALLEST_M, LARGEST_M = 0.005, 100.0

@@ -5,6 +5,7 @@ survives, which makes equal seeds and commands give bit-equal poses.
 """
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import sapien
@@ -18,6 +19,16 @@ from simulator.world.footprints import hull_corners_m
 TOUCH_N_S = 1e-6
 EPISODE_GAP_S = 0.5
 THRESHOLD_M = 0.02  # hulls below this are neither felt by the distance sensors nor hit by the robot
+Pose2 = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """Poses of the robot's links by name, of the hider if there is one, and of all walkers."""
+
+    links: dict[str, sapien.Pose]
+    hider: Pose2 | None
+    walkers: list[Pose2]
 
 
 class PhysicsScene:
@@ -28,7 +39,7 @@ class PhysicsScene:
         parts: tuple[Part, ...],
         settings: RobotSettings,
         timestep_s: float,
-        pose: tuple[float, float, float],
+        pose: Pose2,
     ) -> None:
         """Build everything with the robot at a pose, at rest."""
         config = physx.PhysxSceneConfig()
@@ -54,7 +65,7 @@ class PhysicsScene:
     def move_walker(
         self,
         walker: physx.PhysxRigidDynamicComponent,
-        pose: tuple[float, float, float],
+        pose: Pose2,
         at_once: bool = False,
     ) -> None:
         """Where a walker is after the next step, or, `at_once`, now."""

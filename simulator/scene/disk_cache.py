@@ -1,5 +1,7 @@
 """Arrays kept on disk between starts: written whole or not at all, checked on reading, bounded in size.
 
+A key is a hash of everything that decides an entry, the code and its libraries included.
+
 An entry is one file, `<key>.npys`: the arrays one after another in NumPy's own format, then the SHA-256 of
 the key and of all that. Whatever does not carry the right seal, cut short, overwritten or renamed, counts as
 missing: it is computed anew and replaced. Nothing is unpickled.
@@ -12,20 +14,37 @@ import os
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+import cv2
 import numpy as np
 import numpy.typing as npt
 
 log = logging.getLogger(__name__)
 
 Arrays = Sequence[npt.NDArray[Any]]
+FORMAT = "topnav-cache/1"
 SUFFIX, PARTIAL = ".npys", ".partial"
 SEAL_BYTES = 32
 ABANDONED_S = 60.0  # a file still partial after this belongs to a process that was killed
+
+
+def fingerprint(*parts: object) -> str:
+    """Hexadecimal SHA-256 of the `repr` of the parts: strings, numbers and frozen dataclasses of them."""
+    digest = hashlib.sha256(FORMAT.encode())
+    for part in parts:
+        text = repr(part).encode()
+        digest.update(len(text).to_bytes(8, "little") + text)
+    return digest.hexdigest()
+
+
+def code_fingerprint(files: Iterable[Path]) -> str:
+    """Fingerprint of source files and of the libraries that they draw and compute with."""
+    sources = [(path.name, path.read_bytes()) for path in sorted(files)]
+    return fingerprint(cv2.__version__, np.__version__, sources)
 
 
 class DiskCache:

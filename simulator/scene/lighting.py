@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from simulator.scene.meshes import surface_points
 from simulator.scene.parts import Light, Part, rotation_of
-from simulator.scene.surface_points import surface_points
 
 FloatArray = npt.NDArray[np.float32]
 CELL_M = 0.06

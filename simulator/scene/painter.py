@@ -8,8 +8,7 @@ from types import TracebackType
 from typing import Self
 
 from simulator import textures
-from simulator.scene.disk_cache import DiskCache
-from simulator.scene.fingerprint import code_fingerprint, fingerprint
+from simulator.scene.disk_cache import DiskCache, code_fingerprint, fingerprint
 from simulator.scene.parts import Material, Picture
 from simulator.textures.catalogue import draw
 from simulator.textures.noise import Image

@@ -98,6 +98,10 @@ class Piece:
     lights: tuple[Light, ...] = field(default=())
 
 
+Contents = tuple[tuple[Part, ...], tuple[Light, ...]]
+"""All parts and lights of a world, see world.contents.expand."""
+
+
 def moved(piece: Piece, x_m: float, y_m: float, yaw_rad: float, z_m: float = 0.0) -> Piece:
     """Place a piece given in its own frame at a pose in the world."""
     rotation = rotation_z(yaw_rad)

@@ -14,7 +14,7 @@ from simulator.scene.disk_cache import DiskCache
 from simulator.scene.mesh_shapes import mesh_of
 from simulator.scene.meshes import Mesh
 from simulator.scene.painter import Look, Painter, look_of
-from simulator.scene.parts import Light, Material, Part
+from simulator.scene.parts import Contents, Light, Material, Part
 from simulator.scene.sky import RADIUS_M, backdrop, sunlight
 from simulator.scene.static_scene import by_material, lit_meshes
 from simulator.sensors.panorama import BORDER_PX, CubeToEquirect, Image, face_fov_rad, face_rotations
@@ -52,7 +52,7 @@ class RenderScene:
     def __init__(
         self,
         world: WorldFile,
-        contents: tuple[tuple[Part, ...], tuple[Light, ...]],
+        contents: Contents,
         camera: CameraSettings,
         painter: Painter,
         cache: DiskCache,
@@ -62,7 +62,7 @@ class RenderScene:
 
         Args:
             world: the world file.
-            contents: its parts and lights, see scene_parts.expand.
+            contents: its parts and lights, see world.contents.expand.
             camera: picture size and place of the camera.
             painter: draws textures, for this and for every body added later.
             cache: keeps meshes and their light.
@@ -82,7 +82,7 @@ class RenderScene:
     def change_static(
         self,
         world: WorldFile,
-        contents: tuple[tuple[Part, ...], tuple[Light, ...]],
+        contents: Contents,
         painter: Painter,
         cache: DiskCache,
     ) -> None:

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from simulator.scene.disk_cache import DiskCache
-from simulator.scene.fingerprint import code_fingerprint, fingerprint
+from simulator.scene.disk_cache import DiskCache, code_fingerprint, fingerprint
 from simulator.scene.lighting import Sunlight, bake
 from simulator.scene.mesh_shapes import mesh_of
 from simulator.scene.meshes import FloatArray, Mesh, facing_any, joined

@@ -5,16 +5,17 @@ import sapien
 from simulator.disturbances.blur import Motion, mean_picture, poses_of
 from simulator.disturbances.camera import Moment, degraded
 from simulator.disturbances.fog import fog_of
-from simulator.disturbances.illumination import Contents, body_brightness, illuminated, view_brightness
+from simulator.disturbances.illumination import body_brightness, illuminated, view_brightness
 from simulator.disturbances.people import Figure
 from simulator.disturbances.tilt import tilt_of
+from simulator.robot.physics_scene import Bodies
 from simulator.robot.robot_shape import HIDER, SEEKER, chassis_parts, leg_parts, wheel_parts, whole_robot
 from simulator.scene.disk_cache import DiskCache
 from simulator.scene.painter import Painter
+from simulator.scene.parts import Contents
 from simulator.scene.render_scene import RenderScene
 from simulator.sensors.panorama import Image
 from simulator.settings import SimulationSettings
-from simulator.world.bodies import Bodies
 from simulator.world.world_file import WorldFile
 
 Pose2 = tuple[float, float, float]
@@ -30,7 +31,7 @@ class View:
 
         Args:
             world: the world file.
-            contents: its parts and lights, see scene_parts.expand.
+            contents: its parts and lights, see world.contents.expand.
             settings: camera, robot, cache and levels of the disturbances.
             figures: people and carts, in the order in which `Bodies` has their poses.
         """

@@ -1,5 +1,6 @@
 """Texture kinds by name, and `draw`, the one way to get a picture of a material."""
 
+import inspect
 from collections.abc import Callable
 
 import numpy as np
@@ -8,49 +9,12 @@ from simulator.textures import materials, objects, outdoors, pictures, rugs, sur
 from simulator.textures.noise import Image, Rgb
 
 KINDS: dict[str, Callable[[np.random.Generator, Rgb], Image]] = {
-    function.__name__: function
-    for function in (
-        surfaces.plaster,
-        surfaces.ceiling,
-        surfaces.boards,
-        surfaces.tiles,
-        materials.wood,
-        materials.fabric,
-        materials.leather,
-        materials.pattern_cloth,
-        materials.metal,
-        materials.lacquer,
-        materials.ceramic,
-        materials.leaf,
-        materials.wicker,
-        materials.glow,
-        pictures.landscape,
-        pictures.abstract,
-        pictures.still_life,
-        pictures.street,
-        pictures.poster,
-        outdoors.asphalt,
-        outdoors.grass,
-        outdoors.paving,
-        outdoors.bricks,
-        outdoors.roof_tiles,
-        outdoors.concrete,
-        outdoors.planks,
-        outdoors.bark,
-        outdoors.foliage,
-        rugs.persian,
-        rugs.kilim,
-        rugs.modern,
-        objects.books,
-        objects.door,
-        objects.radiator,
-        objects.screen,
-        objects.clock,
-        objects.panel,
-        objects.mirror,
-        objects.view,
-    )
+    name: function
+    for module in (materials, objects, outdoors, pictures, rugs, surfaces)
+    for name, function in inspect.getmembers(module, inspect.isfunction)
+    if function.__module__ == module.__name__ and not name.startswith("_")
 }
+"""Every public function of these modules draws the kind of its name."""
 
 
 def draw(kind: str, colour: Rgb, seed: int) -> Image:

@@ -30,6 +30,17 @@ class Footprints:
     disc_radii_m: FloatArray
     polygons_m: FloatArray = field(default_factory=_no_polygons)
 
+    def with_walkers(self, walking: "Footprints") -> "Footprints":
+        """These outlines and those of what walks, which has rectangles and discs only."""
+        return Footprints(
+            np.concatenate([self.centres_m, walking.centres_m]),
+            np.concatenate([self.halves_m, walking.halves_m]),
+            np.concatenate([self.yaws_rad, walking.yaws_rad]),
+            np.concatenate([self.disc_centres_m, walking.disc_centres_m]),
+            np.concatenate([self.disc_radii_m, walking.disc_radii_m]),
+            self.polygons_m,
+        )
+
 
 def footprints(parts: tuple[Part, ...], low_m: float, high_m: float) -> Footprints:
     """Outlines of all solid parts that reach into the heights low_m..high_m."""

@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from simulator.scene.parts import Part, rotation_of
+from simulator.world.contents import expand
 from simulator.world.footprints import clearance_grid_m, footprints
 from simulator.world.grid_search import shortest_cells
-from simulator.world.scene_parts import expand
 from simulator.world.world_file import WorldFile
 
 FloatArray = npt.NDArray[np.float64]

@@ -7,8 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from simulator.scene.parts import Material, Part, box
-from simulator.world.panels import cut, variant
-from simulator.world.rooms import floor_parts
+from simulator.world.rooms import cut, floor_parts, variant
 from simulator.world.world_file import Ground, Room, WorldFile
 
 CONTACT_M = 1e-6

@@ -1,9 +1,16 @@
-"""Rooms and openings of a world file -> floors, ceilings, walls, lintels and skirting boards. Pure."""
+"""Rooms and openings of a world file -> floors, ceilings, walls, lintels and skirting boards. Pure.
 
+Long surfaces are cut into panels of different texture: one that repeats along a wall makes spots look alike
+at multiples of its period, and real walls do not.
+"""
+
+import math
 from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
 
 from simulator.scene.parts import Material, Part, box
-from simulator.world.panels import cut, variant
 from simulator.world.world_file import Opening, Room, Surface, WorldFile
 
 SKIRTING = Material("lacquer", (236, 234, 228), 5)
@@ -137,3 +144,21 @@ def _remaining(along: Span, cuts: list[Span], reach: Span) -> list[Span]:
     if along[1] - start > CONTACT_M:
         spans.append((start, reach[1]))
     return spans
+
+
+def cut(span: Span, tile_m: float) -> list[Span]:
+    """Cut at multiples of the tile, where textures meet; less than half a tile stays with its neighbour."""
+    low, high = span
+    first, last = math.ceil(low / tile_m), math.floor(high / tile_m)
+    inner = [k * tile_m for k in range(first, last + 1)]
+    inner = [at for at in inner if at - low > tile_m / 2 and high - at > tile_m / 2]
+    ends = [low, *inner, high]
+    return list(pairwise(ends))
+
+
+def variant(count: int, *where: float) -> int:
+    """Which of `count` textures a panel shows: irregular, but always the same at the same place."""
+    if count <= 1:
+        return 0
+    cells = [round(10 * at) & 0xFFFF_FFFF for at in where]
+    return int(np.random.default_rng([count, *cells]).integers(count))

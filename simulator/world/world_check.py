@@ -5,12 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from simulator.furniture.catalogue import FURNITURE
-from simulator.scene.parts import moved
+from simulator.world.contents import expand, placed
 from simulator.world.footprints import clearance_m, footprints
 from simulator.world.freespace import BODY_BAND_M, FreeSpace, free_space
 from simulator.world.passages import Passage, narrow_passages
-from simulator.world.scene_parts import expand
 from simulator.world.world_file import WorldFile
 
 ROBOT_RADIUS_M = 0.26  # the body and a centimetre
@@ -95,9 +93,7 @@ def start_faults(world: WorldFile, robot_radius_m: float = ROBOT_RADIUS_M) -> li
         return []
     nearest, name = math.inf, "a wall"
     for k, item in enumerate(world.furniture):
-        piece = FURNITURE[item.kind].build(item.options, item.seed)
-        placed = moved(piece, *item.at_m, math.radians(item.yaw_deg), item.z_m)
-        distance = float(clearance_m(start, footprints(placed.parts, *BODY_BAND_M))[0])
+        distance = float(clearance_m(start, footprints(placed(item).parts, *BODY_BAND_M))[0])
         if distance < min(nearest, gap + 1e-6):
             nearest, name = distance, f"furniture.{k} ({item.kind})"
     return [

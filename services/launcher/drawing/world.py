@@ -5,11 +5,11 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Polygon, Rectangle
 
 from simulator.scene.parts import Part, solids_between
+from simulator.world.contents import expand
 from simulator.world.footprints import hull_corners_m
 from simulator.world.freespace import BODY_BAND_M
 from simulator.world.grounds import ground_parts
 from simulator.world.rooms import room_parts
-from simulator.world.scene_parts import expand
 from simulator.world.world_file import WorldFile
 
 BORDER = "#f2c500"

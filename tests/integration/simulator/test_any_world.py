@@ -9,9 +9,9 @@ import yaml
 
 from simulator.settings import CameraSettings, RangeSettings, SimulationSettings
 from simulator.simulation import Simulation
+from simulator.world.contents import expand
 from simulator.world.footprints import clearance_m, footprints
 from simulator.world.freespace import BODY_BAND_M, free_space
-from simulator.world.scene_parts import expand
 from simulator.world.world_check import examine
 from simulator.world.world_file import load_world
 from tests.random_worlds import random_world

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from simulator.scene.mesh_shapes import mesh_of
-from simulator.world.scene_parts import expand
+from simulator.world.contents import expand
 from simulator.world.world_file import WorldFile, WorldFileError
 from tests.unit.simulator.assets.conftest import BOX, QUADS, gltf_box, obj_text
 

@@ -47,7 +47,7 @@ def test_level_zero_has_nobody_and_more_level_has_more(space):
 
 
 def test_nobody_ever_touches_furniture_or_each_other(hall, crowd):
-    from simulator.world.scene_parts import expand
+    from simulator.world.contents import expand
 
     standing = footprints(expand(hall)[0], *BODY_BAND_M)
     nearest = math.inf

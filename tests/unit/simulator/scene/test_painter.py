@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from simulator.scene import painter as painter_module
-from simulator.scene.disk_cache import DiskCache
-from simulator.scene.fingerprint import code_fingerprint, fingerprint
+from simulator.scene.disk_cache import DiskCache, code_fingerprint, fingerprint
 from simulator.scene.painter import Painter
 from simulator.scene.parts import Material
 from simulator.textures.catalogue import draw

@@ -4,7 +4,7 @@ import numpy as np
 
 from simulator.scene.disk_cache import DiskCache
 from simulator.scene.static_scene import lit_meshes
-from simulator.world.scene_parts import expand
+from simulator.world.contents import expand
 from simulator.world.world_file import Lighting
 
 EYES = np.array([[x, y, 0.8] for x in (0, 6) for y in (0, 4)], np.float32)

@@ -5,7 +5,7 @@ import copy
 import pytest
 import yaml
 
-from simulator.world.scene_parts import expand
+from simulator.world.contents import expand
 from simulator.world.world_file import WorldFileError, load_world, world_names
 
 

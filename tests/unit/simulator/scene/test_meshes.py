@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from simulator.scene.meshes import Mesh
-from simulator.scene.refine import refined
+from simulator.scene.meshes import Mesh, refined
 
 
 def fan():

@@ -4,8 +4,7 @@ from itertools import pairwise
 
 import pytest
 
-from simulator.world.panels import cut, variant
-from simulator.world.rooms import room_parts
+from simulator.world.rooms import cut, room_parts, variant
 from simulator.world.world_file import load_world
 
 

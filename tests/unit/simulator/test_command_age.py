@@ -1,6 +1,6 @@
 """Commands are as old as the frame they answer."""
 
-from simulator.robot.command_age import MOST_AGE_S, CommandAge
+from simulator.service import MOST_AGE_S, CommandAge
 
 
 def age_of(*frames):
