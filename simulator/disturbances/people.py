@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, Rgb, box, post
+from simulator.scene.parts import Material, Part, Rgb, box, post, rounded
 
 SKIN: tuple[Rgb, ...] = ((224, 184, 156), (188, 140, 108), (120, 84, 62))
 CLOTHES: tuple[Rgb, ...] = ((172, 52, 44), (44, 92, 152), (64, 122, 74), (196, 160, 60), (96, 66, 120))
@@ -39,7 +39,7 @@ def person(rng: np.random.Generator) -> Figure:
     parts = []
     for side, ahead in ((1, 0.1), (-1, -0.1)):
         parts += [
-            Part("cushion", (ahead + 0.05, side * 0.09, 0.04), (0.27, 0.1, 0.08), shoe),
+            rounded((ahead + 0.05, side * 0.09, 0.04), (0.27, 0.1, 0.08), shoe),
             post(ahead * 0.8, side * 0.09, (0.06, 0.46), 0.055, legs, taper=1.2),
             post(ahead * 0.3, side * 0.09, (0.44, 0.88), 0.075, legs, taper=1.1),
             post(-ahead * 0.6, side * 0.235, (0.82, 1.1), 0.038, skin),
@@ -47,8 +47,8 @@ def person(rng: np.random.Generator) -> Figure:
             Part("ellipsoid", (-ahead * 0.7, side * 0.235, 0.8), (0.09, 0.06, 0.13), skin),
         ]
     parts += [
-        Part("cushion", (0.0, 0.0, 0.95), (0.23, 0.36, 0.22), legs),
-        Part("cushion", (0.0, 0.0, 1.22), (0.25, 0.42, 0.5), shirt),
+        rounded((0.0, 0.0, 0.95), (0.23, 0.36, 0.22), legs),
+        rounded((0.0, 0.0, 1.22), (0.25, 0.42, 0.5), shirt),
         post(0.0, 0.0, (1.44, 1.54), 0.055, skin),
         Part("ellipsoid", (0.01, 0.0, 1.64), (0.2, 0.165, 0.25), skin),
         Part("ellipsoid", (-0.02, 0.0, 1.69), (0.21, 0.18, 0.19), hair),

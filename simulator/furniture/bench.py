@@ -3,7 +3,7 @@
 import numpy as np
 
 from simulator.furniture.stacks import book_pile, book_row, ornament
-from simulator.scene.parts import Material, Piece, Rgb, box, post
+from simulator.scene.parts import Material, Piece, Rgb, box, detail, post
 
 
 def tv_bench(
@@ -29,16 +29,15 @@ def tv_bench(
             parts.append(box((depth_m - 0.02, depth_m), (y[0] + 0.008, y[1] - 0.008), z, wood, tile_m=0.5))
             middle = (y[0] + y[1]) / 2
             parts.append(
-                box(
+                detail(
                     (depth_m, depth_m + 0.012),
                     (middle - 0.06, middle + 0.06),
                     (z[1] - 0.05, z[1] - 0.035),
                     dark,
-                    solid=False,
                 )
             )
         parts.extend(post(x, side * (half - 0.08), (0.0, 0.1), 0.02, dark) for x in (0.08, depth_m - 0.08))
-    parts.append(box((0.05, 0.36), (-0.2, 0.2), (0.13, 0.2), dark, solid=False))
+    parts.append(detail((0.05, 0.36), (-0.2, 0.2), (0.13, 0.2), dark))
     parts.extend(book_row(rng, depth_m - 0.06, (-0.28, 0.28), (0.23, 0.46)))
     parts.append(box((0.02, depth_m - 0.02), (-third, third), (0.21, 0.23), wood))
     parts.extend(

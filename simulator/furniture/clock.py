@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.scene.parts import Material, Piece, Rgb, box
+from simulator.scene.parts import Material, Piece, Rgb, detail, label
 
 
 def clock(rng: np.random.Generator, size_m: float = 0.34, colour: Rgb = (240, 236, 224)) -> Piece:
@@ -10,14 +10,12 @@ def clock(rng: np.random.Generator, size_m: float = 0.34, colour: Rgb = (240, 23
     half = size_m / 2
     return Piece(
         (
-            box((0.0, 0.03), (-half, half), (-half, half), Material("wood", (70, 50, 36), 2), solid=False),
-            box(
+            detail((0.0, 0.03), (-half, half), (-half, half), Material("wood", (70, 50, 36), 2)),
+            label(
                 (0.03, 0.032),
                 (-half + 0.02, half - 0.02),
                 (-half + 0.02, half - 0.02),
                 Material("clock", colour, int(rng.integers(1000))),
-                solid=False,
-                tile_m=None,
             ),
         )
     )

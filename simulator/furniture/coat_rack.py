@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, Piece, Rgb, box
+from simulator.scene.parts import Material, Part, Piece, Rgb, ball, box, detail, rounded
 
 COATS: tuple[Rgb, ...] = ((66, 74, 92), (150, 112, 70), (118, 40, 46), (84, 98, 72), (190, 184, 172))
 
@@ -20,10 +20,10 @@ def coat_rack(
     steel = Material("metal", (150, 150, 154), 3)
     for k in range(coats):
         y = -half + (k + 0.5) * width_m / coats
-        parts.append(box((0.02, 0.08), (y - 0.01, y + 0.01), (-0.02, 0.0), steel, solid=False))
+        parts.append(detail((0.02, 0.08), (y - 0.01, y + 0.01), (-0.02, 0.0), steel))
         cloth = Material("fabric", COATS[int(rng.integers(len(COATS)))], int(rng.integers(3)))
         long = float(rng.uniform(0.55, 0.75))
-        parts.append(
+        parts += [
             Part(
                 "drape",
                 (0.08, y, -0.02 - long / 2),
@@ -31,23 +31,14 @@ def coat_rack(
                 cloth,
                 solid=False,
                 tile_m=0.5,
-            )
-        )
-        parts.append(
-            Part(
-                "cushion",
-                (0.07, y, -0.12),
-                (0.1, width_m / coats * 0.75, 0.2),
-                cloth,
-                solid=False,
-                tile_m=0.5,
-            )
-        )
+            ),
+            rounded((0.07, y, -0.12), (0.1, width_m / coats * 0.75, 0.2), cloth, solid=False, tile_m=0.5),
+        ]
     for y in (-half * 0.55, half * 0.45):
         hat = Material(
             "wicker" if rng.random() < 0.5 else "fabric",
             COATS[int(rng.integers(len(COATS)))],
             int(rng.integers(100)),
         )
-        parts.append(Part("ellipsoid", (0.12, y, 0.19), (0.2, 0.24, 0.12), hat, solid=False, tile_m=0.3))
+        parts.append(ball((0.12, y, 0.19), (0.2, 0.24, 0.12), hat, tile_m=0.3))
     return Piece(tuple(parts))

@@ -3,7 +3,7 @@
 import numpy as np
 
 from simulator.furniture.stacks import book_pile
-from simulator.scene.parts import Material, Part, Piece, Rgb, box, post
+from simulator.scene.parts import Material, Piece, Rgb, ball, box, detail, post
 
 
 def coffee_table(
@@ -33,19 +33,17 @@ def coffee_table(
     parts.extend(book_pile(rng, (0.02, -0.2, height_m), 4))
     parts.extend(book_pile(rng, (0.0, 0.15, 0.125), 5))
     tray = Material("lacquer", (62, 70, 74), 4)
-    parts.append(box((-0.15, 0.15), (0.08, 0.42), (height_m, height_m + 0.02), tray, solid=False))
+    parts.append(detail((-0.15, 0.15), (0.08, 0.42), (height_m, height_m + 0.02), tray))
     cup = Material("ceramic", (222, 208, 186), int(rng.integers(3)))
     parts.extend(
         post(x, y, (height_m + 0.02, height_m + 0.11), 0.038, cup, solid=False, tile_m=0.2)
         for x, y in ((-0.06, 0.2), (0.06, 0.31))
     )
     parts.append(
-        Part(
-            "ellipsoid",
+        ball(
             (0.05, 0.17, height_m + 0.07),
             (0.1, 0.1, 0.1),
             Material("ceramic", (104, 130, 116), 8),
-            solid=False,
             tile_m=0.2,
         )
     )

@@ -3,7 +3,7 @@
 import numpy as np
 
 from simulator.furniture.stacks import book_pile, framed, ornament
-from simulator.scene.parts import Material, Piece, Rgb, box
+from simulator.scene.parts import Material, Piece, Rgb, box, detail
 
 
 def console_table(
@@ -20,12 +20,11 @@ def console_table(
         box((0.0, depth_m), (-half, half), (height_m - 0.03, height_m), wood, tile_m=0.7),
         box((0.02, depth_m - 0.02), (-half + 0.02, half - 0.02), (height_m - 0.15, height_m - 0.03), wood),
         box((0.02, depth_m - 0.02), (-half + 0.02, half - 0.02), (0.16, 0.185), wood),
-        box(
+        detail(
             (depth_m - 0.02, depth_m - 0.01),
             (-0.04, 0.04),
             (height_m - 0.1, height_m - 0.08),
             Material("metal", (190, 186, 178), 2),
-            solid=False,
         ),
     ]
     parts.extend(
@@ -34,9 +33,7 @@ def console_table(
         for y in (-half + 0.01, half - 0.045)
     )
     basket = Material("wicker", (170, 134, 88), int(rng.integers(3)))
-    parts.append(
-        box((0.04, depth_m - 0.04), (-half + 0.1, -0.05), (0.185, 0.42), basket, solid=False, tile_m=0.3)
-    )
+    parts.append(detail((0.04, depth_m - 0.04), (-half + 0.1, -0.05), (0.185, 0.42), basket, tile_m=0.3))
     parts.extend(book_pile(rng, (depth_m / 2, half - 0.28, 0.185), 6))
     parts.extend(
         ornament(rng, (depth_m / 2, -half + 0.17, height_m))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.scene.parts import Light, Material, Part, Piece, Rgb, box
+from simulator.scene.parts import Light, Material, Part, Piece, Rgb, detail, label
 
 
 def window(
@@ -18,23 +18,13 @@ def window(
     white = Material("lacquer", (242, 242, 238), 3)
     outlook = Material("view", (150, 190, 232), int(rng.integers(1000)), glow=1.0)
     half = width_m / 2
-    parts = [
-        box(
-            (0.0, 0.006),
-            (-half, half),
-            (0.0, height_m),
-            outlook,
-            solid=False,
-            tile_m=None,
-            casts_shadow=False,
-        )
-    ]
+    parts = [label((0.0, 0.006), (-half, half), (0.0, height_m), outlook, casts_shadow=False)]
     for k in range(panes + 1):
         y = -half + k * width_m / panes
-        parts.append(box((0.0, 0.045), (y - 0.03, y + 0.03), (0.0, height_m), white, solid=False))
+        parts.append(detail((0.0, 0.045), (y - 0.03, y + 0.03), (0.0, height_m), white))
     for z in (0.0, height_m, height_m * 0.68):
-        parts.append(box((0.0, 0.045), (-half - 0.03, half + 0.03), (z - 0.03, z + 0.03), white, solid=False))
-    parts.append(box((0.0, 0.16), (-half - 0.08, half + 0.08), (-0.05, -0.02), white, solid=False))
+        parts.append(detail((0.0, 0.045), (-half - 0.03, half + 0.03), (z - 0.03, z + 0.03), white))
+    parts.append(detail((0.0, 0.16), (-half - 0.08, half + 0.08), (-0.05, -0.02), white))
     cloth = Material("pattern_cloth" if patterned else "fabric", curtain, int(rng.integers(1000)))
     low, high = -0.75, height_m + 0.18
     for side in (-1, 1):
@@ -49,7 +39,7 @@ def window(
             )
         )
     rod = Material("metal", (120, 104, 84), 1)
-    parts.append(box((0.09, 0.11), (-half - 0.42, half + 0.42), (high, high + 0.02), rod, solid=False))
+    parts.append(detail((0.09, 0.11), (-half - 0.42, half + 0.42), (high, high + 0.02), rod))
     light = Light(
         (0.05, 0.0, height_m / 2),
         (0.0, width_m, height_m),

@@ -3,7 +3,7 @@
 import numpy as np
 
 from simulator.scene.faces import face
-from simulator.scene.parts import Material, Part, Piece, Rgb, Vec3, box
+from simulator.scene.parts import Material, Part, Piece, Rgb, Vec3, box, detail, label
 
 PLINTH_M, OVERHANG_M = 0.35, 0.45
 GLASS = Material("view", (70, 84, 98), 7)
@@ -47,41 +47,36 @@ def _window(x: float, y: float, shutter: Material, out: float) -> list[Part]:
     """Glass in a white frame with a cross, a sill, and open shutters."""
     z, half = (1.05, 2.25), 0.5
     parts = [
-        box((x, x + 0.03 * out), (y - half, y + half), z, GLASS, tile_m=None, solid=False),
-        box((x, x + 0.14 * out), (y - half - 0.1, y + half + 0.1), (z[0] - 0.08, z[0]), STONE, solid=False),
+        label((x, x + 0.03 * out), (y - half, y + half), z, GLASS),
+        detail((x, x + 0.14 * out), (y - half - 0.1, y + half + 0.1), (z[0] - 0.08, z[0]), STONE),
     ]
     for at in (-half, 0.0, half):
-        parts.append(box((x, x + 0.06 * out), (y + at - 0.035, y + at + 0.035), z, FRAME, solid=False))
+        parts.append(detail((x, x + 0.06 * out), (y + at - 0.035, y + at + 0.035), z, FRAME))
     for at in (z[0] + 0.03, 1.65, z[1] - 0.03):
-        parts.append(
-            box((x, x + 0.06 * out), (y - half, y + half), (at - 0.03, at + 0.03), FRAME, solid=False)
-        )
+        parts.append(detail((x, x + 0.06 * out), (y - half, y + half), (at - 0.03, at + 0.03), FRAME))
     for sign in (-1.0, 1.0):
         inner, outer = y + sign * (half + 0.04), y + sign * (half + 0.5)
         span = (min(inner, outer), max(inner, outer))
-        parts.append(box((x, x + 0.05 * out), span, z, shutter, tile_m=0.6, solid=False))
+        parts.append(detail((x, x + 0.05 * out), span, z, shutter, tile_m=0.6))
     return parts
 
 
 def _gable_window(x: float, y: float, out: float) -> list[Part]:
     z, half = (1.1, 2.2), 0.4
     return [
-        box((x - half, x + half), (y, y + 0.03 * out), z, GLASS, tile_m=None, solid=False),
-        box((x - 0.03, x + 0.03), (y, y + 0.06 * out), z, FRAME, solid=False),
-        *(
-            box((x - half, x + half), (y, y + 0.06 * out), (at - 0.04, at + 0.04), FRAME, solid=False)
-            for at in z
-        ),
+        label((x - half, x + half), (y, y + 0.03 * out), z, GLASS),
+        detail((x - 0.03, x + 0.03), (y, y + 0.06 * out), z, FRAME),
+        *(detail((x - half, x + half), (y, y + 0.06 * out), (at - 0.04, at + 0.04), FRAME) for at in z),
     ]
 
 
 def _door(x: float, y: float, wood: Material) -> list[Part]:
     """Panelled door under a small canopy, with a step in front."""
     return [
-        box((x, x + 0.06), (y - 0.5, y + 0.5), (0.2, 2.3), wood, tile_m=1.0, solid=False),
-        box((x, x + 0.1), (y - 0.58, y - 0.5), (0.2, 2.38), FRAME, solid=False),
-        box((x, x + 0.1), (y + 0.5, y + 0.58), (0.2, 2.38), FRAME, solid=False),
-        box((x, x + 0.9), (y - 0.9, y + 0.9), (2.5, 2.6), Material("planks", (110, 84, 60), 4), solid=False),
+        detail((x, x + 0.06), (y - 0.5, y + 0.5), (0.2, 2.3), wood, tile_m=1.0),
+        detail((x, x + 0.1), (y - 0.58, y - 0.5), (0.2, 2.38), FRAME),
+        detail((x, x + 0.1), (y + 0.5, y + 0.58), (0.2, 2.38), FRAME),
+        detail((x, x + 0.9), (y - 0.9, y + 0.9), (2.5, 2.6), Material("planks", (110, 84, 60), 4)),
         box((x + 0.05, x + 0.9), (y - 0.8, y + 0.8), (0.0, 0.2), STONE, tile_m=1.0),
     ]
 
@@ -90,15 +85,8 @@ def _chimney(d: float, w: float, ridge_m: float) -> list[Part]:
     brick = Material("bricks", (146, 80, 62), 6)
     x, y = -0.3 * d, 0.5 * w
     return [
-        box(
-            (x - 0.3, x + 0.3),
-            (y - 0.3, y + 0.3),
-            (ridge_m - 1.2, ridge_m + 0.7),
-            brick,
-            solid=False,
-            tile_m=1.2,
-        ),
-        box((x - 0.36, x + 0.36), (y - 0.36, y + 0.36), (ridge_m + 0.7, ridge_m + 0.8), STONE, solid=False),
+        detail((x - 0.3, x + 0.3), (y - 0.3, y + 0.3), (ridge_m - 1.2, ridge_m + 0.7), brick, tile_m=1.2),
+        detail((x - 0.36, x + 0.36), (y - 0.36, y + 0.36), (ridge_m + 0.7, ridge_m + 0.8), STONE),
     ]
 
 

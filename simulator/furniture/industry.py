@@ -3,7 +3,8 @@
 import numpy as np
 
 from simulator.furniture.loads import load_on_pallet, pallet_parts
-from simulator.scene.parts import Light, Material, Part, Piece, Rgb, box, post
+from simulator.furniture.stacks import any_colour
+from simulator.scene.parts import Light, Material, Part, Piece, Rgb, box, detail, label, post
 
 STEEL = Material("metal", (168, 172, 176), 4)
 DARK = Material("metal", (58, 62, 66), 3)
@@ -17,16 +18,14 @@ def machine_tool(rng: np.random.Generator, colour: Rgb = (206, 212, 208), width_
     parts: list[Part] = [
         box((-0.9, 0.8), (-y, y), (0.0, 0.25), DARK, tile_m=0.9),
         box((-0.9, 0.8), (-y, y), (0.25, 1.95), paint, tile_m=1.5),
-        box((-0.6, 0.3), (-0.5, 0.5), (1.95, 2.35), paint, tile_m=1.2, solid=False),
-        box((0.8, 0.83), (-0.75, 0.45), (0.95, 1.7), Material("mirror", (70, 86, 96), 4), solid=False),
-        box((0.8, 0.86), (-0.8, -0.75), (0.9, 1.75), DARK, solid=False),
-        box((0.8, 0.84), (y - 0.7, y - 0.12), (1.05, 1.6), Material("panel", (60, 66, 72), 5),
-            solid=False, tile_m=None),
-        box((0.8, 0.83), (-y + 0.1, -y + 0.45), (1.2, 1.65), Material("poster", (210, 60, 40), 3),
-            solid=False, tile_m=None),
-        box((0.8, 0.82), (-y, y), (0.72, 0.8), BLUE, solid=False),
+        detail((-0.6, 0.3), (-0.5, 0.5), (1.95, 2.35), paint, tile_m=1.2),
+        detail((0.8, 0.83), (-0.75, 0.45), (0.95, 1.7), Material("mirror", (70, 86, 96), 4)),
+        detail((0.8, 0.86), (-0.8, -0.75), (0.9, 1.75), DARK),
+        label((0.8, 0.84), (y - 0.7, y - 0.12), (1.05, 1.6), Material("panel", (60, 66, 72), 5)),
+        label((0.8, 0.83), (-y + 0.1, -y + 0.45), (1.2, 1.65), Material("poster", (210, 60, 40), 3)),
+        detail((0.8, 0.82), (-y, y), (0.72, 0.8), BLUE),
         post(-0.7, y - 0.2, (1.95, 2.5), 0.03, DARK, solid=False),
-    ]  # fmt: skip
+    ]
     for step, ink in enumerate(((40, 160, 80), (226, 178, 36), (196, 40, 36))):
         z = 2.5 + 0.09 * step
         parts.append(post(-0.7, y - 0.2, (z, z + 0.09), 0.04, Material("lacquer", ink, 1), solid=False))
@@ -37,7 +36,7 @@ def machine_tool(rng: np.random.Generator, colour: Rgb = (206, 212, 208), width_
 def _plate(x: float, y: float, z: float) -> Part:
     """A rating plate on a back wall, facing -x."""
     plate = Material("panel", (232, 228, 214), 8)
-    return box((x - 0.02, x), (y - 0.2, y + 0.2), (z - 0.15, z + 0.15), plate, solid=False, tile_m=None)
+    return label((x - 0.02, x), (y - 0.2, y + 0.2), (z - 0.15, z + 0.15), plate)
 
 
 def press(rng: np.random.Generator, colour: Rgb = (86, 128, 96)) -> Piece:
@@ -48,16 +47,15 @@ def press(rng: np.random.Generator, colour: Rgb = (86, 128, 96)) -> Piece:
         box((-0.7, 0.7), (-0.9, 0.9), (0.0, 0.7), paint, tile_m=1.2),
         box((-0.45, 0.45), (-0.9, -0.55), (0.7, 2.9), paint, tile_m=1.2),
         box((-0.45, 0.45), (0.55, 0.9), (0.7, 2.9), paint, tile_m=1.2),
-        box((-0.5, 0.5), (-0.95, 0.95), (2.9, 3.5), paint, tile_m=1.2, solid=False),
+        detail((-0.5, 0.5), (-0.95, 0.95), (2.9, 3.5), paint, tile_m=1.2),
         post(0.0, 0.0, (1.8, 2.9), 0.2, STEEL, solid=False),
-        box((-0.35, 0.35), (-0.5, 0.5), (1.5, 1.8), DARK, solid=False),
-        box((-0.4, 0.6), (-0.5, 0.5), (0.7, 0.85), STEEL, solid=False),
-        box((0.45, 0.48), (0.58, 0.86), (1.2, 1.7), Material("panel", (220, 220, 210), 3),
-            solid=False, tile_m=None),
-    ]  # fmt: skip
+        detail((-0.35, 0.35), (-0.5, 0.5), (1.5, 1.8), DARK),
+        detail((-0.4, 0.6), (-0.5, 0.5), (0.7, 0.85), STEEL),
+        label((0.45, 0.48), (0.58, 0.86), (1.2, 1.7), Material("panel", (220, 220, 210), 3)),
+    ]
     for low in np.arange(-0.9, 0.9, 0.3):
         stripe = YELLOW if round(low / 0.3) % 2 else DARK
-        parts.append(box((0.7, 0.715), (low, low + 0.3), (0.56, 0.7), stripe, solid=False))
+        parts.append(detail((0.7, 0.715), (low, low + 0.3), (0.56, 0.7), stripe))
     return Piece(tuple(parts))
 
 
@@ -69,14 +67,14 @@ def workbench(rng: np.random.Generator, length_m: float = 2.2) -> Piece:
         box((0.05, 0.7), (-y + 0.05, -y + 0.65), (0.05, 0.84), BLUE, tile_m=0.8),
         box((0.05, 0.7), (y - 0.65, y - 0.05), (0.05, 0.84), BLUE, tile_m=0.8),
         box((0.0, 0.05), (-y, y), (0.0, 0.84), DARK),
-        box((0.0, 0.04), (-y, y), (1.0, 1.9), Material("panel", (186, 178, 158), 2), solid=False, tile_m=1.4),
-        box((0.5, 0.72), (y - 0.45, y - 0.25), (0.92, 1.12), DARK, solid=False),
+        detail((0.0, 0.04), (-y, y), (1.0, 1.9), Material("panel", (186, 178, 158), 2), tile_m=1.4),
+        detail((0.5, 0.72), (y - 0.45, y - 0.25), (0.92, 1.12), DARK),
     ]
     for _ in range(9):
         at, low, tall = rng.uniform(-y + 0.15, y - 0.15), rng.uniform(1.05, 1.45), rng.uniform(0.15, 0.4)
-        ink: Rgb = tuple(int(v) for v in rng.integers(30, 220, 3) // 32 * 32)  # type: ignore[assignment]
+        ink = any_colour(rng, 30, 220)
         tool = Material("lacquer", ink, 1)
-        parts.append(box((0.04, 0.09), (at - 0.03, at + 0.03), (low, low + tall), tool, solid=False))
+        parts.append(detail((0.04, 0.09), (at - 0.03, at + 0.03), (low, low + tall), tool))
     return Piece(tuple(parts))
 
 
@@ -96,7 +94,7 @@ def pallet_rack(rng: np.random.Generator, bays: int = 2, levels: int = 3) -> Pie
         z = 1.5 * level
         if level:
             for x in (0.05, depth - 0.05):
-                parts.append(box((x - 0.03, x + 0.03), (-y, y), (z - 0.12, z), orange, solid=False))
+                parts.append(detail((x - 0.03, x + 0.03), (-y, y), (z - 0.12, z), orange))
         for k in range(bays):
             for side in (-0.65, 0.65):
                 at = -y + (k + 0.5) * bay + side
@@ -116,7 +114,7 @@ def conveyor(rng: np.random.Generator, length_m: float = 5.0) -> Piece:
     while at < y - 0.4:
         tall = float(rng.uniform(0.22, 0.42))
         ink = Material("poster" if rng.random() < 0.3 else "planks", (186, 146, 100), int(rng.integers(6)))
-        parts.append(box((-0.22, 0.22), (at, at + 0.4), (0.7, 0.7 + tall), ink, solid=False, tile_m=0.4))
+        parts.append(detail((-0.22, 0.22), (at, at + 0.4), (0.7, 0.7 + tall), ink, tile_m=0.4))
         at += float(rng.uniform(0.7, 1.3))
     return Piece(tuple(parts))
 
@@ -145,8 +143,9 @@ def floor_mark(rng: np.random.Generator, length_m: float = 6.0, width_m: float =
     """A painted line along y."""
     del rng
     paint = Material("lacquer", (224, 184, 60), 6)
-    mark = box((-width_m / 2, width_m / 2), (-length_m / 2, length_m / 2), (0.0, 0.004), paint,
-               solid=False, casts_shadow=False)  # fmt: skip
+    mark = detail(
+        (-width_m / 2, width_m / 2), (-length_m / 2, length_m / 2), (0.0, 0.004), paint, casts_shadow=False
+    )
     return Piece((mark,))
 
 

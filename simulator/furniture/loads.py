@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, Piece, Rgb, Vec3, box, post
+from simulator.scene.parts import Material, Part, Piece, Rgb, Vec3, box, detail, label, post, rounded
 
 WOOD = Material("planks", (176, 138, 92), 6)
 CARTON: tuple[Rgb, ...] = ((190, 150, 104), (176, 132, 86), (202, 168, 122))
@@ -15,8 +15,15 @@ def pallet_parts(at: Vec3) -> list[Part]:
     """One flat pallet: boards over three runners, with dark gaps between."""
     x, y, z = at
     gap = Material("fabric", (52, 44, 38), 1)
-    parts = [box((x - HALF_X_M + 0.02, x + HALF_X_M - 0.02), (y - HALF_Y_M + 0.02, y + HALF_Y_M - 0.02),
-                 (z, z + 0.11), gap, tile_m=0.6)]  # fmt: skip
+    parts = [
+        box(
+            (x - HALF_X_M + 0.02, x + HALF_X_M - 0.02),
+            (y - HALF_Y_M + 0.02, y + HALF_Y_M - 0.02),
+            (z, z + 0.11),
+            gap,
+            tile_m=0.6,
+        )
+    ]
     for side in (-1.0, 0.0, 1.0):
         low = y + side * (HALF_Y_M - 0.06)
         parts.append(box((x - HALF_X_M, x + HALF_X_M), (low - 0.06, low + 0.06), (z, z + 0.11), WOOD))
@@ -50,15 +57,22 @@ def _cartons(rng: np.random.Generator, at: Vec3, room_m: float) -> list[Part]:
                 ink = CARTON[int(rng.integers(len(CARTON)))]
                 look = Material("poster" if rng.random() < 0.12 else "planks", ink, int(rng.integers(5)))
                 cx, cy = x + kx * 0.2, y + ky * 0.375
-                parts.append(
-                    box((cx - 0.195, cx + 0.195), (cy - 0.18, cy + 0.18),
-                        (z + layer * tall, z + (layer + 1) * tall - 0.01), look, tile_m=0.5)
-                )  # fmt: skip
-                parts.append(
-                    box((cx - 0.197, cx + 0.197), (cy - 0.03, cy + 0.03),
+                parts += [
+                    box(
+                        (cx - 0.195, cx + 0.195),
+                        (cy - 0.18, cy + 0.18),
+                        (z + layer * tall, z + (layer + 1) * tall - 0.01),
+                        look,
+                        tile_m=0.5,
+                    ),
+                    detail(
+                        (cx - 0.197, cx + 0.197),
+                        (cy - 0.03, cy + 0.03),
                         (z + layer * tall, z + (layer + 1) * tall - 0.008),
-                        Material("lacquer", (214, 196, 150), 2), solid=False, casts_shadow=False)
-                )  # fmt: skip
+                        Material("lacquer", (214, 196, 150), 2),
+                        casts_shadow=False,
+                    ),
+                ]
     return parts
 
 
@@ -83,9 +97,14 @@ def _sacks(rng: np.random.Generator, at: Vec3, room_m: float) -> list[Part]:
         for ky in (-0.36, 0.0, 0.36):
             shift = float(rng.uniform(-0.04, 0.04))
             parts.append(
-                Part("cushion", (x + shift, y + ky, z + 0.09 + 0.17 * layer), (0.78, 0.4, 0.19), cloth,
-                     solid=False, tile_m=0.7)
-            )  # fmt: skip
+                rounded(
+                    (x + shift, y + ky, z + 0.09 + 0.17 * layer),
+                    (0.78, 0.4, 0.19),
+                    cloth,
+                    solid=False,
+                    tile_m=0.7,
+                )
+            )
     return parts
 
 
@@ -114,16 +133,19 @@ def container(rng: np.random.Generator, length_m: float = 6.0, colour: Rgb = (15
     parts: list[Part] = [
         box((-x, x), (-y, y), (0.0, 0.16), rail, tile_m=1.2),
         box((-x + 0.03, x - 0.03), (-y + 0.03, y - 0.03), (0.16, height), steel, tile_m=1.3),
-        *(box((sx * x - 0.09, sx * x + 0.09), (sy * y - 0.09, sy * y + 0.09), (0.0, height), rail)
-          for sx in (-1, 1) for sy in (-1, 1)),
-        *(box((-x, x), (s * y - 0.04, s * y + 0.04), (height - 0.12, height), rail, solid=False)
-          for s in (-1, 1)),
-    ]  # fmt: skip
+        *(
+            box((sx * x - 0.09, sx * x + 0.09), (sy * y - 0.09, sy * y + 0.09), (0.0, height), rail)
+            for sx in (-1, 1)
+            for sy in (-1, 1)
+        ),
+        *(detail((-x, x), (s * y - 0.04, s * y + 0.04), (height - 0.12, height), rail) for s in (-1, 1)),
+    ]
     for at in (-0.75, -0.3, 0.3, 0.75):
-        parts.append(post(x + 0.03, at, (0.2, height - 0.1), 0.025, Material("metal", (186, 188, 190), 3),
-                          solid=False))  # fmt: skip
+        parts.append(
+            post(x + 0.03, at, (0.2, height - 0.1), 0.025, Material("metal", (186, 188, 190), 3), solid=False)
+        )
     for side in (-1.0, 1.0):
-        label = Material("poster", INKS[int(rng.integers(len(INKS)))], int(rng.integers(9)))
+        sign = Material("poster", INKS[int(rng.integers(len(INKS)))], int(rng.integers(9)))
         face = tuple(sorted((side * y, side * (y + 0.012))))
-        parts.append(box((x - 1.9, x - 0.6), (face[0], face[1]), (1.5, 2.2), label, solid=False, tile_m=None))
+        parts.append(label((x - 1.9, x - 0.6), (face[0], face[1]), (1.5, 2.2), sign))
     return Piece(tuple(parts))

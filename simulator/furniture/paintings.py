@@ -4,7 +4,7 @@ from typing import Literal
 
 import numpy as np
 
-from simulator.scene.parts import Material, Piece, Rgb, box
+from simulator.scene.parts import Material, Piece, Rgb, detail, label
 
 
 def picture(
@@ -21,21 +21,14 @@ def picture(
     card = Material("lacquer", (238, 234, 224), 3)
     canvas = Material(style, (200, 180, 150), variant if variant else int(rng.integers(100_000)))
     half, tall, edge = width_m / 2, height_m / 2, 0.025
-    parts = [box((0.0, 0.012), (-half, half), (-tall, tall), card, solid=False)]
+    parts = [detail((0.0, 0.012), (-half, half), (-tall, tall), card)]
     for sign in (-1, 1):
         y = tuple(sorted((sign * half, sign * (half - edge))))
         z = tuple(sorted((sign * tall, sign * (tall - edge))))
-        parts.append(box((0.0, 0.03), (y[0], y[1]), (-tall, tall), wood, solid=False))
-        parts.append(box((0.0, 0.03), (-half, half), (z[0], z[1]), wood, solid=False))
+        parts += [
+            detail((0.0, 0.03), (y[0], y[1]), (-tall, tall), wood),
+            detail((0.0, 0.03), (-half, half), (z[0], z[1]), wood),
+        ]
     inset = edge + mount_m
-    parts.append(
-        box(
-            (0.012, 0.015),
-            (-half + inset, half - inset),
-            (-tall + inset, tall - inset),
-            canvas,
-            solid=False,
-            tile_m=None,
-        )
-    )
+    parts.append(label((0.012, 0.015), (-half + inset, half - inset), (-tall + inset, tall - inset), canvas))
     return Piece(tuple(parts))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.scene.parts import Material, Piece, Rgb, box
+from simulator.scene.parts import Material, Piece, Rgb, detail, label
 
 
 def thermostat(rng: np.random.Generator, size_m: float = 0.14) -> Piece:
@@ -10,13 +10,11 @@ def thermostat(rng: np.random.Generator, size_m: float = 0.14) -> Piece:
     half = size_m / 2
     return Piece(
         (
-            box(
+            label(
                 (0.0, 0.025),
                 (-half, half),
                 (-half, half),
                 Material("panel", (226, 226, 222), int(rng.integers(100))),
-                solid=False,
-                tile_m=None,
             ),
         )
     )
@@ -28,14 +26,8 @@ def switch(rng: np.random.Generator) -> Piece:
     white = Material("lacquer", (240, 240, 236), 6)
     return Piece(
         (
-            box((0.0, 0.008), (-0.045, 0.045), (-0.045, 0.045), white, solid=False),
-            box(
-                (0.008, 0.014),
-                (-0.028, 0.028),
-                (-0.03, 0.03),
-                Material("lacquer", (216, 216, 210), 7),
-                solid=False,
-            ),
+            detail((0.0, 0.008), (-0.045, 0.045), (-0.045, 0.045), white),
+            detail((0.008, 0.014), (-0.028, 0.028), (-0.03, 0.03), Material("lacquer", (216, 216, 210), 7)),
         )
     )
 
@@ -46,21 +38,15 @@ def fuse_box(rng: np.random.Generator, width_m: float = 0.36, height_m: float = 
     half, tall = width_m / 2, height_m / 2
     return Piece(
         (
-            box((0.0, 0.03), (-half, half), (-tall, tall), steel, solid=False, tile_m=0.5),
-            box(
+            detail((0.0, 0.03), (-half, half), (-tall, tall), steel, tile_m=0.5),
+            label(
                 (0.03, 0.032),
                 (-half + 0.03, half - 0.1),
                 (tall - 0.16, tall - 0.05),
                 Material("poster", (0, 0, 0), 7),
-                solid=False,
-                tile_m=None,
             ),
-            box(
-                (0.03, 0.045),
-                (half - 0.06, half - 0.04),
-                (-0.05, 0.05),
-                Material("metal", (90, 90, 94), 1),
-                solid=False,
+            detail(
+                (0.03, 0.045), (half - 0.06, half - 0.04), (-0.05, 0.05), Material("metal", (90, 90, 94), 1)
             ),
         )
     )
@@ -74,14 +60,7 @@ def mirror(
     half, tall = width_m / 2, height_m / 2
     return Piece(
         (
-            box((0.0, 0.02), (-half, half), (-tall, tall), edge, solid=False),
-            box(
-                (0.02, 0.022),
-                (-half + 0.03, half - 0.03),
-                (-tall + 0.03, tall - 0.03),
-                pane,
-                solid=False,
-                tile_m=None,
-            ),
+            detail((0.0, 0.02), (-half, half), (-tall, tall), edge),
+            label((0.02, 0.022), (-half + 0.03, half - 0.03), (-tall + 0.03, tall - 0.03), pane),
         )
     )

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from simulator.furniture.stacks import shade_of
 from simulator.scene.parts import Material, Part, Piece, Rgb, post
 
 
@@ -24,8 +25,7 @@ def plant(
         z = float(rng.uniform(0.4, height_m))
         reach = float(rng.uniform(0.22, 0.4)) * (0.55 if z < 0.8 else 1.0)
         yaw, lift = float(rng.uniform(0, 2 * np.pi)), float(rng.uniform(-0.9, 0.1))
-        tone: Rgb = tuple(int(c * rng.uniform(0.85, 1.15)) for c in leaf)  # type: ignore[assignment]
-        green = Material("leaf", tuple(c // 32 * 32 for c in tone), 0)  # type: ignore[arg-type]
+        green = Material("leaf", shade_of(rng, leaf, 32), 0)
         centre = (
             reach / 2 * np.cos(yaw) * np.cos(lift),
             reach / 2 * np.sin(yaw) * np.cos(lift),

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.scene.parts import Material, Piece, box
+from simulator.scene.parts import Material, Piece, box, detail
 
 
 def radiator(rng: np.random.Generator, width_m: float = 0.9, height_m: float = 0.6) -> Piece:
@@ -13,7 +13,7 @@ def radiator(rng: np.random.Generator, width_m: float = 0.9, height_m: float = 0
     return Piece(
         (
             box((0.03, 0.1), (-half, half), (0.14, 0.14 + height_m), face, tile_m=None),
-            box((0.05, 0.08), (half, half + 0.06), (0.16, 0.2), steel, solid=False),
-            box((0.05, 0.08), (half + 0.04, half + 0.06), (0.0, 0.2), steel, solid=False),
+            detail((0.05, 0.08), (half, half + 0.06), (0.16, 0.2), steel),
+            detail((0.05, 0.08), (half + 0.04, half + 0.06), (0.0, 0.2), steel),
         )
     )

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, Piece, Rgb, box, post
+from simulator.scene.parts import Material, Part, Piece, Rgb, box, post, rounded
 
 LEG = Material("wood", (82, 58, 40), 3)
 
@@ -22,21 +22,15 @@ def sofa(
     step = (width_m - 2 * arm) / seats
     for k in range(seats):
         y = -width_m / 2 + arm + step * (k + 0.5)
-        parts.append(Part("cushion", (0.08, y, 0.39), (depth_m - 0.22, step - 0.01, 0.17), cloth, tile_m=0.7))
-        parts.append(Part("cushion", (-half + 0.27, y, 0.62), (0.2, step - 0.02, 0.42), cloth, tile_m=0.7))
+        parts += [
+            rounded((0.08, y, 0.39), (depth_m - 0.22, step - 0.01, 0.17), cloth, tile_m=0.7),
+            rounded((-half + 0.27, y, 0.62), (0.2, step - 0.02, 0.42), cloth, tile_m=0.7),
+        ]
     for y in (-width_m / 2 + arm + 0.22, width_m / 2 - arm - 0.22, 0.12):
         ink = Material("pattern_cloth", _accent(rng), int(rng.integers(3)))
         lean = float(rng.uniform(-0.3, 0.3))
         parts.append(
-            Part(
-                "cushion",
-                (-half + 0.42, y, 0.64),
-                (0.14, 0.42, 0.4),
-                ink,
-                yaw_rad=lean,
-                solid=False,
-                tile_m=0.5,
-            )
+            rounded((-half + 0.42, y, 0.64), (0.14, 0.42, 0.4), ink, yaw_rad=lean, solid=False, tile_m=0.5)
         )
     return Piece(tuple(parts))
 
@@ -47,20 +41,14 @@ def armchair(
     """Leather armchair, facing +x."""
     hide = Material("leather", colour, int(rng.integers(3)))
     parts = _carcass(hide, width_m, depth_m, 0.15)
-    parts.append(Part("cushion", (0.06, 0.0, 0.4), (depth_m - 0.2, width_m - 0.31, 0.17), hide, tile_m=0.6))
-    parts.append(
-        Part("cushion", (-depth_m / 2 + 0.22, 0.0, 0.68), (0.18, width_m - 0.26, 0.56), hide, tile_m=0.6)
-    )
+    parts += [
+        rounded((0.06, 0.0, 0.4), (depth_m - 0.2, width_m - 0.31, 0.17), hide, tile_m=0.6),
+        rounded((-depth_m / 2 + 0.22, 0.0, 0.68), (0.18, width_m - 0.26, 0.56), hide, tile_m=0.6),
+    ]
     ink = Material("pattern_cloth", _accent(rng), int(rng.integers(3)))
     parts.append(
-        Part(
-            "cushion",
-            (-depth_m / 2 + 0.37, 0.05, 0.62),
-            (0.13, 0.38, 0.36),
-            ink,
-            yaw_rad=0.2,
-            solid=False,
-            tile_m=0.45,
+        rounded(
+            (-depth_m / 2 + 0.37, 0.05, 0.62), (0.13, 0.38, 0.36), ink, yaw_rad=0.2, solid=False, tile_m=0.45
         )
     )
     return Piece(tuple(parts))
@@ -71,9 +59,7 @@ def pouf(
 ) -> Piece:
     """Round upholstered stool."""
     cloth = Material("pattern_cloth", colour, int(rng.integers(3)))
-    rim = Part(
-        "cushion", (0.0, 0.0, height_m - 0.03), (1.7 * radius_m, 1.7 * radius_m, 0.06), cloth, solid=False
-    )
+    rim = rounded((0.0, 0.0, height_m - 0.03), (1.7 * radius_m, 1.7 * radius_m, 0.06), cloth, solid=False)
     return Piece((post(0.0, 0.0, (0.0, height_m - 0.02), radius_m, cloth, tile_m=0.6), rim))
 
 
@@ -81,17 +67,11 @@ def _carcass(cloth: Material, width: float, depth: float, arm: float) -> list[Pa
     half_d, half_w = depth / 2, width / 2
     parts = [
         box((-half_d + 0.02, half_d - 0.03), (-half_w + 0.03, half_w - 0.03), (0.1, 0.32), cloth, tile_m=0.7),
-        Part("cushion", (-half_d + 0.1, 0.0, 0.46), (0.2, width - 0.04, 0.74), cloth, tile_m=0.7),
+        rounded((-half_d + 0.1, 0.0, 0.46), (0.2, width - 0.04, 0.74), cloth, tile_m=0.7),
     ]
     for side in (-1, 1):
         parts.append(
-            Part(
-                "cushion",
-                (0.0, side * (half_w - arm / 2), 0.36),
-                (depth - 0.02, arm, 0.52),
-                cloth,
-                tile_m=0.7,
-            )
+            rounded((0.0, side * (half_w - arm / 2), 0.36), (depth - 0.02, arm, 0.52), cloth, tile_m=0.7)
         )
         parts.extend(
             post(x, side * (half_w - 0.08), (0.0, 0.11), 0.022, LEG) for x in (-half_d + 0.08, half_d - 0.1)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from simulator.furniture.stacks import book_pile, framed, ornament
-from simulator.scene.parts import Material, Piece, Rgb, box, post
+from simulator.scene.parts import Material, Piece, Rgb, box, detail, post
 
 
 def sideboard(
@@ -32,12 +32,8 @@ def sideboard(
             parts.append(box((depth_m - 0.02, depth_m), y, z, face, tile_m=0.7))
             knob = (y[0] + y[1]) / 2 if len(rows) > 1 else (y[1] - 0.05 if k == 0 else y[0] + 0.05)
             parts.append(
-                box(
-                    (depth_m, depth_m + 0.02),
-                    (knob - 0.012, knob + 0.012),
-                    (z[1] - 0.12, z[1] - 0.06),
-                    brass,
-                    solid=False,
+                detail(
+                    (depth_m, depth_m + 0.02), (knob - 0.012, knob + 0.012), (z[1] - 0.12, z[1] - 0.06), brass
                 )
             )
     parts.extend(

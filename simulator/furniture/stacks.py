@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, Rgb, Vec3, box, post
+from simulator.scene.parts import Material, Part, Rgb, Vec3, ball, detail, label, post
 from simulator.textures.objects import SPINES
 
 COVERS: tuple[Rgb, ...] = (
@@ -17,6 +17,18 @@ COVERS: tuple[Rgb, ...] = (
 )
 
 
+def any_colour(rng: np.random.Generator, low: int, high: int) -> Rgb:
+    """A colour between two levels, one of a few: materials are shared, and the renderer's table is short."""
+    red, green, blue = (int(v) for v in rng.integers(low, high, 3) // 32 * 32)
+    return red, green, blue
+
+
+def shade_of(rng: np.random.Generator, colour: Rgb, step: int) -> Rgb:
+    """The colour up to 15 % darker or lighter in each channel, rounded down to multiples of `step`."""
+    red, green, blue = (int(c * rng.uniform(0.85, 1.15)) // step * step for c in colour)
+    return red, green, blue
+
+
 def book_pile(rng: np.random.Generator, at: Vec3, count: int) -> list[Part]:
     """Books lying on one another."""
     parts, z = [], at[2]
@@ -27,9 +39,7 @@ def book_pile(rng: np.random.Generator, at: Vec3, count: int) -> list[Part]:
             COVERS[int(rng.integers(len(COVERS)))],
             int(rng.integers(4)),
         )
-        book = box(
-            (-depth / 2, depth / 2), (-width / 2, width / 2), (0.0, thick), cover, solid=False, tile_m=None
-        )
+        book = label((-depth / 2, depth / 2), (-width / 2, width / 2), (0.0, thick), cover)
         parts.append(_at(book, (at[0], at[1], z), float(rng.normal(0, 0.2))))
         z += thick
     return parts
@@ -51,13 +61,11 @@ def book_row(
         depth, inset, k = 0.17, float(rng.uniform(0.0, 0.025)), int(rng.integers(SPINES))
         uv = (k / SPINES, 0.0, (k + 1) / SPINES, 1.0)
         parts.append(
-            box(
+            label(
                 (front_x - inset - depth, front_x - inset),
                 (at, at + thick),
                 (z[0], z[0] + tall),
                 spines,
-                solid=False,
-                tile_m=None,
                 uv=uv,
             )
         )
@@ -86,26 +94,16 @@ def ornament(rng: np.random.Generator, at: Vec3) -> list[Part]:
         ]
     if kind == 1:
         return [
-            box(
+            detail(
                 (x - 0.08, x + 0.08),
                 (y - 0.11, y + 0.11),
                 (z, z + 0.14),
                 Material("wicker", (176, 142, 96), seed),
-                solid=False,
                 tile_m=0.25,
             )
         ]
     if kind == 2:
-        return [
-            Part(
-                "ellipsoid",
-                (x, y, z + 0.08),
-                (0.17, 0.17, 0.16),
-                Material("ceramic", colour, seed),
-                solid=False,
-                tile_m=0.3,
-            )
-        ]
+        return [ball((x, y, z + 0.08), (0.17, 0.17, 0.16), Material("ceramic", colour, seed), tile_m=0.3)]
     return framed(rng, at)
 
 
@@ -117,15 +115,8 @@ def framed(rng: np.random.Generator, at: Vec3) -> list[Part]:
         ("street", "landscape", "still_life")[int(rng.integers(3))], (0, 0, 0), int(rng.integers(6))
     )
     return [
-        box((x - 0.01, x + 0.01), (y - 0.1, y + 0.1), (z, z + 0.17), frame, solid=False),
-        box(
-            (x + 0.01, x + 0.013),
-            (y - 0.085, y + 0.085),
-            (z + 0.015, z + 0.155),
-            photo,
-            solid=False,
-            tile_m=None,
-        ),
+        detail((x - 0.01, x + 0.01), (y - 0.1, y + 0.1), (z, z + 0.17), frame),
+        label((x + 0.01, x + 0.013), (y - 0.085, y + 0.085), (z + 0.015, z + 0.155), photo),
     ]
 
 

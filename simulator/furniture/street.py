@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, Piece, Rgb, box, post
+from simulator.scene.parts import Material, Part, Piece, Rgb, ball, box, detail, label, post
 
 STEEL = Material("metal", (92, 98, 104), 2)
 DARK = Material("metal", (52, 58, 62), 3)
@@ -16,14 +16,13 @@ def street_light(rng: np.random.Generator, height_m: float = 4.2) -> Piece:
         (
             post(0.0, 0.0, (0.0, 0.5), 0.11, DARK, taper=0.7),
             post(0.0, 0.0, (0.5, height_m), 0.05, DARK, taper=0.8, solid=False),
-            box((0.0, 0.9), (-0.03, 0.03), (height_m - 0.06, height_m), DARK, solid=False),
-            box((0.62, 1.0), (-0.12, 0.12), (height_m - 0.2, height_m - 0.04), STEEL, solid=False),
-            box(
+            detail((0.0, 0.9), (-0.03, 0.03), (height_m - 0.06, height_m), DARK),
+            detail((0.62, 1.0), (-0.12, 0.12), (height_m - 0.2, height_m - 0.04), STEEL),
+            detail(
                 (0.66, 0.96),
                 (-0.09, 0.09),
                 (height_m - 0.24, height_m - 0.2),
                 Material("glow", (250, 244, 226), 1, 1.0),
-                solid=False,
             ),
         )
     )
@@ -36,46 +35,25 @@ def bus_stop(rng: np.random.Generator, length_m: float = 3.4, poster: int = 1) -
     glass = Material("panel", (150, 170, 176), 4)
     parts: list[Part] = [
         box((-0.06, 0.0), (-y, y), (0.15, 2.2), glass, tile_m=1.1),
-        box(
-            (-0.12, depth),
-            (-y - 0.1, y + 0.1),
-            (2.25, 2.37),
-            Material("lacquer", (38, 84, 132), 2),
-            solid=False,
-        ),
+        detail((-0.12, depth), (-y - 0.1, y + 0.1), (2.25, 2.37), Material("lacquer", (38, 84, 132), 2)),
         box((0.15, 0.55), (-y + 0.4, y - 0.9), (0.42, 0.5), Material("planks", (150, 112, 74), 6)),
         box((0.25, 0.45), (-y + 0.5, -y + 0.6), (0.0, 0.42), STEEL),
         box((0.25, 0.45), (y - 1.1, y - 1.0), (0.0, 0.42), STEEL),
-        box(
-            (0.0, 0.03),
-            (y - 0.85, y - 0.1),
-            (0.7, 1.9),
-            Material("poster", (200, 60, 60), poster),
-            solid=False,
-            tile_m=None,
-        ),
-        box(
-            (0.0, 0.03),
-            (-0.3, 0.3),
-            (1.1, 1.8),
-            Material("panel", (240, 240, 236), 9),
-            solid=False,
-            tile_m=None,
-        ),
+        label((0.0, 0.03), (y - 0.85, y - 0.1), (0.7, 1.9), Material("poster", (200, 60, 60), poster)),
+        label((0.0, 0.03), (-0.3, 0.3), (1.1, 1.8), Material("panel", (240, 240, 236), 9)),
     ]
     parts += [
         post(x, side * y, (0.0, 2.25), 0.045, STEEL) for x in (0.0, depth - 0.1) for side in (-1.0, 1.0)
     ]
-    parts.append(post(depth + 0.2, y + 0.9, (0.0, 2.7), 0.04, STEEL))
-    parts.append(
-        box(
+    parts += [
+        post(depth + 0.2, y + 0.9, (0.0, 2.7), 0.04, STEEL),
+        detail(
             (depth + 0.17, depth + 0.23),
             (y + 0.62, y + 1.18),
             (2.2, 2.75),
             Material("lacquer", (232, 186, 36), 4),
-            solid=False,
-        )
-    )
+        ),
+    ]
     return Piece(tuple(parts))
 
 
@@ -88,7 +66,7 @@ def park_bench(rng: np.random.Generator, length_m: float = 1.7) -> Piece:
         box((-0.25, 0.25), (s * y * 0.8 - 0.04, s * y * 0.8 + 0.04), (0.0, 0.42), DARK) for s in (-1.0, 1.0)
     ]
     parts += [box((x, x + 0.12), (-y, y), (0.42, 0.46), wood, tile_m=0.9) for x in (-0.2, -0.05, 0.1)]
-    parts += [box((-0.3, -0.26), (-y, y), (z, z + 0.1), wood, tile_m=0.9, solid=False) for z in (0.58, 0.74)]
+    parts += [detail((-0.3, -0.26), (-y, y), (z, z + 0.1), wood, tile_m=0.9) for z in (0.58, 0.74)]
     return Piece(tuple(parts))
 
 
@@ -111,15 +89,8 @@ def mailbox(rng: np.random.Generator, colour: Rgb = (226, 178, 32)) -> Piece:
         (
             post(0.0, 0.0, (0.0, 0.85), 0.06, DARK),
             box((-0.16, 0.16), (-0.22, 0.22), (0.8, 1.4), ink, tile_m=0.6),
-            box((0.16, 0.175), (-0.15, 0.15), (1.2, 1.25), DARK, solid=False),
-            box(
-                (0.16, 0.17),
-                (-0.12, 0.12),
-                (0.9, 1.1),
-                Material("panel", (240, 240, 236), 3),
-                solid=False,
-                tile_m=None,
-            ),
+            detail((0.16, 0.175), (-0.15, 0.15), (1.2, 1.25), DARK),
+            label((0.16, 0.17), (-0.12, 0.12), (0.9, 1.1), Material("panel", (240, 240, 236), 3)),
         )
     )
 
@@ -136,6 +107,6 @@ def fountain(rng: np.random.Generator, radius_m: float = 1.9) -> Piece:
         post(0.0, 0.0, (0.6, 1.5), 0.24, STONE, taper=0.8, tile_m=0.8),
         post(0.0, 0.0, (1.5, 1.72), 0.5, STONE, taper=1.7, tile_m=0.9, solid=False),
         post(0.0, 0.0, (1.72, 2.1), 0.12, STONE, taper=0.7, tile_m=0.5, solid=False),
-        Part("ellipsoid", (0.0, 0.0, 2.2), (0.32, 0.32, 0.36), STONE, solid=False, tile_m=0.5),
+        ball((0.0, 0.0, 2.2), (0.32, 0.32, 0.36), STONE, tile_m=0.5),
     ]
     return Piece(tuple(parts))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.scene.parts import Material, Piece, box
+from simulator.scene.parts import Material, Piece, box, detail, label
 
 
 def television(rng: np.random.Generator, width_m: float = 1.25, height_m: float = 0.72) -> Piece:
@@ -12,15 +12,13 @@ def television(rng: np.random.Generator, width_m: float = 1.25, height_m: float 
     return Piece(
         (
             box((0.0, 0.05), (-half, half), (0.0, height_m), case),
-            box(
+            label(
                 (0.05, 0.052),
                 (-half + 0.012, half - 0.012),
                 (0.02, height_m - 0.012),
                 Material("screen", (34, 36, 42), int(rng.integers(100))),
-                solid=False,
-                tile_m=None,
             ),
-            box((-0.1, 0.14), (-0.16, 0.16), (-0.06, -0.045), case, solid=False),
-            box((0.0, 0.04), (-0.04, 0.04), (-0.06, 0.0), case, solid=False),
+            detail((-0.1, 0.14), (-0.16, 0.16), (-0.06, -0.045), case),
+            detail((0.0, 0.04), (-0.04, 0.04), (-0.06, 0.0), case),
         )
     )

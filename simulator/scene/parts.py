@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from simulator.scene.meshes import Mesh
 
+Span = tuple[float, float]
 Vec3 = tuple[float, float, float]
 Rgb = tuple[int, int, int]
 Shape = Literal["box", "cylinder", "ellipsoid", "cushion", "drape", "leaf", "mesh", "hull"]
@@ -141,22 +142,34 @@ def rotation_of(part: Part) -> npt.NDArray[np.float64]:
     return np.asarray(rotation_z(part.yaw_rad) @ pitch @ roll)
 
 
-def box(
-    x: tuple[float, float],
-    y: tuple[float, float],
-    z: tuple[float, float],
-    material: Material,
-    **options: object,
-) -> Part:
+def box(x: Span, y: Span, z: Span, material: Material, **options: object) -> Part:
     """A box given by its extents along the axes."""
     centre = ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2, (z[0] + z[1]) / 2)
     size = (abs(x[1] - x[0]), abs(y[1] - y[0]), abs(z[1] - z[0]))
     return replace(Part("box", centre, size, material), **options)  # type: ignore[arg-type]
 
 
-def post(
-    x: float, y: float, z: tuple[float, float], radius: float, material: Material, **options: object
-) -> Part:
+def detail(x: Span, y: Span, z: Span, material: Material, **options: object) -> Part:
+    """A box that is only seen."""
+    return box(x, y, z, material, solid=False, **options)
+
+
+def label(x: Span, y: Span, z: Span, material: Material, **options: object) -> Part:
+    """A box that is only seen and shows one whole picture on each side."""
+    return detail(x, y, z, material, tile_m=None, **options)
+
+
+def ball(centre: Vec3, size: Vec3, material: Material, **options: object) -> Part:
+    """An ellipsoid that is only seen."""
+    return replace(Part("ellipsoid", centre, size, material, solid=False), **options)  # type: ignore[arg-type]
+
+
+def rounded(centre: Vec3, size: Vec3, material: Material, **options: object) -> Part:
+    """A box with round edges."""
+    return replace(Part("cushion", centre, size, material), **options)  # type: ignore[arg-type]
+
+
+def post(x: float, y: float, z: Span, radius: float, material: Material, **options: object) -> Part:
     """An upright cylinder."""
     part = Part("cylinder", (x, y, (z[0] + z[1]) / 2), (2 * radius, 2 * radius, z[1] - z[0]), material)
     return replace(part, **options)  # type: ignore[arg-type]

@@ -3,7 +3,21 @@
 import cv2
 import numpy as np
 
-from simulator.textures.noise import Image, Rgb, finish, flat, modulate, smooth, spectral_noise
+from simulator.textures.noise import (
+    Image,
+    Rgb,
+    block,
+    finish,
+    flat,
+    modulate,
+    noised,
+    one_of,
+    oval,
+    scaled,
+    smooth,
+    spectral_noise,
+    stroke,
+)
 
 
 def wood(rng: np.random.Generator, colour: Rgb) -> Image:
@@ -13,7 +27,7 @@ def wood(rng: np.random.Generator, colour: Rgb) -> Image:
     rows = np.arange(size, dtype=np.float32)[:, None] / size
     rings = np.sin(2 * np.pi * (rows * 14.0) + 2.2 * warp)
     image = modulate(flat(size, size, colour), rings, 0.07)
-    image = modulate(image, spectral_noise(rng, size, size, 0.7, stretch=33.3), 0.07)
+    image = noised(image, rng, 0.7, 0.07, 33.3)
     return finish(modulate(image, warp, 0.06))
 
 
@@ -23,9 +37,9 @@ def fabric(rng: np.random.Generator, colour: Rgb) -> Image:
     grid = np.arange(size, dtype=np.float32)
     weave = np.sin(grid[:, None] * np.pi / 2.0) * np.sin(grid[None, :] * np.pi / 2.0)
     image = modulate(flat(size, size, colour), weave, 0.05)
-    image = modulate(image, spectral_noise(rng, size, size, 0.6), 0.08)
-    image = modulate(image, spectral_noise(rng, size, size, 0.9, stretch=20), 0.05)
-    return finish(modulate(image, spectral_noise(rng, size, size, 1.8), 0.06))
+    image = noised(image, rng, 0.6, 0.08)
+    image = noised(image, rng, 0.9, 0.05, 20)
+    return finish(noised(image, rng, 1.8, 0.06))
 
 
 def leather(rng: np.random.Generator, colour: Rgb) -> Image:
@@ -34,7 +48,7 @@ def leather(rng: np.random.Generator, colour: Rgb) -> Image:
     cells = smooth(rng.standard_normal((size, size)).astype(np.float32), 2.2)
     image = modulate(flat(size, size, colour), cells / cells.std(), 0.07)
     crease = np.exp(-((spectral_noise(rng, size, size, 1.6) / 0.05) ** 2))
-    return finish(modulate(modulate(image, -crease, 0.18), spectral_noise(rng, size, size, 1.9), 0.08))
+    return finish(noised(modulate(image, -crease, 0.18), rng, 1.9, 0.08))
 
 
 def pattern_cloth(rng: np.random.Generator, colour: Rgb) -> Image:
@@ -45,52 +59,36 @@ def pattern_cloth(rng: np.random.Generator, colour: Rgb) -> Image:
     for _ in range(90):
         x, y = (int(v) for v in rng.integers(0, size, 2))
         axes = (int(rng.integers(8, 30)), int(rng.integers(3, 9)))
-        angle, ink = float(rng.uniform(0, 360)), inks[int(rng.integers(4))]
+        angle, ink = float(rng.uniform(0, 360)), one_of(rng, inks)
         for dx in (-size, 0, size):
             for dy in (-size, 0, size):
-                cv2.ellipse(image, (x + dx, y + dy), axes, angle, 0, 360, ink, -1, cv2.LINE_AA)
-    return finish(modulate(image, spectral_noise(rng, size, size, 0.5), 0.06))
+                oval(image, (x + dx, y + dy), axes, angle, ink)
+    return finish(noised(image, rng, 0.5, 0.06))
 
 
 def metal(rng: np.random.Generator, colour: Rgb) -> Image:
     """Brushed metal."""
-    image = modulate(flat(256, 256, colour), spectral_noise(rng, 256, 256, 0.5, stretch=50), 0.05)
-    return finish(modulate(image, spectral_noise(rng, 256, 256, 1.8), 0.07))
+    image = noised(flat(256, 256, colour), rng, 0.5, 0.05, 50)
+    return finish(noised(image, rng, 1.8, 0.07))
 
 
 def lacquer(rng: np.random.Generator, colour: Rgb) -> Image:
     """Painted furniture: nearly even, a few nicks."""
     size = 256
-    image = modulate(flat(size, size, colour), spectral_noise(rng, size, size, 1.6), 0.02)
+    image = noised(flat(size, size, colour), rng, 1.6, 0.02)
     for _ in range(9):
         x, y = (int(v) for v in rng.integers(4, size - 4, 2))
         tone = tuple(float(c * rng.uniform(0.8, 0.95)) for c in colour)
-        cv2.ellipse(
-            image,
-            (x, y),
-            (int(rng.integers(1, 5)), 1),
-            float(rng.uniform(0, 180)),
-            0,
-            360,
-            tone,
-            -1,
-            cv2.LINE_AA,
-        )
+        oval(image, (x, y), (int(rng.integers(1, 5)), 1), float(rng.uniform(0, 180)), tone)
     return finish(image)
 
 
 def ceramic(rng: np.random.Generator, colour: Rgb) -> Image:
     """Glazed pottery with speckles and bands."""
     size = 256
-    image = modulate(flat(size, size, colour), spectral_noise(rng, size, size, 1.4), 0.07)
+    image = noised(flat(size, size, colour), rng, 1.4, 0.07)
     for band in rng.integers(20, size - 20, 3):
-        cv2.line(
-            image,
-            (0, int(band)),
-            (size, int(band)),
-            tuple(float(0.55 * c) for c in colour),
-            int(rng.integers(2, 7)),
-        )
+        cv2.line(image, (0, int(band)), (size, int(band)), scaled(colour, 0.55), int(rng.integers(2, 7)))
     speckle = (rng.random((size, size)) > 0.995).astype(np.float32)
     return finish(modulate(image, -cv2.dilate(speckle, np.ones((2, 2), np.uint8)), 0.5))
 
@@ -98,12 +96,12 @@ def ceramic(rng: np.random.Generator, colour: Rgb) -> Image:
 def leaf(rng: np.random.Generator, colour: Rgb) -> Image:
     """Leaf surface with midrib and veins, midrib along the columns."""
     size = 256
-    image = modulate(flat(size, size, colour), spectral_noise(rng, size, size, 1.3), 0.13)
+    image = noised(flat(size, size, colour), rng, 1.3, 0.13)
     vein = tuple(float(min(255, c * 1.45 + 18)) for c in colour)
-    cv2.line(image, (size // 2, 0), (size // 2, size), vein, 6, cv2.LINE_AA)
+    stroke(image, (size // 2, 0), (size // 2, size), vein, 6)
     for y in range(10, size, 26):
-        cv2.line(image, (size // 2, y + 24), (0, y - 30), vein, 2, cv2.LINE_AA)
-        cv2.line(image, (size // 2, y + 24), (size, y - 30), vein, 2, cv2.LINE_AA)
+        stroke(image, (size // 2, y + 24), (0, y - 30), vein, 2)
+        stroke(image, (size // 2, y + 24), (size, y - 30), vein, 2)
     return finish(image)
 
 
@@ -114,17 +112,17 @@ def wicker(rng: np.random.Generator, colour: Rgb) -> Image:
     for i in range(size // step):
         for j in range(size // step):
             shade = float(rng.uniform(0.8, 1.1))
-            tone = tuple(float(c * shade) for c in colour)
+            tone = scaled(colour, shade)
             y, x = i * step, j * step
             rect = (
                 ((x, y + 3), (x + step - 1, y + step - 4))
                 if (i + j) % 2
                 else ((x + 3, y), (x + step - 4, y + step - 1))
             )
-            cv2.rectangle(image, rect[0], rect[1], tone, -1)
-    return finish(modulate(image, spectral_noise(rng, size, size, 0.7), 0.08))
+            block(image, rect[0], rect[1], tone)
+    return finish(noised(image, rng, 0.7, 0.08))
 
 
 def glow(rng: np.random.Generator, colour: Rgb) -> Image:
     """Lit lampshade: even, slightly cloudy."""
-    return finish(modulate(flat(128, 128, colour), spectral_noise(rng, 128, 128, 1.8), 0.02))
+    return finish(noised(flat(128, 128, colour), rng, 1.8, 0.02))

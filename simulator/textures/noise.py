@@ -1,6 +1,8 @@
 """Periodic noise and small drawing aids that the texture kinds share. Pure numpy and OpenCV."""
 
 import functools
+from collections.abc import Iterable, Sequence
+from typing import TypeVar
 
 import cv2
 import numpy as np
@@ -9,6 +11,9 @@ import numpy.typing as npt
 Image = npt.NDArray[np.uint8]
 FloatArray = npt.NDArray[np.float32]
 Rgb = tuple[int, int, int]
+Ink = tuple[float, ...]
+Pixel = Sequence[int]
+T = TypeVar("T")
 
 
 def spectral_noise(
@@ -53,6 +58,14 @@ def modulate(image: FloatArray, field: FloatArray, strength: float) -> FloatArra
     return image * factor[..., None]
 
 
+def noised(
+    image: FloatArray, rng: np.random.Generator, exponent: float, strength: float, stretch: float = 1.0
+) -> FloatArray:
+    """An image brightened and darkened by periodic noise, see `spectral_noise` and `modulate`."""
+    height, width = image.shape[:2]
+    return modulate(image, spectral_noise(rng, height, width, exponent, stretch), strength)
+
+
 def finish(image: FloatArray) -> Image:
     """Clip to 0..255 and round to bytes."""
     rounded = np.rint(image)
@@ -65,6 +78,55 @@ def vary(rng: np.random.Generator, colour: Rgb, spread: float) -> Rgb:
     scaled = np.array(colour) * rng.uniform(1.0 - spread, 1.0 + spread) * rng.uniform(0.97, 1.03, 3)
     r, g, b = np.clip(scaled, 0, 255).astype(int).tolist()
     return r, g, b
+
+
+def ink_near(rng: np.random.Generator, colour: Rgb, spread: float) -> Ink:
+    """A colour near the given one, as OpenCV draws with it."""
+    red, green, blue = vary(rng, colour, spread)
+    return float(red), float(green), float(blue)
+
+
+def scaled(colour: Iterable[float], factor: float) -> Ink:
+    """A colour times a factor, as OpenCV draws with it."""
+    return tuple(float(channel * factor) for channel in colour)
+
+
+def one_of(rng: np.random.Generator, choices: Sequence[T]) -> T:
+    """One of several, each as likely as the others."""
+    return choices[int(rng.integers(len(choices)))]
+
+
+def disc(image: FloatArray, centre: Pixel, radius: int, ink: Ink | float, thick: int = -1) -> None:
+    """Draw a filled circle, or its line of some thickness, with smooth edges."""
+    cv2.circle(image, centre, radius, ink, thick, cv2.LINE_AA)
+
+
+def oval(
+    image: FloatArray,
+    centre: Pixel,
+    axes: tuple[int, int],
+    angle: float,
+    ink: Ink | float,
+    thick: int = -1,
+    arc: tuple[float, float] = (0, 360),
+) -> None:
+    """Draw a filled ellipse, or its line, turned by an angle in degrees; `arc` is the part that is drawn."""
+    cv2.ellipse(image, centre, axes, angle, *arc, ink, thick, cv2.LINE_AA)
+
+
+def block(image: FloatArray, corner: Pixel, opposite: Pixel, ink: Ink | float) -> None:
+    """Draw a filled rectangle."""
+    cv2.rectangle(image, corner, opposite, ink, -1)
+
+
+def stroke(image: FloatArray, start: Pixel, end: Pixel, ink: Ink | float, thick: int) -> None:
+    """Draw a line with smooth edges."""
+    cv2.line(image, start, end, ink, thick, cv2.LINE_AA)
+
+
+def fill(image: FloatArray, outline: npt.NDArray[np.int32], ink: Ink | float) -> None:
+    """Draw a filled polygon with smooth edges."""
+    cv2.fillPoly(image, [outline], ink, cv2.LINE_AA)
 
 
 def blob(

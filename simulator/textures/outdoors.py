@@ -3,19 +3,35 @@
 import cv2
 import numpy as np
 
-from simulator.textures.noise import Image, Rgb, blob, finish, flat, modulate, smooth, spectral_noise, vary
+from simulator.textures.noise import (
+    Image,
+    Rgb,
+    blob,
+    block,
+    disc,
+    finish,
+    flat,
+    modulate,
+    noised,
+    oval,
+    scaled,
+    smooth,
+    spectral_noise,
+    stroke,
+    vary,
+)
 
 
 def asphalt(rng: np.random.Generator, colour: Rgb) -> Image:
     """Worn asphalt: grit, mended patches, cracks and oil stains."""
     size = 1024
-    image = modulate(flat(size, size, colour), spectral_noise(rng, size, size, 1.7), 0.05)
-    image = modulate(image, spectral_noise(rng, size, size, 0.4), 0.07)
+    image = noised(flat(size, size, colour), rng, 1.7, 0.05)
+    image = noised(image, rng, 0.4, 0.07)
     tone = np.zeros((size, size), np.float32)
     for _ in range(9):
         x, y = (int(v) for v in rng.integers(80, size - 200, 2))
         w, h = (int(v) for v in rng.integers(40, 180, 2))
-        cv2.rectangle(tone, (x, y), (x + w, y + h), float(rng.uniform(-1.0, 0.5)), -1)
+        block(tone, (x, y), (x + w, y + h), float(rng.uniform(-1.0, 0.5)))
     for _ in range(16):
         cv2.fillPoly(tone, [blob(rng, tuple(rng.uniform(60, size - 60, 2)), rng.uniform(8, 40))], -1.0)
     image = modulate(image, smooth(tone, 1.2), 0.13)
@@ -25,7 +41,7 @@ def asphalt(rng: np.random.Generator, colour: Rgb) -> Image:
         for _ in range(int(rng.integers(10, 40))):
             angle += rng.normal(0.0, 0.5)
             following = point + 12 * np.array([np.cos(angle), np.sin(angle)])
-            cv2.line(cracks, point.astype(int).tolist(), following.astype(int).tolist(), 1.0, 1, cv2.LINE_AA)
+            stroke(cracks, point.astype(int).tolist(), following.astype(int).tolist(), 1.0, 1)
             point = following
     return finish(modulate(image, -cracks, 0.4))
 
@@ -33,7 +49,7 @@ def asphalt(rng: np.random.Generator, colour: Rgb) -> Image:
 def grass(rng: np.random.Generator, colour: Rgb) -> Image:
     """Lawn: blades, worn and lush patches, some clover and daisies."""
     size = 1024
-    image = modulate(flat(size, size, colour), spectral_noise(rng, size, size, 1.5), 0.13)
+    image = noised(flat(size, size, colour), rng, 1.5, 0.13)
     blades = spectral_noise(rng, size, size, 0.5, stretch=0.2)
     image = modulate(image, blades, 0.15)
     dry = smooth((spectral_noise(rng, size, size, 2.0) > 1.1).astype(np.float32), 5.0)[..., None]
@@ -41,7 +57,7 @@ def grass(rng: np.random.Generator, colour: Rgb) -> Image:
     for _ in range(260):
         x, y = (int(v) for v in rng.integers(3, size - 3, 2))
         ink = (238.0, 236.0, 226.0) if rng.random() < 0.6 else (226.0, 196.0, 60.0)
-        cv2.circle(image, (x, y), int(rng.integers(2, 4)), ink, -1, cv2.LINE_AA)
+        disc(image, (x, y), int(rng.integers(2, 4)), ink)
     return finish(image)
 
 
@@ -67,8 +83,8 @@ def roof_tiles(rng: np.random.Generator, colour: Rgb) -> Image:
 def concrete(rng: np.random.Generator, colour: Rgb) -> Image:
     """Cast concrete: clouds, pores, streaks."""
     size = 512
-    image = modulate(flat(size, size, colour), spectral_noise(rng, size, size, 1.6), 0.07)
-    image = modulate(image, spectral_noise(rng, size, size, 1.2, stretch=0.05), 0.05)
+    image = noised(flat(size, size, colour), rng, 1.6, 0.07)
+    image = noised(image, rng, 1.2, 0.05, 0.05)
     pores = (rng.random((size, size)) > 0.997).astype(np.float32)
     return finish(modulate(image, -cv2.dilate(pores, np.ones((3, 3), np.uint8)), 0.3))
 
@@ -76,12 +92,12 @@ def concrete(rng: np.random.Generator, colour: Rgb) -> Image:
 def planks(rng: np.random.Generator, colour: Rgb) -> Image:
     """Weathered boards along the columns."""
     size, count = 512, 10
-    image = modulate(flat(size, size, colour), spectral_noise(rng, size, size, 0.9, stretch=0.05), 0.13)
+    image = noised(flat(size, size, colour), rng, 0.9, 0.13, 0.05)
     width = size // count
     for k in range(count):
         image[:, k * width : (k + 1) * width] *= float(rng.uniform(0.82, 1.12))
         image[:, k * width : k * width + 3] *= 0.45
-    return finish(modulate(image, spectral_noise(rng, size, size, 1.7), 0.06))
+    return finish(noised(image, rng, 1.7, 0.06))
 
 
 def bark(rng: np.random.Generator, colour: Rgb) -> Image:
@@ -99,13 +115,13 @@ def foliage(rng: np.random.Generator, colour: Rgb) -> Image:
         for _ in range(700):
             x, y = (int(v) for v in rng.integers(0, size, 2))
             shade = (0.55 + 0.22 * layer) * rng.uniform(0.8, 1.25)
-            tone = tuple(float(c * shade) for c in vary(rng, colour, 0.12))
+            tone = scaled(vary(rng, colour, 0.12), shade)
             axes, angle = (int(rng.integers(5, 12)), int(rng.integers(3, 6))), float(rng.uniform(0, 180))
             for dx in (-size, 0, size):
                 for dy in (-size, 0, size):
                     if -20 < x + dx < size + 20 and -20 < y + dy < size + 20:
-                        cv2.ellipse(image, (x + dx, y + dy), axes, angle, 0, 360, tone, -1, cv2.LINE_AA)
-    return finish(modulate(image, spectral_noise(rng, size, size, 1.9), 0.08))
+                        oval(image, (x + dx, y + dy), axes, angle, tone)
+    return finish(noised(image, rng, 1.9, 0.08))
 
 
 def _courses(

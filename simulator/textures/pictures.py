@@ -8,10 +8,17 @@ from simulator.textures.noise import (
     Image,
     Rgb,
     blob,
+    block,
+    disc,
+    fill,
     finish,
     flat,
-    modulate,
+    ink_near,
+    noised,
+    one_of,
+    scaled,
     spectral_noise,
+    stroke,
     vary,
     write,
 )
@@ -52,85 +59,49 @@ def _trees(rng: np.random.Generator, image: FloatArray, count: int) -> None:
         cv2.line(image, (int(x), int(y)), trunk, (62.0, 44.0, 32.0), max(2, int(size / 9)))
         for _ in range(9):
             centre = (x + rng.normal(0, size * 0.4), y - size * 1.5 + rng.normal(0, size * 0.4))
-            green = tuple(float(v) for v in vary(rng, (70, 100, 46), 0.45))
-            cv2.fillPoly(image, [blob(rng, centre, size * 0.42)], green, cv2.LINE_AA)
+            green = ink_near(rng, (70, 100, 46), 0.45)
+            fill(image, blob(rng, centre, size * 0.42), green)
 
 
 def abstract(rng: np.random.Generator, colour: Rgb) -> Image:
     """Overlapping fields, bars and circles from one palette."""
-    palette = PALETTES[int(rng.integers(len(PALETTES)))]
-    image = flat(HEIGHT, WIDTH, palette[int(rng.integers(len(palette)))])
+    palette = one_of(rng, PALETTES)
+    image = flat(HEIGHT, WIDTH, one_of(rng, palette))
     for _ in range(34):
-        ink = tuple(float(v) for v in vary(rng, palette[int(rng.integers(len(palette)))], 0.15))
+        ink = ink_near(rng, one_of(rng, palette), 0.15)
         x, y = (float(v) for v in rng.uniform((0, 0), (WIDTH, HEIGHT)))
         kind = int(rng.integers(4))
         if kind == 0:
-            cv2.fillPoly(image, [blob(rng, (x, y), float(rng.uniform(25, 120)), 9)], ink, cv2.LINE_AA)
+            fill(image, blob(rng, (x, y), float(rng.uniform(25, 120)), 9), ink)
         elif kind == 1:
-            cv2.circle(
-                image,
-                (int(x), int(y)),
-                int(rng.integers(10, 70)),
-                ink,
-                int(rng.choice([-1, 4, 9])),
-                cv2.LINE_AA,
-            )
+            disc(image, (int(x), int(y)), int(rng.integers(10, 70)), ink, int(rng.choice([-1, 4, 9])))
         elif kind == 2:
             end = (int(x + rng.normal(0, 160)), int(y + rng.normal(0, 160)))
-            cv2.line(image, (int(x), int(y)), end, ink, int(rng.integers(2, 26)), cv2.LINE_AA)
+            stroke(image, (int(x), int(y)), end, ink, int(rng.integers(2, 26)))
         else:
             corner = (int(x + rng.integers(20, 150)), int(y + rng.integers(20, 150)))
-            cv2.rectangle(image, (int(x), int(y)), corner, ink, -1)
+            block(image, (int(x), int(y)), corner, ink)
     return _painted(rng, image, colour)
 
 
 def still_life(rng: np.random.Generator, colour: Rgb) -> Image:
     """A table with fruit, bottles and flowers before a dark ground."""
-    image = modulate(
-        flat(HEIGHT, WIDTH, vary(rng, (96, 78, 60), 0.4)), spectral_noise(rng, HEIGHT, WIDTH, 1.7), 0.2
-    )
+    image = noised(flat(HEIGHT, WIDTH, vary(rng, (96, 78, 60), 0.4)), rng, 1.7, 0.2)
     table = int(HEIGHT * 0.66)
-    image[table:] = modulate(
-        flat(HEIGHT - table, WIDTH, vary(rng, (176, 140, 102), 0.2)),
-        spectral_noise(rng, HEIGHT - table, WIDTH, 1.2, 5.0),
-        0.1,
-    )
+    image[table:] = noised(flat(HEIGHT - table, WIDTH, vary(rng, (176, 140, 102), 0.2)), rng, 1.2, 0.1, 5.0)
     for _ in range(int(rng.integers(2, 5))):
         x, top, half = int(rng.uniform(80, WIDTH - 80)), int(rng.uniform(120, 260)), int(rng.integers(16, 34))
-        glass = tuple(float(v) for v in vary(rng, (70, 108, 96), 0.6))
-        cv2.rectangle(image, (x - half, top + 60), (x + half, table + 40), glass, -1)
-        cv2.rectangle(image, (x - half // 3, top), (x + half // 3, top + 62), glass, -1)
-        cv2.line(
-            image,
-            (x - half // 2, top + 70),
-            (x - half // 2, table + 20),
-            (236.0, 240.0, 236.0),
-            4,
-            cv2.LINE_AA,
-        )
+        glass = ink_near(rng, (70, 108, 96), 0.6)
+        block(image, (x - half, top + 60), (x + half, table + 40), glass)
+        block(image, (x - half // 3, top), (x + half // 3, top + 62), glass)
+        stroke(image, (x - half // 2, top + 70), (x - half // 2, table + 20), (236.0, 240.0, 236.0), 4)
     for _ in range(24):
         x, y = int(rng.uniform(50, WIDTH - 50)), int(table + rng.uniform(-10, 70))
         radius = int(rng.integers(14, 36))
-        fruit = vary(
-            rng, ((200, 70, 40), (224, 170, 50), (126, 150, 60), (110, 40, 70))[int(rng.integers(4))], 0.2
-        )
-        cv2.circle(image, (int(x), int(y)), radius, tuple(float(0.55 * v) for v in fruit), -1, cv2.LINE_AA)
-        cv2.circle(
-            image,
-            (int(x - 3), int(y - 4)),
-            int(radius * 0.82),
-            tuple(float(v) for v in fruit),
-            -1,
-            cv2.LINE_AA,
-        )
-        cv2.circle(
-            image,
-            (int(x - radius / 3), int(y - radius / 3)),
-            max(2, radius // 6),
-            (250.0, 244.0, 228.0),
-            -1,
-            cv2.LINE_AA,
-        )
+        fruit = vary(rng, one_of(rng, ((200, 70, 40), (224, 170, 50), (126, 150, 60), (110, 40, 70))), 0.2)
+        disc(image, (int(x), int(y)), radius, scaled(fruit, 0.55))
+        disc(image, (int(x - 3), int(y - 4)), int(radius * 0.82), scaled(fruit, 1.0))
+        disc(image, (int(x - radius / 3), int(y - radius / 3)), max(2, radius // 6), (250.0, 244.0, 228.0))
     return _painted(rng, image, colour)
 
 
@@ -142,36 +113,32 @@ def street(rng: np.random.Generator, colour: Rgb) -> Image:
     while x < WIDTH:
         wide, top = int(rng.integers(70, 150)), int(rng.integers(30, 160))
         wall = vary(
-            rng,
-            ((206, 176, 140), (170, 96, 78), (222, 214, 196), (140, 150, 158))[int(rng.integers(4))],
-            0.18,
+            rng, one_of(rng, ((206, 176, 140), (170, 96, 78), (222, 214, 196), (140, 150, 158))), 0.18
         )
-        cv2.rectangle(image, (x, top), (x + wide, HEIGHT - 60), tuple(map(float, wall)), -1)
+        block(image, (x, top), (x + wide, HEIGHT - 60), scaled(wall, 1.0))
         for y in range(top + 18, HEIGHT - 130, 58):
             for wx in range(x + 12, x + wide - 24, 34):
                 cv2.rectangle(image, (wx, y), (wx + 20, y + 36), (236.0, 234.0, 228.0), 2)
-                pane = tuple(float(v) for v in vary(rng, (66, 78, 92), 0.5))
-                cv2.rectangle(image, (wx + 2, y + 2), (wx + 18, y + 34), pane, -1)
-        awning = tuple(float(v) for v in vary(rng, (160, 60, 50), 0.6))
-        cv2.rectangle(image, (x + 8, HEIGHT - 118), (x + wide - 8, HEIGHT - 98), awning, -1)
-        cv2.rectangle(image, (x + 14, HEIGHT - 98), (x + wide - 14, HEIGHT - 60), (48.0, 44.0, 46.0), -1)
+                pane = ink_near(rng, (66, 78, 92), 0.5)
+                block(image, (wx + 2, y + 2), (wx + 18, y + 34), pane)
+        awning = ink_near(rng, (160, 60, 50), 0.6)
+        block(image, (x + 8, HEIGHT - 118), (x + wide - 8, HEIGHT - 98), awning)
+        block(image, (x + 14, HEIGHT - 98), (x + wide - 14, HEIGHT - 60), (48.0, 44.0, 46.0))
         x += wide + int(rng.integers(0, 4))
-    image[HEIGHT - 60 :] = modulate(
-        flat(60, WIDTH, (112, 110, 108)), spectral_noise(rng, 60, WIDTH, 0.8), 0.1
-    )
-    return finish(modulate(image, spectral_noise(rng, HEIGHT, WIDTH, 0.4), 0.05))
+    image[HEIGHT - 60 :] = noised(flat(60, WIDTH, (112, 110, 108)), rng, 0.8, 0.1)
+    return finish(noised(image, rng, 0.4, 0.05))
 
 
 def poster(rng: np.random.Generator, colour: Rgb) -> Image:
     """Printed poster: headline, lines of text, one motif."""
     del colour
-    palette = PALETTES[int(rng.integers(len(PALETTES)))]
+    palette = one_of(rng, PALETTES)
     image = flat(HEIGHT, WIDTH, (240, 234, 220))
-    image[40:300, 40 : WIDTH - 40] = np.array(palette[int(rng.integers(len(palette)))], np.float32)
+    image[40:300, 40 : WIDTH - 40] = np.array(one_of(rng, palette), np.float32)
     for _ in range(12):
-        ink = tuple(float(v) for v in vary(rng, palette[int(rng.integers(len(palette)))], 0.2))
+        ink = ink_near(rng, one_of(rng, palette), 0.2)
         centre = (float(rng.uniform(90, WIDTH - 90)), float(rng.uniform(80, 260)))
-        cv2.fillPoly(image, [blob(rng, centre, float(rng.uniform(14, 60)), 7)], ink, cv2.LINE_AA)
+        fill(image, blob(rng, centre, float(rng.uniform(14, 60)), 7), ink)
     words = ("KONZERT", "MUSEUM", "JAZZ", "ATLAS", "FLORA", "LISBOA", "CINEMA", "BAUHAUS", "SALON", "1968")
     text = " ".join(str(w) for w in rng.choice(words, 2, replace=False))
     write(image, text, (44, 374), 2.0, (36.0, 34.0, 40.0), 5)
@@ -179,10 +146,10 @@ def poster(rng: np.random.Generator, colour: Rgb) -> Image:
         for x in range(46, WIDTH - 60, 14):
             if rng.random() > 0.25:
                 cv2.line(image, (x, y), (x + int(rng.integers(4, 11)), y), (80.0, 78.0, 80.0), 4)
-    return finish(modulate(image, spectral_noise(rng, HEIGHT, WIDTH, 0.8), 0.02))
+    return finish(noised(image, rng, 0.8, 0.02))
 
 
 def _painted(rng: np.random.Generator, image: FloatArray, _colour: Rgb) -> Image:
     """Canvas weave and brush strokes over a finished composition."""
-    image = modulate(image, spectral_noise(rng, HEIGHT, WIDTH, 0.7, stretch=2.5), 0.06)
-    return finish(modulate(image, spectral_noise(rng, HEIGHT, WIDTH, 0.2), 0.025))
+    image = noised(image, rng, 0.7, 0.06, 2.5)
+    return finish(noised(image, rng, 0.2, 0.025))

@@ -1,17 +1,20 @@
 """Building surfaces: plaster, ceiling paint, floor boards, tiles. RGB, tileable."""
 
-import cv2
 import numpy as np
 
 from simulator.textures.noise import (
     FloatArray,
     Image,
     Rgb,
+    disc,
     finish,
     flat,
     modulate,
+    noised,
+    oval,
     smooth,
     spectral_noise,
+    stroke,
     vary,
 )
 
@@ -19,28 +22,24 @@ from simulator.textures.noise import (
 def plaster(rng: np.random.Generator, colour: Rgb) -> Image:
     """Rolled wall paint: broad uneven tone, roller grain, a few faint scuffs and filled holes."""
     size = 1024
-    image = modulate(flat(size, size, colour), spectral_noise(rng, size, size, 1.6), 0.018)
-    image = modulate(image, spectral_noise(rng, size, size, 0.6), 0.014)
+    image = noised(flat(size, size, colour), rng, 1.6, 0.018)
+    image = noised(image, rng, 0.6, 0.014)
     marks = np.zeros((size, size), np.float32)
     for _ in range(70):
         x, y = rng.integers(0, size, 2)
         angle, length = rng.uniform(0, np.pi), rng.uniform(8, 60)
         end = (int(x + length * np.cos(angle)), int(y + length * np.sin(angle)))
-        cv2.line(
-            marks, (int(x), int(y)), end, float(rng.uniform(-1.0, 0.6)), int(rng.integers(1, 4)), cv2.LINE_AA
-        )
+        stroke(marks, (int(x), int(y)), end, float(rng.uniform(-1.0, 0.6)), int(rng.integers(1, 4)))
     for _ in range(60):
         x, y = rng.integers(0, size, 2)
-        cv2.circle(
-            marks, (int(x), int(y)), int(rng.integers(2, 9)), float(rng.uniform(-1.0, 1.0)), -1, cv2.LINE_AA
-        )
+        disc(marks, (int(x), int(y)), int(rng.integers(2, 9)), float(rng.uniform(-1.0, 1.0)))
     return finish(modulate(image, smooth(marks, 1.5), 0.055))
 
 
 def ceiling(rng: np.random.Generator, colour: Rgb) -> Image:
     """Ceiling paint: nearly even."""
-    image = modulate(flat(512, 512, colour), spectral_noise(rng, 512, 512, 1.5), 0.012)
-    return finish(modulate(image, spectral_noise(rng, 512, 512, 0.3), 0.012))
+    image = noised(flat(512, 512, colour), rng, 1.5, 0.012)
+    return finish(noised(image, rng, 0.3, 0.012))
 
 
 def boards(rng: np.random.Generator, colour: Rgb) -> Image:
@@ -73,8 +72,8 @@ def _knots(rng: np.random.Generator, image: FloatArray, count: int) -> None:
     for _ in range(count):
         x, y = (int(v) for v in rng.integers(20, size - 20, 2))
         axes = (int(rng.integers(6, 16)), int(rng.integers(3, 7)))
-        cv2.ellipse(shade, (x, y), (axes[0] * 2, axes[1] * 2), 0, 0, 360, 0.82, -1, cv2.LINE_AA)
-        cv2.ellipse(shade, (x, y), axes, 0, 0, 360, float(rng.uniform(0.45, 0.65)), -1, cv2.LINE_AA)
+        oval(shade, (x, y), (axes[0] * 2, axes[1] * 2), 0, 0.82)
+        oval(shade, (x, y), axes, 0, float(rng.uniform(0.45, 0.65)))
     image *= smooth(shade, 1.6)[..., None]
 
 
