@@ -56,12 +56,7 @@ def run_suite(choice: SuiteChoice, json_file: Path | None) -> dict[str, Any]:
         maps = _maps(console, pool, choice, folder / "maps")
         runs = _runs(console, pool, choice, maps, folder / choice.suite)
     explored = [bundle.figures for bundle in maps.values()]
-    result = {
-        "suite": choice.suite,
-        "runs": runs,
-        "summary": combined(runs),
-        "maps": explored,
-    }
+    result = {"suite": choice.suite, "runs": runs, "summary": combined(runs), "maps": explored}
     seed = choice.plans[0].seed
     write_json(folder / f"{choice.suite}-{seed}.json", result)
     if json_file is not None:

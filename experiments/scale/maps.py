@@ -47,8 +47,5 @@ def _sector(lonlat_rad: Float32Array, start: float, k: int, parts: int) -> np.nd
 def as_message(words: FeatureSet, pipeline: str) -> Features:
     """The features message of a picture."""
     return Features(
-        pipeline=pipeline,
-        lonlat_rad=words.lonlat_rad,
-        scores=words.scores,
-        descriptors=words.descriptors,
+        pipeline=pipeline, lonlat_rad=words.lonlat_rad, scores=words.scores, descriptors=words.descriptors
     )

@@ -20,11 +20,7 @@ ARRAYS = ("lonlat_rad", "scores", "descriptors")
 
 
 def features_of_pairs(
-    pairs: Sequence[PosePair],
-    world: WorldFile,
-    pipeline: Pipeline,
-    folder: Path,
-    tick: Callable[[], None],
+    pairs: Sequence[PosePair], world: WorldFile, pipeline: Pipeline, folder: Path, tick: Callable[[], None]
 ) -> list[FeaturePair]:
     """Read from `folder` what is there, render the rest and keep it; `tick` is called once per pair."""
     folder.mkdir(parents=True, exist_ok=True)

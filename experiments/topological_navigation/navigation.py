@@ -14,11 +14,7 @@ from experiments.topological_navigation.keypoints import SelectKeypointDescripto
 from experiments.topological_navigation.matcher import LocalMatcher
 from experiments.topological_navigation.memory_map import MemoryMap, load, save
 from experiments.topological_navigation.pictures import picture_of
-from experiments.topological_navigation.vectors import (
-    keypoint_unit_vectors,
-    latitude_headings,
-    pair_headings,
-)
+from experiments.topological_navigation.vectors import keypoint_unit_vectors, latitude_headings, pair_headings
 from services.drive.passing import obstacle_heading
 from services.features.networks.runtime import WeightsError
 from services.planner.heading.choose import heading_by_votes

@@ -88,12 +88,7 @@ def answer_mission(missions: MissionStore, robot: str, request: MissionRecordReq
 
 
 def run(
-    bus: Bus,
-    stop: Event,
-    store: MapStore,
-    missions: MissionStore,
-    deltas: Deltas,
-    ready: Callable[[], None],
+    bus: Bus, stop: Event, store: MapStore, missions: MissionStore, deltas: Deltas, ready: Callable[[], None]
 ) -> None:
     """Answer until `stop`; `ready` is called once questions can be asked."""
     maps, records = bus.requests(MAP, map="*"), bus.requests(MISSION_RECORD, robot="*")

@@ -17,11 +17,7 @@ from shared.certificates.holders import (
 
 
 def make(
-    folder: Path,
-    holders: Iterable[Holder],
-    now: dt.datetime,
-    hosts: tuple[str, ...] = (),
-    keep: bool = False,
+    folder: Path, holders: Iterable[Holder], now: dt.datetime, hosts: tuple[str, ...] = (), keep: bool = False
 ) -> list[Holder]:
     """Make certificates, and the authority if there is none; returns whose were made.
 

@@ -6,13 +6,7 @@ from shared.messages.estop import EStopRequest, EStopState
 from shared.messages.features import ExtractRequest, Features
 from shared.messages.maps import MapDelta, MapReply, MapRequest, MissionRecord, MissionRecordRequest
 from shared.messages.matching import MatchReply, MatchRequest
-from shared.messages.missions import (
-    Event,
-    MissionKinds,
-    MissionKindsRequest,
-    MissionRequest,
-    MissionStatus,
-)
+from shared.messages.missions import Event, MissionKinds, MissionKindsRequest, MissionRequest, MissionStatus
 from shared.messages.sensors import Frame, Ranges
 from shared.messages.simulation import SimulationReply, SimulationRequest, Truth
 

@@ -49,14 +49,7 @@ class SimulationRequest(Message):
     SCHEMA: ClassVar[str] = "simulation_request.v1"
 
     action: Literal[
-        "reset",
-        "place_robot",
-        "place_hider",
-        "remove_hider",
-        "look",
-        "truth",
-        "set_item",
-        "place_obstacle",
+        "reset", "place_robot", "place_hider", "remove_hider", "look", "truth", "set_item", "place_obstacle"
     ]
     pose: Pose | None = None
     seed: int | None = Field(default=None, ge=0)

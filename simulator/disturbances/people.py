@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from simulator.scene.parts import Material, Part, Rgb, box, post, rounded
+from simulator.textures.noise import one_of
 
 SKIN: tuple[Rgb, ...] = ((224, 184, 156), (188, 140, 108), (120, 84, 62))
 CLOTHES: tuple[Rgb, ...] = ((172, 52, 44), (44, 92, 152), (64, 122, 74), (196, 160, 60), (96, 66, 120))
@@ -32,10 +33,10 @@ class Figure:
 
 def person(rng: np.random.Generator) -> Figure:
     """A person in mid-stride: shoes, legs, torso, arms, head and hair."""
-    skin = Material("lacquer", _one_of(SKIN, rng), 41)
-    shirt = Material("pattern_cloth", _one_of(CLOTHES, rng), int(rng.integers(1000)))
-    legs = Material("fabric", _one_of(TROUSERS, rng), 42)
-    shoe, hair = Material("lacquer", (36, 32, 30), 43), Material("fabric", _one_of(HAIR, rng), 44)
+    skin = Material("lacquer", one_of(rng, SKIN), 41)
+    shirt = Material("pattern_cloth", one_of(rng, CLOTHES), int(rng.integers(1000)))
+    legs = Material("fabric", one_of(rng, TROUSERS), 42)
+    shoe, hair = Material("lacquer", (36, 32, 30), 43), Material("fabric", one_of(rng, HAIR), 44)
     parts = []
     for side, ahead in ((1, 0.1), (-1, -0.1)):
         parts += [
@@ -62,7 +63,7 @@ def person(rng: np.random.Generator) -> Figure:
 def cart(rng: np.random.Generator) -> Figure:
     """A driverless trolley with two boxes as load and a handle."""
     steel, rubber = Material("metal", (150, 154, 160), 45), Material("lacquer", (34, 34, 36), 46)
-    deck = Material("lacquer", _one_of(CLOTHES, rng), 47)
+    deck = Material("lacquer", one_of(rng, CLOTHES), 47)
     card = Material("wood", (186, 148, 104), int(rng.integers(1000)))
     half_x, half_y = 0.36, 0.24
     parts = [
@@ -79,7 +80,3 @@ def cart(rng: np.random.Generator) -> Figure:
     parts += [post(-half_x + 0.015, sy * (half_y - 0.02), (0.2, 0.88), 0.014, steel) for sy in (-1, 1)]
     solid = box((-half_x, half_x), (-half_y, half_y), (0.03, 0.9), UNSEEN)
     return Figure(tuple(parts), solid, float(np.hypot(half_x, half_y)), float(rng.uniform(0.3, 0.5)))
-
-
-def _one_of(colours: tuple[Rgb, ...], rng: np.random.Generator) -> Rgb:
-    return colours[int(rng.integers(len(colours)))]

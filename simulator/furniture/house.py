@@ -3,7 +3,7 @@
 import numpy as np
 
 from simulator.scene.faces import face
-from simulator.scene.parts import Material, Part, Piece, Rgb, Vec3, box, detail, label
+from simulator.scene.parts import Material, Part, Piece, Rgb, Vec3, around, box, detail, label
 
 PLINTH_M, OVERHANG_M = 0.35, 0.45
 GLASS = Material("view", (70, 84, 98), 7)
@@ -40,20 +40,20 @@ def house(
     for side in (1.0, -1.0):
         for share in (-0.45, 0.45):
             parts += _gable_window(share * d, side * w, side)
-    return Piece(tuple(parts))
+    return Piece.of(*parts)
 
 
 def _window(x: float, y: float, shutter: Material, out: float) -> list[Part]:
     """Glass in a white frame with a cross, a sill, and open shutters."""
     z, half = (1.05, 2.25), 0.5
     parts = [
-        label((x, x + 0.03 * out), (y - half, y + half), z, GLASS),
+        label((x, x + 0.03 * out), around(y, half), z, GLASS),
         detail((x, x + 0.14 * out), (y - half - 0.1, y + half + 0.1), (z[0] - 0.08, z[0]), STONE),
     ]
     for at in (-half, 0.0, half):
-        parts.append(detail((x, x + 0.06 * out), (y + at - 0.035, y + at + 0.035), z, FRAME))
+        parts.append(detail((x, x + 0.06 * out), around(y + at, 0.035), z, FRAME))
     for at in (z[0] + 0.03, 1.65, z[1] - 0.03):
-        parts.append(detail((x, x + 0.06 * out), (y - half, y + half), (at - 0.03, at + 0.03), FRAME))
+        parts.append(detail((x, x + 0.06 * out), around(y, half), around(at, 0.03), FRAME))
     for sign in (-1.0, 1.0):
         inner, outer = y + sign * (half + 0.04), y + sign * (half + 0.5)
         span = (min(inner, outer), max(inner, outer))
@@ -64,20 +64,20 @@ def _window(x: float, y: float, shutter: Material, out: float) -> list[Part]:
 def _gable_window(x: float, y: float, out: float) -> list[Part]:
     z, half = (1.1, 2.2), 0.4
     return [
-        label((x - half, x + half), (y, y + 0.03 * out), z, GLASS),
-        detail((x - 0.03, x + 0.03), (y, y + 0.06 * out), z, FRAME),
-        *(detail((x - half, x + half), (y, y + 0.06 * out), (at - 0.04, at + 0.04), FRAME) for at in z),
+        label(around(x, half), (y, y + 0.03 * out), z, GLASS),
+        detail(around(x, 0.03), (y, y + 0.06 * out), z, FRAME),
+        *(detail(around(x, half), (y, y + 0.06 * out), around(at, 0.04), FRAME) for at in z),
     ]
 
 
 def _door(x: float, y: float, wood: Material) -> list[Part]:
     """Panelled door under a small canopy, with a step in front."""
     return [
-        detail((x, x + 0.06), (y - 0.5, y + 0.5), (0.2, 2.3), wood, tile_m=1.0),
+        detail((x, x + 0.06), around(y, 0.5), (0.2, 2.3), wood, tile_m=1.0),
         detail((x, x + 0.1), (y - 0.58, y - 0.5), (0.2, 2.38), FRAME),
         detail((x, x + 0.1), (y + 0.5, y + 0.58), (0.2, 2.38), FRAME),
-        detail((x, x + 0.9), (y - 0.9, y + 0.9), (2.5, 2.6), Material("planks", (110, 84, 60), 4)),
-        box((x + 0.05, x + 0.9), (y - 0.8, y + 0.8), (0.0, 0.2), STONE, tile_m=1.0),
+        detail((x, x + 0.9), around(y, 0.9), (2.5, 2.6), Material("planks", (110, 84, 60), 4)),
+        box((x + 0.05, x + 0.9), around(y, 0.8), (0.0, 0.2), STONE, tile_m=1.0),
     ]
 
 
@@ -85,8 +85,8 @@ def _chimney(d: float, w: float, ridge_m: float) -> list[Part]:
     brick = Material("bricks", (146, 80, 62), 6)
     x, y = -0.3 * d, 0.5 * w
     return [
-        detail((x - 0.3, x + 0.3), (y - 0.3, y + 0.3), (ridge_m - 1.2, ridge_m + 0.7), brick, tile_m=1.2),
-        detail((x - 0.36, x + 0.36), (y - 0.36, y + 0.36), (ridge_m + 0.7, ridge_m + 0.8), STONE),
+        detail(around(x, 0.3), around(y, 0.3), (ridge_m - 1.2, ridge_m + 0.7), brick, tile_m=1.2),
+        detail(around(x, 0.36), around(y, 0.36), (ridge_m + 0.7, ridge_m + 0.8), STONE),
     ]
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from simulator.furniture.loads import load_on_pallet, pallet_parts
 from simulator.furniture.stacks import any_colour
-from simulator.scene.parts import Light, Material, Part, Piece, Rgb, box, detail, label, post
+from simulator.scene.parts import Light, Material, Part, Piece, Rgb, around, box, detail, label, post
 
 STEEL = Material("metal", (168, 172, 176), 4)
 DARK = Material("metal", (58, 62, 66), 3)
@@ -30,13 +30,13 @@ def machine_tool(rng: np.random.Generator, colour: Rgb = (206, 212, 208), width_
         z = 2.5 + 0.09 * step
         parts.append(post(-0.7, y - 0.2, (z, z + 0.09), 0.04, Material("lacquer", ink, 1), solid=False))
     parts.append(_plate(-0.9, float(rng.uniform(-0.5, 0.5)), 1.3))
-    return Piece(tuple(parts))
+    return Piece.of(*parts)
 
 
 def _plate(x: float, y: float, z: float) -> Part:
     """A rating plate on a back wall, facing -x."""
     plate = Material("panel", (232, 228, 214), 8)
-    return label((x - 0.02, x), (y - 0.2, y + 0.2), (z - 0.15, z + 0.15), plate)
+    return label((x - 0.02, x), around(y, 0.2), around(z, 0.15), plate)
 
 
 def press(rng: np.random.Generator, colour: Rgb = (86, 128, 96)) -> Piece:
@@ -56,7 +56,7 @@ def press(rng: np.random.Generator, colour: Rgb = (86, 128, 96)) -> Piece:
     for low in np.arange(-0.9, 0.9, 0.3):
         stripe = YELLOW if round(low / 0.3) % 2 else DARK
         parts.append(detail((0.7, 0.715), (low, low + 0.3), (0.56, 0.7), stripe))
-    return Piece(tuple(parts))
+    return Piece.of(*parts)
 
 
 def workbench(rng: np.random.Generator, length_m: float = 2.2) -> Piece:
@@ -74,8 +74,8 @@ def workbench(rng: np.random.Generator, length_m: float = 2.2) -> Piece:
         at, low, tall = rng.uniform(-y + 0.15, y - 0.15), rng.uniform(1.05, 1.45), rng.uniform(0.15, 0.4)
         ink = any_colour(rng, 30, 220)
         tool = Material("lacquer", ink, 1)
-        parts.append(detail((0.04, 0.09), (at - 0.03, at + 0.03), (low, low + tall), tool))
-    return Piece(tuple(parts))
+        parts.append(detail((0.04, 0.09), around(at, 0.03), (low, low + tall), tool))
+    return Piece.of(*parts)
 
 
 def pallet_rack(rng: np.random.Generator, bays: int = 2, levels: int = 3) -> Piece:
@@ -89,17 +89,17 @@ def pallet_rack(rng: np.random.Generator, bays: int = 2, levels: int = 3) -> Pie
         for x in (0.05, depth - 0.05):
             at = -y + k * bay
             height = 1.5 * levels + 0.3
-            parts.append(box((x - 0.05, x + 0.05), (at - 0.05, at + 0.05), (0.0, height), frame, tile_m=0.8))
+            parts.append(box(around(x, 0.05), around(at, 0.05), (0.0, height), frame, tile_m=0.8))
     for level in range(levels):
         z = 1.5 * level
         if level:
             for x in (0.05, depth - 0.05):
-                parts.append(detail((x - 0.03, x + 0.03), (-y, y), (z - 0.12, z), orange))
+                parts.append(detail(around(x, 0.03), (-y, y), (z - 0.12, z), orange))
         for k in range(bays):
             for side in (-0.65, 0.65):
                 at = -y + (k + 0.5) * bay + side
                 parts += load_on_pallet(rng, (depth / 2, at, z), 1.2)
-    return Piece(tuple(parts))
+    return Piece.of(*parts)
 
 
 def conveyor(rng: np.random.Generator, length_m: float = 5.0) -> Piece:
@@ -108,7 +108,7 @@ def conveyor(rng: np.random.Generator, length_m: float = 5.0) -> Piece:
     parts: list[Part] = [
         box((-0.4, 0.4), (-y, y), (0.1, 0.6), Material("lacquer", (96, 108, 116), 4), tile_m=1.0),
         box((-0.34, 0.34), (-y, y), (0.6, 0.7), Material("fabric", (44, 46, 48), 2), tile_m=0.6),
-        *(box((s * 0.4 - 0.04, s * 0.4 + 0.04), (-y, y), (0.6, 0.8), YELLOW, tile_m=0.8) for s in (-1, 1)),
+        *(box(around(s * 0.4, 0.04), (-y, y), (0.6, 0.8), YELLOW, tile_m=0.8) for s in (-1, 1)),
     ]
     at = -y + 0.4
     while at < y - 0.4:
@@ -116,7 +116,7 @@ def conveyor(rng: np.random.Generator, length_m: float = 5.0) -> Piece:
         ink = Material("poster" if rng.random() < 0.3 else "planks", (186, 146, 100), int(rng.integers(6)))
         parts.append(detail((-0.22, 0.22), (at, at + 0.4), (0.7, 0.7 + tall), ink, tile_m=0.4))
         at += float(rng.uniform(0.7, 1.3))
-    return Piece(tuple(parts))
+    return Piece.of(*parts)
 
 
 def hall_lamp(rng: np.random.Generator, strength: float = 14.0) -> Piece:
@@ -146,7 +146,7 @@ def floor_mark(rng: np.random.Generator, length_m: float = 6.0, width_m: float =
     mark = detail(
         (-width_m / 2, width_m / 2), (-length_m / 2, length_m / 2), (0.0, 0.004), paint, casts_shadow=False
     )
-    return Piece((mark,))
+    return Piece.of(mark)
 
 
 def pallet_pile(rng: np.random.Generator, count: int = 9) -> Piece:
@@ -155,4 +155,4 @@ def pallet_pile(rng: np.random.Generator, count: int = 9) -> Piece:
     for k in range(count):
         shift = rng.uniform(-0.03, 0.03, 2)
         parts += pallet_parts((float(shift[0]), float(shift[1]), 0.145 * k))
-    return Piece(tuple(parts))
+    return Piece.of(*parts)

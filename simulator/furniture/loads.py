@@ -2,9 +2,11 @@
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, Piece, Rgb, Vec3, box, detail, label, post, rounded
+from simulator.scene.parts import Material, Part, Piece, Rgb, Vec3, around, box, detail, label, post, rounded
+from simulator.textures.noise import one_of
 
 WOOD = Material("planks", (176, 138, 92), 6)
+TAPE = Material("lacquer", (214, 196, 150), 2)
 CARTON: tuple[Rgb, ...] = ((190, 150, 104), (176, 132, 86), (202, 168, 122))
 INKS: tuple[Rgb, ...] = ((44, 84, 140), (166, 44, 40), (52, 110, 76), (60, 62, 66), (206, 160, 44))
 HALF_X_M, HALF_Y_M = 0.42, 0.58
@@ -15,21 +17,12 @@ def pallet_parts(at: Vec3) -> list[Part]:
     """One flat pallet: boards over three runners, with dark gaps between."""
     x, y, z = at
     gap = Material("fabric", (52, 44, 38), 1)
-    parts = [
-        box(
-            (x - HALF_X_M + 0.02, x + HALF_X_M - 0.02),
-            (y - HALF_Y_M + 0.02, y + HALF_Y_M - 0.02),
-            (z, z + 0.11),
-            gap,
-            tile_m=0.6,
-        )
-    ]
+    inner = (x - HALF_X_M + 0.02, x + HALF_X_M - 0.02), (y - HALF_Y_M + 0.02, y + HALF_Y_M - 0.02)
+    parts = [box(*inner, (z, z + 0.11), gap, tile_m=0.6)]
     for side in (-1.0, 0.0, 1.0):
         low = y + side * (HALF_Y_M - 0.06)
-        parts.append(box((x - HALF_X_M, x + HALF_X_M), (low - 0.06, low + 0.06), (z, z + 0.11), WOOD))
-    parts.append(
-        box((x - HALF_X_M, x + HALF_X_M), (y - HALF_Y_M, y + HALF_Y_M), (z + 0.11, z + DECK_M), WOOD)
-    )
+        parts.append(box(around(x, HALF_X_M), around(low, 0.06), (z, z + 0.11), WOOD))
+    parts.append(box(around(x, HALF_X_M), around(y, HALF_Y_M), (z + 0.11, z + DECK_M), WOOD))
     return parts
 
 
@@ -54,23 +47,14 @@ def _cartons(rng: np.random.Generator, at: Vec3, room_m: float) -> list[Part]:
             for ky in (-1, 0, 1):
                 if layer > 1 and rng.random() < 0.12:
                     continue
-                ink = CARTON[int(rng.integers(len(CARTON)))]
+                ink = one_of(rng, CARTON)
                 look = Material("poster" if rng.random() < 0.12 else "planks", ink, int(rng.integers(5)))
                 cx, cy = x + kx * 0.2, y + ky * 0.375
+                low, high = z + layer * tall, z + (layer + 1) * tall
                 parts += [
-                    box(
-                        (cx - 0.195, cx + 0.195),
-                        (cy - 0.18, cy + 0.18),
-                        (z + layer * tall, z + (layer + 1) * tall - 0.01),
-                        look,
-                        tile_m=0.5,
-                    ),
+                    box(around(cx, 0.195), around(cy, 0.18), (low, high - 0.01), look, tile_m=0.5),
                     detail(
-                        (cx - 0.197, cx + 0.197),
-                        (cy - 0.03, cy + 0.03),
-                        (z + layer * tall, z + (layer + 1) * tall - 0.008),
-                        Material("lacquer", (214, 196, 150), 2),
-                        casts_shadow=False,
+                        around(cx, 0.197), around(cy, 0.03), (low, high - 0.008), TAPE, casts_shadow=False
                     ),
                 ]
     return parts
@@ -78,7 +62,7 @@ def _cartons(rng: np.random.Generator, at: Vec3, room_m: float) -> list[Part]:
 
 def _drums(rng: np.random.Generator, at: Vec3, tall: float) -> list[Part]:
     x, y, z = at
-    look = Material("metal", INKS[int(rng.integers(len(INKS)))], 4)
+    look = Material("metal", one_of(rng, INKS), 4)
     parts: list[Part] = []
     for kx in (-0.21, 0.21):
         for ky in (-0.29, 0.29):
@@ -92,19 +76,12 @@ def _drums(rng: np.random.Generator, at: Vec3, tall: float) -> list[Part]:
 def _sacks(rng: np.random.Generator, at: Vec3, room_m: float) -> list[Part]:
     x, y, z = at
     cloth = Material("fabric", (206, 196, 170), int(rng.integers(4)))
-    parts = [box((x - 0.36, x + 0.36), (y - 0.5, y + 0.5), (z, z + 0.1), cloth)]
+    parts = [box(around(x, 0.36), around(y, 0.5), (z, z + 0.1), cloth)]
     for layer in range(max(1, int(room_m * 0.7 / 0.17))):
         for ky in (-0.36, 0.0, 0.36):
             shift = float(rng.uniform(-0.04, 0.04))
-            parts.append(
-                rounded(
-                    (x + shift, y + ky, z + 0.09 + 0.17 * layer),
-                    (0.78, 0.4, 0.19),
-                    cloth,
-                    solid=False,
-                    tile_m=0.7,
-                )
-            )
+            centre = (x + shift, y + ky, z + 0.09 + 0.17 * layer)
+            parts.append(rounded(centre, (0.78, 0.4, 0.19), cloth, solid=False, tile_m=0.7))
     return parts
 
 
@@ -118,11 +95,11 @@ def drums(rng: np.random.Generator, count: int = 5) -> Piece:
     parts: list[Part] = []
     for k in range(count):
         x, y = 0.62 * (k % 2) - 0.3, 0.62 * (k // 2) - 0.62 * ((count - 1) // 2) / 2
-        look = Material("metal", INKS[int(rng.integers(len(INKS)))], int(rng.integers(4)))
+        look = Material("metal", one_of(rng, INKS), int(rng.integers(4)))
         parts.append(post(x, y, (0.0, 0.88), 0.29, look, tile_m=0.7))
         parts += [post(x, y, (z, z + 0.03), 0.3, look, solid=False) for z in (0.28, 0.57)]
         parts.append(post(x + 0.12, y, (0.88, 0.91), 0.04, Material("metal", (60, 62, 64), 2), solid=False))
-    return Piece(tuple(parts))
+    return Piece.of(*parts)
 
 
 def container(rng: np.random.Generator, length_m: float = 6.0, colour: Rgb = (150, 62, 46)) -> Piece:
@@ -134,18 +111,17 @@ def container(rng: np.random.Generator, length_m: float = 6.0, colour: Rgb = (15
         box((-x, x), (-y, y), (0.0, 0.16), rail, tile_m=1.2),
         box((-x + 0.03, x - 0.03), (-y + 0.03, y - 0.03), (0.16, height), steel, tile_m=1.3),
         *(
-            box((sx * x - 0.09, sx * x + 0.09), (sy * y - 0.09, sy * y + 0.09), (0.0, height), rail)
+            box(around(sx * x, 0.09), around(sy * y, 0.09), (0.0, height), rail)
             for sx in (-1, 1)
             for sy in (-1, 1)
         ),
-        *(detail((-x, x), (s * y - 0.04, s * y + 0.04), (height - 0.12, height), rail) for s in (-1, 1)),
+        *(detail((-x, x), around(s * y, 0.04), (height - 0.12, height), rail) for s in (-1, 1)),
     ]
     for at in (-0.75, -0.3, 0.3, 0.75):
         parts.append(
             post(x + 0.03, at, (0.2, height - 0.1), 0.025, Material("metal", (186, 188, 190), 3), solid=False)
         )
     for side in (-1.0, 1.0):
-        sign = Material("poster", INKS[int(rng.integers(len(INKS)))], int(rng.integers(9)))
-        face = tuple(sorted((side * y, side * (y + 0.012))))
-        parts.append(label((x - 1.9, x - 0.6), (face[0], face[1]), (1.5, 2.2), sign))
-    return Piece(tuple(parts))
+        sign = Material("poster", one_of(rng, INKS), int(rng.integers(9)))
+        parts.append(label((x - 1.9, x - 0.6), (side * y, side * (y + 0.012)), (1.5, 2.2), sign))
+    return Piece.of(*parts)

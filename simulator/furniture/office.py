@@ -3,7 +3,8 @@
 import numpy as np
 
 from simulator.furniture.stacks import any_colour, shade_of
-from simulator.scene.parts import Material, Part, Piece, Rgb, box, detail, label, post, rounded
+from simulator.scene.parts import Material, Part, Piece, Rgb, around, box, detail, label, post, rounded
+from simulator.textures.noise import one_of
 
 STEEL = Material("metal", (176, 178, 182), 4)
 DARK = Material("lacquer", (44, 46, 50), 3)
@@ -21,7 +22,7 @@ def office_chair(rng: np.random.Generator, colour: Rgb = (52, 78, 116)) -> Piece
         rounded((-0.24, 0.0, 0.82), (0.08, 0.44, 0.5), cloth, solid=False, tile_m=0.5),
         detail((-0.26, -0.22), (-0.03, 0.03), (0.42, 0.7), DARK),
     ]
-    return Piece(tuple(parts))
+    return Piece.of(*parts)
 
 
 def round_table(
@@ -42,7 +43,7 @@ def round_table(
         parts.append(post(*place, (height_m, height_m + 0.09), 0.035, mug, solid=False, tile_m=0.3))
     sheet = Material("poster", (230, 230, 220), int(rng.integers(9)))
     parts.append(label((-0.14, 0.08), (-0.1, 0.06), (height_m, height_m + 0.006), sheet))
-    return Piece(tuple(parts))
+    return Piece.of(*parts)
 
 
 def whiteboard(rng: np.random.Generator, width_m: float = 1.8, height_m: float = 1.1) -> Piece:
@@ -62,7 +63,7 @@ def whiteboard(rng: np.random.Generator, width_m: float = 1.8, height_m: float =
             thick = float(rng.uniform(0.012, 0.03))
             parts.append(detail((0.02, 0.022), (start, min(end, y - 0.1)), (at, at + thick), ink))
             start = end + float(rng.uniform(0.03, 0.14))
-    return Piece(tuple(parts))
+    return Piece.of(*parts)
 
 
 def notice_board(rng: np.random.Generator, width_m: float = 1.4, height_m: float = 1.0) -> Piece:
@@ -76,11 +77,11 @@ def notice_board(rng: np.random.Generator, width_m: float = 1.4, height_m: float
     for k in range(12):
         w, h = float(rng.uniform(0.14, 0.26)), float(rng.uniform(0.18, 0.3))
         left, low = float(rng.uniform(-y, y - w)), float(rng.uniform(-z, z - h))
-        kind = ("poster", "panel", "street", "abstract")[int(rng.integers(4))]
+        kind = one_of(rng, ("poster", "panel", "street", "abstract"))
         front = 0.022 + 0.0015 * k
         paper = Material(kind, (236, 232, 216), int(rng.integers(40)))
         parts.append(label((0.02, front), (left, left + w), (low, low + h), paper))
-    return Piece(tuple(parts))
+    return Piece.of(*parts)
 
 
 def lockers(rng: np.random.Generator, columns: int = 4, colour: Rgb = (118, 138, 142)) -> Piece:
@@ -100,7 +101,7 @@ def lockers(rng: np.random.Generator, columns: int = 4, colour: Rgb = (118, 138,
                 sticker = Material("abstract", (220, 200, 60), int(rng.integers(30)))
                 at = z + float(rng.uniform(0.15, 0.6))
                 parts.append(label((0.475, 0.478), (y + 0.08, y + 0.22), (at, at + 0.14), sticker))
-    return Piece(tuple(parts))
+    return Piece.of(*parts)
 
 
 def copier(rng: np.random.Generator) -> Piece:
@@ -114,7 +115,7 @@ def copier(rng: np.random.Generator) -> Piece:
         detail((0.6, 0.605), (-0.28, 0.28), (0.34, 0.56), WHITE),
         label((0.56, 0.66), (-0.26, 0.0), (0.96, 1.0), Material("panel", (84, 90, 96), 11)),
     ]
-    return Piece(tuple(parts))
+    return Piece.of(*parts)
 
 
 def recycling_bins(rng: np.random.Generator) -> Piece:
@@ -123,9 +124,9 @@ def recycling_bins(rng: np.random.Generator) -> Piece:
     for k, ink in enumerate(((44, 92, 160), (60, 120, 66), (96, 96, 98))):
         y = 0.42 * (k - 1)
         parts += [
-            box((-0.18, 0.18), (y - 0.18, y + 0.18), (0.0, 0.72), Material("lacquer", ink, 5), tile_m=0.6),
-            detail((-0.19, 0.19), (y - 0.19, y + 0.19), (0.72, 0.78), DARK),
+            box((-0.18, 0.18), around(y, 0.18), (0.0, 0.72), Material("lacquer", ink, 5), tile_m=0.6),
+            detail((-0.19, 0.19), around(y, 0.19), (0.72, 0.78), DARK),
         ]
         sign = Material("panel" if k else "poster", (240, 240, 236), int(rng.integers(9)))
-        parts.append(label((0.18, 0.184), (y - 0.09, y + 0.09), (0.36, 0.54), sign))
-    return Piece(tuple(parts))
+        parts.append(label((0.18, 0.184), around(y, 0.09), (0.36, 0.54), sign))
+    return Piece.of(*parts)

@@ -41,7 +41,7 @@ def kitchen_counter(rng: np.random.Generator, length_m: float = 3.0, colour: Rgb
         ink = any_colour(rng, 40, 230)
         x, y = float(rng.uniform(0.12, 0.45)), float(rng.uniform(-half + 0.9, -0.1))
         parts.append(post(x, y, (0.9, 1.0), 0.04, Material("ceramic", ink, 1), solid=False, tile_m=0.3))
-    return Piece(tuple(parts))
+    return Piece.of(*parts)
 
 
 def fridge(rng: np.random.Generator, height_m: float = 1.85, colour: Rgb = (214, 216, 216)) -> Piece:
@@ -58,7 +58,7 @@ def fridge(rng: np.random.Generator, height_m: float = 1.85, colour: Rgb = (214,
         note = Material("poster" if k % 2 else "panel", (236, 220, 120), int(rng.integers(9)))
         size = float(rng.uniform(0.05, 0.1))
         parts.append(label((0.62, 0.624), (y, y + size), (z, z + size * 1.2), note))
-    return Piece(tuple(parts))
+    return Piece.of(*parts)
 
 
 def vending_machine(rng: np.random.Generator, colour: Rgb = (176, 34, 40)) -> Piece:
@@ -81,7 +81,7 @@ def vending_machine(rng: np.random.Generator, colour: Rgb = (176, 34, 40)) -> Pi
         detail((0.72, 0.73), (-0.36, 0.12), (0.2, 0.42), DARK),
         label((0.72, 0.725), (-0.46, 0.46), (1.74, 1.83), Material("poster", (240, 240, 240), 4)),
     ]
-    return Piece(tuple(parts))
+    return Piece.of(*parts)
 
 
 def water_cooler(rng: np.random.Generator) -> Piece:
@@ -94,4 +94,4 @@ def water_cooler(rng: np.random.Generator) -> Piece:
         label((0.16, 0.165), (-0.12, 0.12), (0.55, 0.9), Material("panel", (190, 196, 200), 6)),
         post(0.0, 0.0, (0.95, 1.35), 0.135, blue, solid=False, tile_m=0.6),
     ]
-    return Piece(tuple(parts))
+    return Piece.of(*parts)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from simulator.scene.parts import Material, Part, Piece, Rgb, box, post, rounded
+from simulator.textures.noise import one_of
 
 LEG = Material("wood", (82, 58, 40), 3)
 
@@ -32,7 +33,7 @@ def sofa(
         parts.append(
             rounded((-half + 0.42, y, 0.64), (0.14, 0.42, 0.4), ink, yaw_rad=lean, solid=False, tile_m=0.5)
         )
-    return Piece(tuple(parts))
+    return Piece.of(*parts)
 
 
 def armchair(
@@ -46,12 +47,9 @@ def armchair(
         rounded((-depth_m / 2 + 0.22, 0.0, 0.68), (0.18, width_m - 0.26, 0.56), hide, tile_m=0.6),
     ]
     ink = Material("pattern_cloth", _accent(rng), int(rng.integers(3)))
-    parts.append(
-        rounded(
-            (-depth_m / 2 + 0.37, 0.05, 0.62), (0.13, 0.38, 0.36), ink, yaw_rad=0.2, solid=False, tile_m=0.45
-        )
-    )
-    return Piece(tuple(parts))
+    centre = (-depth_m / 2 + 0.37, 0.05, 0.62)
+    parts.append(rounded(centre, (0.13, 0.38, 0.36), ink, yaw_rad=0.2, solid=False, tile_m=0.45))
+    return Piece.of(*parts)
 
 
 def pouf(
@@ -87,4 +85,4 @@ def _accent(rng: np.random.Generator) -> Rgb:
         (226, 220, 206),
         (120, 132, 92),
     )
-    return choices[int(rng.integers(len(choices)))]
+    return one_of(rng, choices)

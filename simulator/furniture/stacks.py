@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, Rgb, Vec3, ball, detail, label, post
+from simulator.scene.parts import Material, Part, Rgb, Vec3, around, ball, detail, label, post
+from simulator.textures.noise import one_of
 from simulator.textures.objects import SPINES
 
 COVERS: tuple[Rgb, ...] = (
@@ -35,9 +36,7 @@ def book_pile(rng: np.random.Generator, at: Vec3, count: int) -> list[Part]:
     for _ in range(count):
         depth, width, thick = rng.uniform(0.15, 0.21), rng.uniform(0.21, 0.28), rng.uniform(0.015, 0.04)
         cover = Material(
-            "poster" if rng.random() < 0.5 else "fabric",
-            COVERS[int(rng.integers(len(COVERS)))],
-            int(rng.integers(4)),
+            "poster" if rng.random() < 0.5 else "fabric", one_of(rng, COVERS), int(rng.integers(4))
         )
         book = label((-depth / 2, depth / 2), (-width / 2, width / 2), (0.0, thick), cover)
         parts.append(_at(book, (at[0], at[1], z), float(rng.normal(0, 0.2))))
@@ -59,16 +58,8 @@ def book_row(
             at += float(rng.uniform(0.03, 0.09))
             continue
         depth, inset, k = 0.17, float(rng.uniform(0.0, 0.025)), int(rng.integers(SPINES))
-        uv = (k / SPINES, 0.0, (k + 1) / SPINES, 1.0)
-        parts.append(
-            label(
-                (front_x - inset - depth, front_x - inset),
-                (at, at + thick),
-                (z[0], z[0] + tall),
-                spines,
-                uv=uv,
-            )
-        )
+        x, uv = (front_x - inset - depth, front_x - inset), (k / SPINES, 0.0, (k + 1) / SPINES, 1.0)
+        parts.append(label(x, (at, at + thick), (z[0], z[0] + tall), spines, uv=uv))
         at += thick + 0.001
     return parts
 
@@ -76,34 +67,17 @@ def book_row(
 def ornament(rng: np.random.Generator, at: Vec3) -> list[Part]:
     """A vase, a box, a bowl or a small framed photograph."""
     seed = int(rng.integers(3))
-    colour: Rgb = ((196, 120, 86), (70, 104, 142), (222, 214, 196), (110, 130, 104))[int(rng.integers(4))]
-    kind = int(rng.integers(4))
+    colour: Rgb = one_of(rng, ((196, 120, 86), (70, 104, 142), (222, 214, 196), (110, 130, 104)))
+    kind, glazed = int(rng.integers(4)), Material("ceramic", colour, seed)
     x, y, z = at
     if kind == 0:
-        return [
-            post(
-                x,
-                y,
-                (z, z + float(rng.uniform(0.14, 0.3))),
-                0.055,
-                Material("ceramic", colour, seed),
-                solid=False,
-                taper=0.6,
-                tile_m=0.3,
-            )
-        ]
+        tall = float(rng.uniform(0.14, 0.3))
+        return [post(x, y, (z, z + tall), 0.055, glazed, solid=False, taper=0.6, tile_m=0.3)]
     if kind == 1:
-        return [
-            detail(
-                (x - 0.08, x + 0.08),
-                (y - 0.11, y + 0.11),
-                (z, z + 0.14),
-                Material("wicker", (176, 142, 96), seed),
-                tile_m=0.25,
-            )
-        ]
+        wicker = Material("wicker", (176, 142, 96), seed)
+        return [detail(around(x, 0.08), around(y, 0.11), (z, z + 0.14), wicker, tile_m=0.25)]
     if kind == 2:
-        return [ball((x, y, z + 0.08), (0.17, 0.17, 0.16), Material("ceramic", colour, seed), tile_m=0.3)]
+        return [ball((x, y, z + 0.08), (0.17, 0.17, 0.16), glazed, tile_m=0.3)]
     return framed(rng, at)
 
 
@@ -111,12 +85,10 @@ def framed(rng: np.random.Generator, at: Vec3) -> list[Part]:
     """A framed photograph that stands on its edge, facing +x."""
     x, y, z = at
     frame = Material("wood", (70, 52, 40), 6)
-    photo = Material(
-        ("street", "landscape", "still_life")[int(rng.integers(3))], (0, 0, 0), int(rng.integers(6))
-    )
+    photo = Material(one_of(rng, ("street", "landscape", "still_life")), (0, 0, 0), int(rng.integers(6)))
     return [
-        detail((x - 0.01, x + 0.01), (y - 0.1, y + 0.1), (z, z + 0.17), frame),
-        label((x + 0.01, x + 0.013), (y - 0.085, y + 0.085), (z + 0.015, z + 0.155), photo),
+        detail(around(x, 0.01), around(y, 0.1), (z, z + 0.17), frame),
+        label((x + 0.01, x + 0.013), around(y, 0.085), (z + 0.015, z + 0.155), photo),
     ]
 
 

@@ -35,11 +35,7 @@ class PhysicsScene:
     """One robot among static bodies."""
 
     def __init__(
-        self,
-        parts: tuple[Part, ...],
-        settings: RobotSettings,
-        timestep_s: float,
-        pose: Pose2,
+        self, parts: tuple[Part, ...], settings: RobotSettings, timestep_s: float, pose: Pose2
     ) -> None:
         """Build everything with the robot at a pose, at rest."""
         config = physx.PhysxSceneConfig()
@@ -63,10 +59,7 @@ class PhysicsScene:
         return entity.find_component_by_type(physx.PhysxRigidDynamicComponent)
 
     def move_walker(
-        self,
-        walker: physx.PhysxRigidDynamicComponent,
-        pose: Pose2,
-        at_once: bool = False,
+        self, walker: physx.PhysxRigidDynamicComponent, pose: Pose2, at_once: bool = False
     ) -> None:
         """Where a walker is after the next step, or, `at_once`, now."""
         x_m, y_m, yaw_rad = pose

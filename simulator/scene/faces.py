@@ -28,14 +28,7 @@ def face(corners_m: list[Vec3], facing: Vec3, material: Material, tile_m: float)
     mesh = refined(_fan(points - middle, normal, tile_m), GRAIN_M * 2, MOST_TRIANGLES)
     digest = hashlib.sha256(mesh.vertices.tobytes() + mesh.uvs.tobytes()).hexdigest()
     size = np.maximum(np.ptp(points, axis=0), 0.02)
-    return Part(
-        "mesh",
-        _vec(middle),
-        _vec(size),
-        material,
-        solid=False,
-        geometry=Geometry(digest, mesh),
-    )
+    return Part("mesh", _vec(middle), _vec(size), material, solid=False, geometry=Geometry(digest, mesh))
 
 
 def _fan(points: npt.NDArray[np.float64], normal: npt.NDArray[np.float64], tile_m: float) -> Mesh:

@@ -96,7 +96,12 @@ class Piece:
     """What one piece of furniture is made of."""
 
     parts: tuple[Part, ...]
-    lights: tuple[Light, ...] = field(default=())
+    lights: tuple[Light, ...] = ()
+
+    @classmethod
+    def of(cls, *parts: Part) -> "Piece":
+        """A piece that does not shine."""
+        return cls(parts)
 
 
 Contents = tuple[tuple[Part, ...], tuple[Light, ...]]
@@ -142,6 +147,11 @@ def rotation_of(part: Part) -> npt.NDArray[np.float64]:
     return np.asarray(rotation_z(part.yaw_rad) @ pitch @ roll)
 
 
+def around(middle: float, half: float) -> Span:
+    """The interval that reaches so far to both sides of its middle."""
+    return middle - half, middle + half
+
+
 def box(x: Span, y: Span, z: Span, material: Material, **options: object) -> Part:
     """A box given by its extents along the axes."""
     centre = ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2, (z[0] + z[1]) / 2)
@@ -167,6 +177,13 @@ def ball(centre: Vec3, size: Vec3, material: Material, **options: object) -> Par
 def rounded(centre: Vec3, size: Vec3, material: Material, **options: object) -> Part:
     """A box with round edges."""
     return replace(Part("cushion", centre, size, material), **options)  # type: ignore[arg-type]
+
+
+def table_legs(x: Span, y: Span, z: Span, material: Material) -> list[Part]:
+    """Four boxes, one in each quarter, at the same distances from the middle."""
+    return [
+        box((sx * x[0], sx * x[1]), (sy * y[0], sy * y[1]), z, material) for sx in (-1, 1) for sy in (-1, 1)
+    ]
 
 
 def post(x: float, y: float, z: Span, radius: float, material: Material, **options: object) -> Part:

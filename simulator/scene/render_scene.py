@@ -79,13 +79,7 @@ class RenderScene:
         self._warp = CubeToEquirect(camera.width_px, self._cameras[0].width)
         self._faces = np.empty((6 * self._cameras[0].width, self._cameras[0].width, 4), np.uint8)
 
-    def change_static(
-        self,
-        world: WorldFile,
-        contents: Contents,
-        painter: Painter,
-        cache: DiskCache,
-    ) -> None:
+    def change_static(self, world: WorldFile, contents: Contents, painter: Painter, cache: DiskCache) -> None:
         """Show another state of the world; its light is computed anew unless the cache has it."""
         self._painter = painter
         self._scene.remove_entity(self._static)

@@ -61,11 +61,7 @@ def lit_meshes(
 
 
 def _lit(
-    parts: tuple[Part, ...],
-    lights: tuple[Light, ...],
-    even: Lighting,
-    eyes: FloatArray,
-    sun: Sunlight | None,
+    parts: tuple[Part, ...], lights: tuple[Light, ...], even: Lighting, eyes: FloatArray, sun: Sunlight | None
 ) -> list[LitMesh]:
     culled = {material: facing_any(mesh, eyes) for material, mesh in by_material(parts).items()}
     groups = {material: mesh for material, mesh in culled.items() if len(mesh.triangles)}

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, box
+from simulator.scene.parts import Material, Part, around, box
 from simulator.world.rooms import cut, floor_parts, variant
 from simulator.world.world_file import Ground, Room, WorldFile
 
@@ -72,9 +72,9 @@ def _without(along: Span, cuts: list[Span]) -> list[Span]:
 def _bar(edge: Edge, span: Span, depth: Span, z: Span, material: Material, solid: bool = True) -> Part:
     """A box along an edge, from `depth[0]` to `depth[1]` outwards of it."""
     axis, line, outward = edge
-    across = tuple(sorted((line + outward * depth[0], line + outward * depth[1])))
+    across = (line + outward * depth[0], line + outward * depth[1])
     x, y = (across, span) if axis == 0 else (span, across)
-    return box((x[0], x[1]), (y[0], y[1]), z, material, solid=solid, tile_m=1.6)
+    return box(x, y, z, material, solid=solid, tile_m=1.6)
 
 
 def _panelled(edge: Edge, span: Span, depth: Span, z: Span, material: Material) -> list[Part]:
@@ -93,10 +93,10 @@ def _fence(edge: Edge, span: Span) -> list[Part]:
     pickets = np.arange(span[0] + PICKET_EVERY_M / 2, span[1], PICKET_EVERY_M)
     parts = [_bar(edge, span, (0.02, 0.1), (0.05, 0.45), WOOD)]
     parts.append(_bar(edge, span, (0.03, 0.07), (0.86, 0.95), WOOD, solid=False))
-    parts += [_bar(edge, (p - 0.05, p + 0.05), (0.0, 0.1), (0.0, 1.25), WOOD, solid=False) for p in posts]
+    parts += [_bar(edge, around(p, 0.05), (0.0, 0.1), (0.0, 1.25), WOOD, solid=False) for p in posts]
     tops = 1.08 + 0.06 * np.cos(pickets * 3.1)
     parts += [
-        _bar(edge, (p - 0.06, p + 0.06), (0.0, 0.03), (0.05, float(top)), WOOD, solid=False)
+        _bar(edge, around(p, 0.06), (0.0, 0.03), (0.05, float(top)), WOOD, solid=False)
         for p, top in zip(pickets, tops, strict=True)
     ]
     return parts

@@ -113,7 +113,6 @@ def _side(world: WorldFile, room: Room, side: int, height: float) -> list[Part]:
 def _slab(
     axis: int, across: Span, along: Span, z: Span, material: Material, tile: float, solid: bool = True
 ) -> Part:
-    across = (min(across), max(across))
     x, y = (across, along) if axis == 0 else (along, across)
     return box(x, y, z, material, tile_m=tile, solid=solid)
 

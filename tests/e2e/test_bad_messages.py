@@ -84,12 +84,7 @@ QUESTIONS = [
     pytest.param(
         MISSION, MissionRequest(action="goto", map="nowhere", goal_node=0), "nowhere", id="mission in no map"
     ),
-    pytest.param(
-        MAP,
-        STALE,
-        "revision",
-        id="transaction on a wrong revision",
-    ),
+    pytest.param(MAP, STALE, "revision", id="transaction on a wrong revision"),
 ]
 
 

@@ -9,11 +9,7 @@ It has one 360-degree camera and 12 distance sensors, and never knew where it wa
 The drawings show true positions, which only this report has seen.
 """
 PICTURES = (
-    (
-        "The map",
-        "map.png",
-        "Blue: places and ways between them. Yellow: walls. Grey: furniture.",
-    ),
+    ("The map", "map.png", "Blue: places and ways between them. Yellow: walls. Grey: furniture."),
     ("The picture it was given", "goal.png", "Uploaded over HTTP, taken by the hidden robot."),
     ("The way it took", "path.png", "Green: start. Purple: via points. Red: where the picture was taken."),
     ("What the seeker saw at the end", "seeker_final.png", ""),

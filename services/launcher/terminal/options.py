@@ -14,8 +14,7 @@ Lockstep = Annotated[
     typer.Option(help="As fast as the machine allows, same seed, same path. Default for a stack of its own."),
 ]
 ProfileName = Annotated[
-    str | None,
-    typer.Option("--profile", help="Rules of planner and drive: default, thesis, or a file."),
+    str | None, typer.Option("--profile", help="Rules of planner and drive: default, thesis, or a file.")
 ]
 PipelineName = Annotated[str | None, typer.Option("--pipeline", help="Feature pipeline, for example sift.")]
 DataDir = Annotated[

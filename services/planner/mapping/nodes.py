@@ -22,11 +22,7 @@ def is_new_node(matches: Matches, profile: Profile) -> bool:
 
 
 def add_node(
-    maps: MapAccess,
-    observation: Observation,
-    edges: NewEdges,
-    profile: Profile,
-    driven_from: int | None,
+    maps: MapAccess, observation: Observation, edges: NewEdges, profile: Profile, driven_from: int | None
 ) -> tuple[int, tuple[Note, ...]]:
     """Write the frame as a node with its edges, in one transaction.
 

@@ -30,11 +30,7 @@ def stack(tmp_path_factory):
 @pytest.mark.slow
 @pytest.mark.timeout(START_S + RUN_S)
 @pytest.mark.parametrize(
-    ("service", "left_out"),
-    [
-        ("gateway", "/api/maps/import"),
-        ("map_store", "/maps/import"),
-    ],
+    ("service", "left_out"), [("gateway", "/api/maps/import"), ("map_store", "/maps/import")]
 )
 def test_every_answer_is_one_that_the_description_names(stack, service, left_out):
     """Imports take archives, which have tests of their own."""

@@ -18,15 +18,7 @@ from shared.bus import Bus, wait_until
 from shared.topics import MISSION
 from shared.web.server import CLOSING_S
 from tests.integration.gateway.corpus import Upload, bomb, broken, convertible
-from tests.integration.gateway.gateway_process import (
-    ASK_S,
-    ROOT,
-    WAIT_S,
-    Process,
-    answers,
-    send,
-    started,
-)
+from tests.integration.gateway.gateway_process import ASK_S, ROOT, WAIT_S, Process, answers, send, started
 from tests.integration.gateway.standins import FeatureService
 
 BROKEN = broken()

@@ -68,10 +68,7 @@ def test_a_running_stack_is_checked_repaired_and_backed_up_but_not_replaced(
     assert isinstance(worse.exception, ExperimentError)
     assert "features of node 1" in str(worse.exception)
     mended = call("repair", "flat")
-    assert mended.output.splitlines() == [
-        "node 1: removed, its features are lost",
-        "flat is at revision 2",
-    ]
+    assert mended.output.splitlines() == ["node 1: removed, its features are lost", "flat is at revision 2"]
     assert call("check", "flat").output == "map flat: no damage\n"
     with httpx.Client(base_url=stack.map_store_url, trust_env=False, timeout=30.0) as rest:
         assert rest.get("/maps/flat/revisions").json()[0]["author"] == "repair"

@@ -33,10 +33,7 @@ def test_no_file_leaves_the_named_profile():
 
 def test_the_launcher_gives_the_base_to_everybody_and_the_file_to_the_planner(write):
     path = write({"base": "outdoor", "thresholds": {"s_edge_min": 33}})
-    assert profile_variables(str(path)) == {
-        "TOPNAV_PROFILE": "outdoor",
-        "TOPNAV_PROFILE_FILE": str(path),
-    }
+    assert profile_variables(str(path)) == {"TOPNAV_PROFILE": "outdoor", "TOPNAV_PROFILE_FILE": str(path)}
     assert profile_variables("thesis") == {"TOPNAV_PROFILE": "thesis"}
 
 

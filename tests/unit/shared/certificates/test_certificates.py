@@ -69,10 +69,7 @@ def test_only_servers_may_be_connected_to(folder):
 
     assert [
         path.name for path in sorted(folder.iterdir()) if path.name != AUTHORITY and is_server(path.name)
-    ] == [
-        "map_store",
-        "router",
-    ]
+    ] == ["map_store", "router"]
     assert "router" in hosts_of(read_certificate(folder / "router" / "certificate.pem"))
 
 

@@ -73,22 +73,10 @@ def test_values_of_edges_keep_their_kind(client: TestClient, store: MapStore):
     store.transact("flat", [PutEdge(edge=changed)])
     (change,) = client.get("/maps/flat/compare?from=2").json()["edges_changed"]
     assert repr(change["before"]) == repr(
-        {
-            "confidence": 0.0,
-            "heading_ab_rad": None,
-            "traversals": 0,
-            "suspended": False,
-            "why": "",
-        }
+        {"confidence": 0.0, "heading_ab_rad": None, "traversals": 0, "suspended": False, "why": ""}
     )
     assert repr(change["after"]) == repr(
-        {
-            "confidence": 1.0,
-            "heading_ab_rad": 0.5,
-            "traversals": 1,
-            "suspended": True,
-            "why": "x",
-        }
+        {"confidence": 1.0, "heading_ab_rad": 0.5, "traversals": 1, "suspended": True, "why": "x"}
     )
 
 

@@ -92,7 +92,4 @@ def test_a_damaged_revision_says_so_and_the_others_are_listed(store: MapStore):
     with store.database.write() as connection:
         table = tables.revisions
         connection.execute(update(table).where(table.c.revision == 1).values(content=b"\x80"))
-    assert told(store) == [
-        "node 2 added",
-        "unreadable: the stored operations do not match their checksum",
-    ]
+    assert told(store) == ["node 2 added", "unreadable: the stored operations do not match their checksum"]
