@@ -17,7 +17,8 @@ from shared.mapgraph.graph import MapGraph
 from shared.messages import Features, Heading, Ranges
 from shared.messages.maps import AddNode, Operation
 from shared.messages.matching import NodeMatch
-from simulator.scene.parts import Material, Part, post
+from simulator.scene.parts import Material, Part
+from simulator.scene.shapes import post
 from simulator.world.footprints import Footprints, cast_rays, clearance_m, footprints
 from simulator.world.freespace import FreeSpace, free_space
 from simulator.world.world_file import load_world

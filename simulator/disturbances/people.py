@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, Rgb, box, post, rounded
+from simulator.scene.parts import Material, Part, Rgb
+from simulator.scene.shapes import box, post, rounded
 from simulator.textures.noise import one_of
 
 SKIN: tuple[Rgb, ...] = ((224, 184, 156), (188, 140, 108), (120, 84, 62))

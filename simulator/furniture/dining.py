@@ -4,19 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from simulator.scene.parts import (
-    Material,
-    Part,
-    Piece,
-    Rgb,
-    around,
-    ball,
-    box,
-    detail,
-    post,
-    rounded,
-    table_legs,
-)
+from simulator.scene.parts import Material, Part, Piece, Rgb
+from simulator.scene.shapes import around, ball, box, detail, post, rounded, table_legs
 from simulator.textures.noise import one_of
 
 

@@ -5,7 +5,8 @@ from itertools import pairwise
 import numpy as np
 
 from simulator.furniture.stacks import book_pile, framed, ornament
-from simulator.scene.parts import Material, Part, Piece, Rgb, around, ball, box, detail, post, rounded
+from simulator.scene.parts import Material, Part, Piece, Rgb
+from simulator.scene.shapes import around, ball, box, detail, post, rounded
 from simulator.textures.noise import one_of
 
 

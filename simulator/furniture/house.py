@@ -3,7 +3,8 @@
 import numpy as np
 
 from simulator.scene.faces import face
-from simulator.scene.parts import Material, Part, Piece, Rgb, Vec3, around, box, detail, label
+from simulator.scene.parts import Material, Part, Piece, Rgb, Vec3
+from simulator.scene.shapes import around, box, detail, label
 
 PLINTH_M, OVERHANG_M = 0.35, 0.45
 GLASS = Material("view", (70, 84, 98), 7)

@@ -4,7 +4,8 @@ import numpy as np
 
 from simulator.furniture.loads import load_on_pallet, pallet_parts
 from simulator.furniture.stacks import any_colour
-from simulator.scene.parts import Light, Material, Part, Piece, Rgb, around, box, detail, label, post
+from simulator.scene.parts import Light, Material, Part, Piece, Rgb
+from simulator.scene.shapes import around, box, detail, label, post
 
 STEEL = Material("metal", (168, 172, 176), 4)
 DARK = Material("metal", (58, 62, 66), 3)

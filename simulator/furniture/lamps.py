@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from simulator.scene.parts import Light, Material, Piece, Rgb, post
+from simulator.scene.parts import Light, Material, Piece, Rgb
+from simulator.scene.shapes import post
 
 SHADE: Rgb = (255, 244, 220)
 WARM = np.array([1.0, 0.9, 0.76])

@@ -5,19 +5,8 @@ from typing import Literal
 import numpy as np
 
 from simulator.furniture.stacks import book_pile, book_row, framed, ornament
-from simulator.scene.parts import (
-    Material,
-    Part,
-    Piece,
-    Rgb,
-    around,
-    ball,
-    box,
-    detail,
-    label,
-    post,
-    table_legs,
-)
+from simulator.scene.parts import Material, Part, Piece, Rgb
+from simulator.scene.shapes import around, ball, box, detail, label, post, table_legs
 
 
 def tv_bench(

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, Piece, Rgb, Vec3, around, box, detail, label, post, rounded
+from simulator.scene.parts import Material, Part, Piece, Rgb, Vec3
+from simulator.scene.shapes import around, box, detail, label, post, rounded
 from simulator.textures.noise import one_of
 
 WOOD = Material("planks", (176, 138, 92), 6)

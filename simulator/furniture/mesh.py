@@ -8,10 +8,11 @@ import numpy.typing as npt
 from pydantic import InstanceOf
 
 from simulator.assets.model import AssetError, Model, Patch, UpAxis
-from simulator.scene.mesh_shapes import GRAIN_M
+from simulator.scene import meshes
 from simulator.scene.meshes import Mesh, joined, refined
 from simulator.scene.parts import Geometry, Material, Part, Picture, Piece
 from simulator.scene.prisms import SKIN_M, Prism, hull_outline, prisms_of
+from simulator.scene.texturing import GRAIN_M
 
 FloatArray = npt.NDArray[np.float64]
 FILES = {"file": "model", "texture": "picture"}
@@ -106,10 +107,7 @@ def _placed(patch: Patch, to_piece: FloatArray, shift: FloatArray, two_sided: bo
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
     mesh = Mesh(vertices, normals.astype(np.float32), patch.mesh.uvs, patch.mesh.triangles)
     mesh = refined(mesh, GRAIN_M, MOST_FINE)
-    if not (two_sided or patch.two_sided):
-        return mesh
-    back = Mesh(mesh.vertices - 0.001 * mesh.normals, -mesh.normals, mesh.uvs, mesh.triangles[:, ::-1])
-    return joined([mesh, back])
+    return meshes.two_sided(mesh) if two_sided or patch.two_sided else mesh
 
 
 def _visible(shape: Mesh, look: Material, digest: str) -> Part:

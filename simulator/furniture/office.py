@@ -3,7 +3,8 @@
 import numpy as np
 
 from simulator.furniture.stacks import any_colour, shade_of
-from simulator.scene.parts import Material, Part, Piece, Rgb, around, box, detail, label, post, rounded
+from simulator.scene.parts import Material, Part, Piece, Rgb
+from simulator.scene.shapes import around, box, detail, label, post, rounded
 from simulator.textures.noise import one_of
 
 STEEL = Material("metal", (176, 178, 182), 4)

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from simulator.scene.parts import Light, Material, Part, Piece, Rgb, around, detail, label
+from simulator.scene.parts import Light, Material, Part, Piece, Rgb
+from simulator.scene.shapes import around, detail, label
 
 
 def door(

@@ -3,7 +3,8 @@
 import numpy as np
 
 from simulator.furniture.stacks import any_colour
-from simulator.scene.parts import Material, Part, Piece, Rgb, box, detail, label, post
+from simulator.scene.parts import Material, Part, Piece, Rgb
+from simulator.scene.shapes import box, detail, label, post
 
 STEEL = Material("metal", (186, 188, 190), 3)
 DARK = Material("lacquer", (38, 40, 44), 2)

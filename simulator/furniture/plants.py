@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from simulator.furniture.stacks import shade_of
-from simulator.scene.parts import Material, Part, Piece, Rgb, ball, box, detail, post
+from simulator.scene.parts import Material, Part, Piece, Rgb
+from simulator.scene.shapes import ball, box, detail, post
 from simulator.textures.noise import one_of
 
 

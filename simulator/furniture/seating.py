@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, Piece, Rgb, box, post, rounded
+from simulator.scene.parts import Material, Part, Piece, Rgb
+from simulator.scene.shapes import box, post, rounded
 from simulator.textures.noise import one_of
 
 LEG = Material("wood", (82, 58, 40), 3)

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, Rgb, Vec3, around, ball, detail, label, post
+from simulator.scene.parts import Material, Part, Rgb, Vec3
+from simulator.scene.shapes import around, ball, detail, label, post
 from simulator.textures.noise import one_of
 from simulator.textures.objects import SPINES
 

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, Piece, Rgb, around, ball, box, detail, label, post
+from simulator.scene.parts import Material, Part, Piece, Rgb
+from simulator.scene.shapes import around, ball, box, detail, label, post
 
 STEEL = Material("metal", (92, 98, 104), 2)
 DARK = Material("metal", (52, 58, 62), 3)

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, Piece, Rgb, around, ball, box, detail, label, post, rounded
+from simulator.scene.parts import Material, Part, Piece, Rgb
+from simulator.scene.shapes import around, ball, box, detail, label, post, rounded
 
 CAR_GLASS = Material("mirror", (84, 98, 110), 4)
 CAR_TYRE = Material("fabric", (36, 36, 38), 1)

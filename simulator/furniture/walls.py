@@ -4,7 +4,8 @@ from typing import Literal
 
 import numpy as np
 
-from simulator.scene.parts import Material, Piece, Rgb, box, detail, label
+from simulator.scene.parts import Material, Piece, Rgb
+from simulator.scene.shapes import box, detail, label
 
 
 def picture(

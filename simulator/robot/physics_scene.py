@@ -11,7 +11,7 @@ import numpy as np
 import sapien
 from sapien import physx
 
-from simulator.robot.robot import UPRIGHT, Robot
+from simulator.robot.robot import UPRIGHT, Robot, flat_pose
 from simulator.scene.parts import Part, solids_between
 from simulator.settings import RobotSettings
 from simulator.world.footprints import hull_corners_m
@@ -62,8 +62,7 @@ class PhysicsScene:
         self, walker: physx.PhysxRigidDynamicComponent, pose: Pose2, at_once: bool = False
     ) -> None:
         """Where a walker is after the next step, or, `at_once`, now."""
-        x_m, y_m, yaw_rad = pose
-        target = sapien.Pose([x_m, y_m, 0.0], [math.cos(yaw_rad / 2), 0, 0, math.sin(yaw_rad / 2)])
+        target = flat_pose(*pose)
         if at_once:
             walker.entity.set_pose(target)
         walker.set_kinematic_target(target)
@@ -110,7 +109,7 @@ def _add_static(scene: sapien.Scene, parts: tuple[Part, ...], height_m: float) -
 def _add_solid(builder: sapien.ActorBuilder, part: Part, material: physx.PhysxMaterial) -> None:
     """Add one part to a body: a cylinder, or a box for every other shape."""
     x, y, z = part.centre_m
-    turn = sapien.Pose([x, y, z], [math.cos(part.yaw_rad / 2), 0, 0, math.sin(part.yaw_rad / 2)])
+    turn = flat_pose(x, y, part.yaw_rad, z)
     if part.shape == "cylinder":
         radius = part.size_m[0] / 2 * max(1.0, part.taper)
         builder.add_cylinder_collision(

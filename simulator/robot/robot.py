@@ -19,6 +19,11 @@ ACROSS = [math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)]  # joint axis x -> leg y
 ROBOT_GROUP = 2
 
 
+def flat_pose(x_m: float, y_m: float, yaw_rad: float, z_m: float = 0.0) -> sapien.Pose:
+    """Pose from position and heading."""
+    return sapien.Pose([x_m, y_m, z_m], [math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2)])
+
+
 class Robot:
     """The articulation and its low-level controller."""
 
@@ -130,9 +135,7 @@ def _build(
     # The body must not touch its own wheels: group 3 holds an id, group 2 says whom that id ignores.
     for link in builder.link_builders:
         link.collision_groups = [1, 1, ROBOT_GROUP, 7]
-    builder.set_initial_pose(
-        sapien.Pose([x_m, y_m, 0.0], [math.cos(yaw_rad / 2), 0, 0, math.sin(yaw_rad / 2)])
-    )
+    builder.set_initial_pose(flat_pose(x_m, y_m, yaw_rad))
     articulation = builder.build(fix_root_link=False)
     for joint in articulation.active_joints:
         joint.set_friction(0.0)

@@ -6,7 +6,8 @@ of radius r reaches up to camera height - r tan(65 deg) at most.
 
 from dataclasses import replace
 
-from simulator.scene.parts import Material, Part, Rgb, box, post
+from simulator.scene.parts import Material, Part, Rgb
+from simulator.scene.shapes import box, post
 from simulator.settings import RobotSettings
 
 SEEKER: Rgb = (214, 216, 218)

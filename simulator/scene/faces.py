@@ -5,9 +5,9 @@ import hashlib
 import numpy as np
 import numpy.typing as npt
 
-from simulator.scene.mesh_shapes import GRAIN_M
 from simulator.scene.meshes import Mesh, refined
 from simulator.scene.parts import Geometry, Material, Part, Vec3
+from simulator.scene.texturing import GRAIN_M
 
 MOST_TRIANGLES = 20_000
 

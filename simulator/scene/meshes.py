@@ -35,6 +35,19 @@ def joined(meshes: list[Mesh]) -> Mesh:
     )
 
 
+def two_sided(front: Mesh) -> Mesh:
+    """The mesh with a back a millimetre behind it."""
+    back = Mesh(front.vertices - 0.001 * front.normals, -front.normals, front.uvs, front.triangles[:, ::-1])
+    return joined([front, back])
+
+
+def grid_triangles(rows: int, columns: int) -> IntArray:
+    """Two counter-clockwise triangles per cell of a (rows, columns) grid of vertices, row by row."""
+    index = np.arange(rows * columns, dtype=np.uint32).reshape(rows, columns)
+    a, b, c, d = index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]
+    return np.concatenate([np.stack([a, b, c], -1).reshape(-1, 3), np.stack([a, c, d], -1).reshape(-1, 3)])
+
+
 def facing_any(mesh: Mesh, eyes: FloatArray) -> Mesh:
     """The triangles whose front is turned towards at least one of (k, 3) eye positions.
 

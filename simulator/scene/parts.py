@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from shared.geometry.perspective import rotation_y, rotation_z
 from simulator.scene.meshes import Mesh
 
 Span = tuple[float, float]
@@ -132,64 +133,11 @@ def moved(piece: Piece, x_m: float, y_m: float, yaw_rad: float, z_m: float = 0.0
     return Piece(parts, lights)
 
 
-def rotation_z(yaw_rad: float) -> npt.NDArray[np.float64]:
-    """Rotation about z, (3, 3)."""
-    c, s = np.cos(yaw_rad), np.sin(yaw_rad)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
 def rotation_of(part: Part) -> npt.NDArray[np.float64]:
     """Rotation from the part's axes to its frame: yaw * pitch * roll, (3, 3)."""
-    cp, sp = np.cos(part.pitch_rad), np.sin(part.pitch_rad)
     cr, sr = np.cos(part.roll_rad), np.sin(part.roll_rad)
-    pitch = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
     roll = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
-    return np.asarray(rotation_z(part.yaw_rad) @ pitch @ roll)
-
-
-def around(middle: float, half: float) -> Span:
-    """The interval that reaches so far to both sides of its middle."""
-    return middle - half, middle + half
-
-
-def box(x: Span, y: Span, z: Span, material: Material, **options: object) -> Part:
-    """A box given by its extents along the axes."""
-    centre = ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2, (z[0] + z[1]) / 2)
-    size = (abs(x[1] - x[0]), abs(y[1] - y[0]), abs(z[1] - z[0]))
-    return replace(Part("box", centre, size, material), **options)  # type: ignore[arg-type]
-
-
-def detail(x: Span, y: Span, z: Span, material: Material, **options: object) -> Part:
-    """A box that is only seen."""
-    return box(x, y, z, material, solid=False, **options)
-
-
-def label(x: Span, y: Span, z: Span, material: Material, **options: object) -> Part:
-    """A box that is only seen and shows one whole picture on each side."""
-    return detail(x, y, z, material, tile_m=None, **options)
-
-
-def ball(centre: Vec3, size: Vec3, material: Material, **options: object) -> Part:
-    """An ellipsoid that is only seen."""
-    return replace(Part("ellipsoid", centre, size, material, solid=False), **options)  # type: ignore[arg-type]
-
-
-def rounded(centre: Vec3, size: Vec3, material: Material, **options: object) -> Part:
-    """A box with round edges."""
-    return replace(Part("cushion", centre, size, material), **options)  # type: ignore[arg-type]
-
-
-def table_legs(x: Span, y: Span, z: Span, material: Material) -> list[Part]:
-    """Four boxes, one in each quarter, at the same distances from the middle."""
-    return [
-        box((sx * x[0], sx * x[1]), (sy * y[0], sy * y[1]), z, material) for sx in (-1, 1) for sy in (-1, 1)
-    ]
-
-
-def post(x: float, y: float, z: Span, radius: float, material: Material, **options: object) -> Part:
-    """An upright cylinder."""
-    part = Part("cylinder", (x, y, (z[0] + z[1]) / 2), (2 * radius, 2 * radius, z[1] - z[0]), material)
-    return replace(part, **options)  # type: ignore[arg-type]
+    return np.asarray(rotation_z(part.yaw_rad) @ rotation_y(part.pitch_rad) @ roll)
 
 
 def solids_between(parts: Iterable[Part], low_m: float, high_m: float) -> list[Part]:

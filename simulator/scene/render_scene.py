@@ -10,6 +10,7 @@ import numpy.typing as npt
 import sapien
 from sapien import render
 
+from simulator.robot.robot import flat_pose
 from simulator.scene.disk_cache import DiskCache
 from simulator.scene.mesh_shapes import mesh_of
 from simulator.scene.meshes import Mesh
@@ -32,11 +33,6 @@ def set_up_renderer() -> None:
     render.set_global_config(max_num_materials=512, max_num_textures=512)
     render.set_camera_shader_dir(os.fspath(SHADERS))
     render.set_picture_format("Color", "r8g8b8a8unorm")
-
-
-def flat_pose(x_m: float, y_m: float, yaw_rad: float, z_m: float = 0.0) -> sapien.Pose:
-    """Pose from position and heading."""
-    return sapien.Pose([x_m, y_m, z_m], [math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2)])
 
 
 def _leaning(pitch_rad: float, roll_rad: float) -> sapien.Pose:

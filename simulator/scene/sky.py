@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simulator.scene.lighting import Sunlight
-from simulator.scene.meshes import Mesh
+from simulator.scene.meshes import Mesh, grid_triangles
 from simulator.scene.parts import Geometry, Material, Part, Picture
 from simulator.textures.catalogue import draw
 from simulator.textures.noise import Image, spectral_noise
@@ -86,12 +86,7 @@ def _sheet(
 ) -> Mesh:
     """Triangles of a grid of points, turned so that their fronts face along the normals."""
     rows, columns = points.shape[:2]
-    index = np.arange(rows * columns, dtype=np.uint32).reshape(rows, columns)
-    a, b, c, d = (index[i, j].ravel() for i, j in (
-        (slice(None, -1), slice(None, -1)), (slice(None, -1), slice(1, None)),
-        (slice(1, None), slice(1, None)), (slice(1, None), slice(None, -1)),
-    ))  # fmt: skip
-    triangles = np.concatenate([np.stack([a, b, c], -1), np.stack([a, c, d], -1)])
+    triangles = grid_triangles(rows, columns)
     flat, facing = points.reshape(-1, 3), normals.reshape(-1, 3)
     sides = np.cross(
         flat[triangles[:, 1]] - flat[triangles[:, 0]], flat[triangles[:, 2]] - flat[triangles[:, 0]]

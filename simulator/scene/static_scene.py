@@ -14,7 +14,7 @@ from simulator.scene.meshes import FloatArray, Mesh, facing_any, joined
 from simulator.scene.parts import Light, Material, Part
 from simulator.world.world_file import Lighting
 
-CODE = ("lighting.py", "mesh_shapes.py", "meshes.py", "parts.py")
+CODE = ("curved_shapes.py", "lighting.py", "mesh_shapes.py", "meshes.py", "parts.py", "texturing.py")
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from simulator.scene.parts import Part, rotation_z, solids_between
+from shared.geometry.perspective import rotation_z
+from simulator.scene.parts import Part, solids_between
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -6,7 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, around, box
+from simulator.scene.parts import Material, Part
+from simulator.scene.shapes import around, box
 from simulator.world.rooms import cut, floor_parts, variant
 from simulator.world.world_file import Ground, Room, WorldFile
 

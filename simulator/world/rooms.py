@@ -10,7 +10,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from simulator.scene.parts import Material, Part, box
+from simulator.scene.parts import Material, Part
+from simulator.scene.shapes import box
 from simulator.world.world_file import Opening, Room, Surface, WorldFile
 
 SKIRTING = Material("lacquer", (236, 234, 228), 5)

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from simulator.scene.parts import Material, Part, box
+from simulator.scene.parts import Material, Part
 from simulator.scene.prisms import MOST_PRISMS, hull_outline, prisms_of
+from simulator.scene.shapes import box
 from simulator.world.footprints import cast_rays, clearance_m, footprints
 
 CORNERS = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)

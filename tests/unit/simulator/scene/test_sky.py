@@ -5,7 +5,8 @@ import pytest
 
 from simulator.scene.lighting import Sunlight, bake
 from simulator.scene.mesh_shapes import mesh_of
-from simulator.scene.parts import Material, box
+from simulator.scene.parts import Material
+from simulator.scene.shapes import box
 from simulator.scene.sky import RADIUS_M, backdrop, sky_picture, sunlight
 from simulator.world.world_file import Sky, load_world
 

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from simulator.scene.parts import Material, Part, box
+from simulator.scene.parts import Material, Part
+from simulator.scene.shapes import box
 from simulator.sensors.ranges import measure, sensor_angles_rad
 from simulator.settings import RangeSettings
 from simulator.world.footprints import footprints

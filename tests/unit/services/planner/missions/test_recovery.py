@@ -11,7 +11,8 @@ from services.planner.missions.explore import FrontierExploration
 from services.planner.missions.goto import Goto
 from services.planner.profiles import DEFAULT
 from shared.messages.matching import NodeMatch
-from simulator.scene.parts import Material, box
+from simulator.scene.parts import Material
+from simulator.scene.shapes import box
 from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, Walker, picture, run
 
 START = (2.6, 1.3, 0.0)
