@@ -1,4 +1,4 @@
-"""Where samples wait between Zenoh's threads and a service's loop: callbacks only store, the loop decodes."""
+"""Where samples wait between Zenoh's threads and a service's loop: callbacks only store, the loop decodes; waiting."""
 
 import logging
 import threading

@@ -11,7 +11,7 @@ import uvicorn
 from starlette.types import ASGIApp
 
 from shared.access.credentials import Credentials
-from shared.waiting import wait_until
+from shared.inbox import wait_until
 from shared.web.connections import ConnectionLimits, limited_protocol
 
 log = logging.getLogger(__name__)
