@@ -1,4 +1,4 @@
-"""Where samples wait between Zenoh's threads and a service's loop: callbacks only store, the loop decodes; waiting."""
+"""Waiting: for samples, which Zenoh's threads store and a service's loop decodes, and for conditions."""
 
 import logging
 import threading

@@ -2,7 +2,8 @@
 
 from shared.messages import Frame, SimulationReply, SimulationRequest
 from simulator.outbox import MessageMaker
-from simulator.simulation import Pose2, Simulation
+from simulator.scene.parts import Pose2
+from simulator.simulation import Simulation
 from simulator.world.changes import ChangeError
 
 

@@ -11,6 +11,7 @@ from simulator.disturbances.camera import Moment
 from simulator.disturbances.rearranging import rearranged
 from simulator.disturbances.walking import Crowd, crowd_of
 from simulator.robot.physics_scene import Bodies, PhysicsScene
+from simulator.scene.parts import Pose2
 from simulator.sensors.ranges import measure, sensor_angles_rad
 from simulator.settings import SimulationSettings
 from simulator.world.changes import ChangeError, Changes, changed_world, with_item, with_obstacle
@@ -22,9 +23,8 @@ from simulator.world.world_file import WorldFile
 if TYPE_CHECKING:
     from simulator.scene.view import View
 
-Pose2 = tuple[float, float, float]
 Image = npt.NDArray[np.uint8]
-TOUCH_M = 0.02  # less than this of a new thing inside the robot is pushed out by physics
+TOUCH_M = 0.02  # chosen: less than this of a new thing inside the robot is pushed out by physics
 
 
 @dataclass(frozen=True)

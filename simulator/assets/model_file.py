@@ -14,9 +14,9 @@ from simulator.assets.picture_file import picture_from_image, picture_of
 from simulator.assets.shading import creased, painted
 
 SUFFIXES = (".glb", ".gltf", ".obj")
-MOST_TRIANGLES = 200_000
-GAMMA = 1 / 2.2
-GREY = (190, 190, 190)
+MOST_TRIANGLES = 200_000  # untrusted input: as in gltf_guard
+GAMMA = 1 / 2.2  # of the renderer's textures; colours of glTF are linear
+GREY = (190, 190, 190)  # of what has no look; by eye
 
 
 class Neighbours(Protocol):

@@ -7,7 +7,7 @@ from simulator.scene.meshes import Mesh
 
 FloatArray = npt.NDArray[np.floating]
 CREASE_COS = float(np.cos(np.deg2rad(40.0)))
-SMALLEST_AREA = 1e-14
+SMALLEST_AREA = 1e-14  # of the square of the model's size: slivers by rounding
 MOST_FACES = 64  # at one place; further ones do not count
 
 

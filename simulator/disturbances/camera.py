@@ -8,7 +8,7 @@ from simulator.disturbances.noise import noisy
 from simulator.disturbances.rain import rained
 from simulator.sensors.panorama import Image
 
-NIGHT_NOISE = 0.35  # a camera that has little light turns its gain up
+NIGHT_NOISE = 0.35  # a camera that has little light turns its gain up; chosen
 
 
 @dataclass(frozen=True)

@@ -9,15 +9,16 @@ from simulator.disturbances.levels import generator
 from simulator.sensors.panorama import Image
 
 STOPS = 2.0  # of the largest error, at level 1: four times too bright or too dark
-PERIOD_S = 24.0
-GAMMA = 2.2
+PERIOD_S = 24.0  # of the slower swing; chosen: several a room
+FASTER = 0.37  # share of it of the faster one; chosen: no small ratio
+GAMMA = 2.2  # of the picture
 
 
 def stops(level: float, seed: int, time_s: float) -> float:
     """Error of the exposure in stops: two sine waves that a seed shifts."""
     first, second = generator(seed, "exposure").uniform(0.0, 2.0 * math.pi, 2)
     slow = math.sin(2.0 * math.pi * time_s / PERIOD_S + first)
-    fast = math.sin(2.0 * math.pi * time_s / (0.37 * PERIOD_S) + second)
+    fast = math.sin(2.0 * math.pi * time_s / (FASTER * PERIOD_S) + second)
     return level * STOPS * (0.7 * slow + 0.3 * fast)
 
 

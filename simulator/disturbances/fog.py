@@ -8,7 +8,7 @@ from dataclasses import dataclass
 VISIBILITY_M = {"indoor": 6.0, "outdoor": 30.0}  # at level 1: a black thing keeps 5 % of its contrast
 CONTRAST_LN = 3.0  # -ln 0.05
 RAIN_SHARE = 0.25  # rain at level 1 hazes like fog at this level
-GREY = 0.78
+GREY = 0.78  # by eye
 DARK = 0.55  # by this much fog without daylight is darker
 
 

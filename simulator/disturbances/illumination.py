@@ -12,10 +12,10 @@ from simulator.scene.parts import Contents, Light, Material
 from simulator.world.world_file import WorldFile
 
 Rgb = tuple[float, float, float]
-LAMP_SHARE = 0.3  # of the even light
-DARKEST_VIEW = 0.05
+LAMP_SHARE = 0.3  # of the even light; chosen
+DARKEST_VIEW = 0.05  # a night sky over a town; chosen
 DAYLIT = frozenset({"view"})  # textures of what shines by daylight
-LOW_SUN: Rgb = (1.0, 0.8, 0.6)
+LOW_SUN: Rgb = (1.0, 0.8, 0.6)  # by eye
 
 
 def daylight(level: float) -> Rgb:

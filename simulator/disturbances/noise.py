@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from simulator.sensors.panorama import Image
 
-GAMMA = 2.2
+GAMMA = 2.2  # of the picture
 FEW_ELECTRONS = 50.0  # full pixel at level 1; level 0.5 has four times as many
-READ_ELECTRONS = 2.5
+READ_ELECTRONS = 2.5  # as of common sensors
 
 
 def spread(level: float) -> npt.NDArray[np.float32]:

@@ -18,17 +18,17 @@ from simulator.world.footprints import Footprints, clearance_m, footprints
 from simulator.world.freespace import BODY_BAND_M, FreeSpace, free_space
 from simulator.world.world_file import Item, WorldFile
 
-LARGEST_M = 1.3
+# All chosen: what a household changes within a week.
+LARGEST_M = 1.3  # of what one person pushes
 MOST_SHARE = 0.7  # of the movable items, at level 1
 GONE_SHARE = 0.25  # of those
-SHIFT_M = 0.7
-TURN_RAD = 0.8
-TRIES = 25
+SHIFT_M, TURN_RAD = 0.7, 0.8  # at level 1, to either side
+TRIES = 25  # places tried before it is taken away
 GRID_M = 0.1  # twice that in worlds larger than LARGE_M
 LARGE_M = 40.0
 KEPT_FLOOR = 0.93  # free floor that must stay reachable
-START_M = 0.6
-SPACING_M = 0.08
+START_M = 0.6  # from the robot's start
+SPACING_M = 0.08  # of the points of an item that are looked at
 
 
 def rearranged(world: WorldFile, level: float, seed: int) -> dict[str, Item | None]:

@@ -10,8 +10,9 @@ import numpy.typing as npt
 from simulator.world.freespace import FreeSpace, Point
 
 FloatArray = npt.NDArray[np.float64]
+# All chosen: ways that cross rooms and take a minute.
 STEP_M = 0.05
-SPARE_M = 0.06
+SPARE_M = 0.06  # on both sides, half of it where straightened ways cut corners
 STATIONS = 3
 FAR_M = 12.0  # of a station from the first one
 SHORTEST_M = 3.0

@@ -8,19 +8,17 @@ import numpy as np
 from simulator.disturbances.levels import generator
 from simulator.disturbances.people import Figure, cart, person
 from simulator.disturbances.routes import STEP_M, FloatArray, closed_route
-from simulator.scene.parts import Piece, moved
+from simulator.scene.parts import Piece, Pose2, moved
 from simulator.world.footprints import Footprints, clearance_m, footprints
 from simulator.world.freespace import BODY_BAND_M, FreeSpace, Point
 
+# All chosen: people who are in the way and never at fault.
 GAP_M = 0.4  # to the robot's edge, below which a walker does not come nearer
 BETWEEN_M = 0.1  # the same between walkers
-PATIENCE_S = 1.5
-TURN_RADPS = 4.0
-FLOOR_PER_WALKER_M2 = 14.0  # at level 1
-MOST_WALKERS = 12
+PATIENCE_S = 1.5  # after which one who waits turns back
+TURN_RADPS = 4.0  # a body follows its way within half a second
+FLOOR_PER_WALKER_M2, MOST_WALKERS = 14.0, 12  # at level 1
 CART_EVERY = 3
-
-Pose2 = tuple[float, float, float]
 
 
 @dataclass

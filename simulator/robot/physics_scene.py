@@ -12,14 +12,15 @@ import sapien
 from sapien import physx
 
 from simulator.robot.robot import UPRIGHT, Robot, flat_pose
-from simulator.scene.parts import Part, solids_between
+from simulator.scene.parts import Part, Pose2, solids_between
 from simulator.settings import RobotSettings
 from simulator.world.footprints import hull_corners_m
 
-TOUCH_N_S = 1e-6
-EPISODE_GAP_S = 0.5
-THRESHOLD_M = 0.02  # hulls below this are neither felt by the distance sensors nor hit by the robot
-Pose2 = tuple[float, float, float]
+TOUCH_N_S = 1e-6  # an impulse above rounding
+EPISODE_GAP_S = 0.5  # touches further apart than this are two collisions; chosen
+THRESHOLD_M = 0.02  # freespace.BODY_BAND_M: lower hulls are neither felt by the sensors nor hit by the robot
+ABOVE_M = 0.05  # what begins this far above the mast cannot be hit; chosen
+FRICTION, WALKER_FRICTION = 0.9, 0.2  # rubber on floors; smooth sides, along which the robot slides; chosen
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class PhysicsScene:
     def add_walker(self, solid: Part) -> physx.PhysxRigidDynamicComponent:
         """Add a box or an upright cylinder that goes where it is put and pushes; see `move_walker`."""
         builder = self._scene.create_actor_builder()
-        _add_solid(builder, solid, physx.PhysxMaterial(0.2, 0.2, 0.0))
+        _add_solid(builder, solid, physx.PhysxMaterial(WALKER_FRICTION, WALKER_FRICTION, 0.0))
         entity = builder.build_kinematic(name="walker")
         return entity.find_component_by_type(physx.PhysxRigidDynamicComponent)
 
@@ -93,16 +94,16 @@ class PhysicsScene:
 
 def _add_static(scene: sapien.Scene, parts: tuple[Part, ...], height_m: float) -> int:
     """Add floor and solids that the robot can reach; returns the floor's id."""
-    material = physx.PhysxMaterial(0.9, 0.9, 0.0)
+    material = physx.PhysxMaterial(FRICTION, FRICTION, 0.0)
     floor = scene.create_actor_builder()
     floor.add_box_collision(sapien.Pose([0, 0, -0.5]), half_size=[100, 100, 0.5], material=material)
     entity = floor.build_static(name="floor")
     solids = scene.create_actor_builder()
-    for part in solids_between(parts, 0.0, height_m + 0.05):
+    for part in solids_between(parts, 0.0, height_m + ABOVE_M):
         if part.shape != "hull":
             _add_solid(solids, part, material)
     solids.build_static(name="solids")
-    _add_hulls(scene, solids_between(parts, THRESHOLD_M, height_m + 0.05), material)
+    _add_hulls(scene, solids_between(parts, THRESHOLD_M, height_m + ABOVE_M), material)
     return int(entity.per_scene_id)
 
 

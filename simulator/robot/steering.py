@@ -10,6 +10,9 @@ from dataclasses import dataclass
 
 from simulator.settings import RobotSettings
 
+MOST_ERROR_RAD = 0.35
+"""Steering error, 20 degrees, beyond which a wheel stands; chosen."""
+
 
 @dataclass(frozen=True)
 class LegTarget:
@@ -62,7 +65,7 @@ def next_target(
     most = robot.steer_rate_radps * dt_s
     steer = last.steer_rad + max(-most, min(most, wanted - last.steer_rad))
     aligned = max(0.0, math.cos(wanted - steer_rad))
-    if abs(wanted - steer_rad) > 0.35:
+    if abs(wanted - steer_rad) > MOST_ERROR_RAD:
         aligned = 0.0  # the other legs may point elsewhere: wait
     speed = sign * max(-robot.wheel_limit_radps, min(robot.wheel_limit_radps, wheel_radps)) * aligned
     change = robot.wheel_accel_radps2 * dt_s

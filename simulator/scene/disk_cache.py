@@ -28,7 +28,7 @@ log = logging.getLogger(__name__)
 Arrays = Sequence[npt.NDArray[Any]]
 FORMAT = "topnav-cache/1"
 SUFFIX, PARTIAL = ".npys", ".partial"
-SEAL_BYTES = 32
+SEAL_BYTES = 32  # of a SHA-256
 ABANDONED_S = 60.0  # a file still partial after this belongs to a process that was killed
 
 

@@ -9,7 +9,7 @@ from simulator.scene.meshes import Mesh, refined
 from simulator.scene.parts import Geometry, Material, Part, Vec3
 from simulator.scene.texturing import GRAIN_M
 
-MOST_TRIANGLES = 20_000
+MOST_TRIANGLES = 20_000  # chosen: far above a roof's
 
 
 def face(corners_m: list[Vec3], facing: Vec3, material: Material, tile_m: float) -> Part:

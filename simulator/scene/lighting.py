@@ -14,16 +14,21 @@ from simulator.scene.meshes import surface_points
 from simulator.scene.parts import Light, Part, rotation_of
 
 FloatArray = npt.NDArray[np.float32]
+# Chosen by eye and by the seconds that a world takes to load (decision 0008).
 CELL_M = 0.06
+MOST_CELLS = 700  # along the longest side of a world: larger worlds get larger cells
 OCCLUDER_M = 0.05  # thinner and smaller things cast no shadow
 SHARE_M = 0.09  # vertices this near with the same normal share one computation
-SAMPLES = 2
-HEMISPHERE = 12
-REACH_M = 0.9
+SAMPLES = 2  # points of a lamp
+SOFT_M2 = 0.35  # keeps what is near a lamp from being infinitely bright
+HEMISPHERE = 12  # directions in which a corner may be closed
+REACH_M = 0.9  # how far that counts
 SKIP_M = 0.07  # a surface does not shade itself
-CLEAR_SHARE = 0.006
-GAMMA = 1 / 2.2
-MOST_CELLS = 700  # along the longest side of a world: larger worlds get larger cells
+START_M = 0.02  # rays begin so far above it
+CLEAR_SHARE = 0.006  # less light than this is not worth a ray
+SHRINK = {"ellipsoid": 0.8, "cylinder": 0.9, "cushion": 0.96}  # of the boxes that stand for round things
+WHITE, SHOULDER = 1.25, 0.8  # brightest factor, and the light that reaches 63 % of it
+GAMMA = 1 / 2.2  # of the renderer's textures
 
 
 @dataclass(frozen=True)
@@ -41,7 +46,7 @@ def bake(
 ) -> FloatArray:  # fmt: skip
     """Light at each vertex as a factor for gamma-encoded texture values.
 
-    Direct light, at SAMPLES points of each lamp: power * max(cos_surface, 0) * cos_light / (0.35 + d^2).
+    Direct light, at SAMPLES points of each lamp: power * max(cos_surface, 0) * cos_light / (SOFT_M2 + d^2).
     Ambient light is lost by up to `occlusion` where short rays over the hemisphere hit something.
 
     Args:
@@ -72,7 +77,7 @@ def bake(
         np.array(ambient, np.float32) * (1.0 - occlusion * (1.0 - _openness(start, facing, grid)))[:, None]
     )
     # Soft shoulder: bright spots under lamps keep their texture.
-    factors = (1.25 * (1.0 - np.exp(-total / 0.8))) ** GAMMA
+    factors = (WHITE * (1.0 - np.exp(-total / SHOULDER))) ** GAMMA
     return np.asarray(factors[back.reshape(-1)], np.float32)
 
 
@@ -82,7 +87,7 @@ def _sunlit(start: FloatArray, normals: FloatArray, grid: "_FilledGrid", sun: Su
     cosine = np.maximum(normals @ towards, 0.0)
     lit = np.flatnonzero(cosine > 0.0)
     visible = np.zeros(len(start), np.float32)
-    begin = start[lit] + 0.02 * normals[lit]
+    begin = start[lit] + START_M * normals[lit]
     visible[lit] = ~grid.hit(begin, begin + towards * grid.way_out_m(begin, towards)[:, None])
     return np.asarray((cosine * visible)[:, None] * np.array(sun.power, np.float32), np.float32)
 
@@ -96,10 +101,10 @@ def _direct(
     cosine = np.maximum((unit * normals).sum(axis=1), 0.0)
     if light.facing is not None:
         cosine = cosine * np.maximum(-(unit @ np.array(light.facing, np.float32)), 0.0)
-    strength = cosine / (0.35 + squared)
+    strength = cosine / (SOFT_M2 + squared)
     lit = np.flatnonzero(strength > CLEAR_SHARE)
     visible = np.zeros(len(start), np.float32)
-    visible[lit] = ~grid.hit(start[lit] + 0.02 * normals[lit], point)
+    visible[lit] = ~grid.hit(start[lit] + START_M * normals[lit], point)
     return np.asarray((strength * visible)[:, None] * np.array(light.power, np.float32), np.float32)
 
 
@@ -117,7 +122,7 @@ def _openness(start: FloatArray, normals: FloatArray, grid: "_FilledGrid") -> Fl
     tangent /= np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), 1e-6)
     bitangent = np.cross(normals, tangent)
     free = np.zeros(len(start), np.float32)
-    origin = start + 0.02 * normals
+    origin = start + START_M * normals
     for a, b, c in local:
         free += ~grid.hit(origin, origin + (a * tangent + b * bitangent + c * normals) * np.float32(REACH_M))
     return np.asarray(free / HEMISPHERE, np.float32)
@@ -133,10 +138,9 @@ class _FilledGrid:
         self._low, self._high = low - margin, high + margin
         shape = np.ceil((high + margin - self._low) / self._cell_m).astype(int) + 1
         self._filled = np.zeros(shape, bool)
-        shrink = {"ellipsoid": 0.8, "cylinder": 0.9, "cushion": 0.96}
         for part in parts:
             if part.casts_shadow and part.shape != "leaf" and np.median(part.size_m) > OCCLUDER_M:
-                self._fill(part, np.array(part.size_m) / 2 * shrink.get(part.shape, 1.0))
+                self._fill(part, np.array(part.size_m) / 2 * SHRINK.get(part.shape, 1.0))
 
     def _fill(self, part: Part, half: npt.NDArray[np.float64]) -> None:
         """Fill every cell that holds a sample point of the part; samples are denser than cells."""

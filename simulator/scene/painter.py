@@ -13,7 +13,7 @@ from simulator.scene.parts import Material, Picture
 from simulator.textures.catalogue import draw
 from simulator.textures.noise import Image
 
-MOST_THREADS = 4
+MOST_THREADS = 4  # chosen: more wait for one another's memory
 Drawn = tuple[str, tuple[int, int, int], int]
 Look = Drawn | Picture
 

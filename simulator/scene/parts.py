@@ -11,6 +11,8 @@ from shared.geometry.perspective import rotation_y, rotation_z
 from simulator.scene.meshes import Mesh
 
 Span = tuple[float, float]
+Pose2 = tuple[float, float, float]
+"""Position on the floor (metres) and heading (radians)."""
 Vec3 = tuple[float, float, float]
 Rgb = tuple[int, int, int]
 Shape = Literal["box", "cylinder", "ellipsoid", "cushion", "drape", "leaf", "mesh", "hull"]

@@ -12,14 +12,13 @@ import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
-SLICE_M = 0.1
+SLICE_M = 0.1  # chosen: thinner than a seat is high
 SLICED_M = 2.0  # above this nothing reaches the robot: one slice holds the rest
 SKIN_M = 0.004  # sheets get a thickness, as solids need a volume
-DIRECTIONS = 16
-GRAIN_M = 0.3
-MOST_GROUPS = 24
-MOST_PRISMS = 160
-SAME_AREA = 1.04
+DIRECTIONS = 16  # corners of an outline at most: 1 / cos(pi / 16) is 2 % wider
+MOST_GROUPS, GRAIN_M = 24, 0.3  # more groups in a slice, as leaves are, are put together by cells; chosen
+MOST_PRISMS = 160  # chosen: a table has five, a plant twenty
+SAME_AREA = 1.04  # outlines that together are this little larger are one; chosen
 
 
 @dataclass(frozen=True)

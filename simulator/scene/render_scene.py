@@ -15,7 +15,7 @@ from simulator.scene.disk_cache import DiskCache
 from simulator.scene.mesh_shapes import mesh_of
 from simulator.scene.meshes import Mesh
 from simulator.scene.painter import Look, Painter, look_of
-from simulator.scene.parts import Contents, Light, Material, Part
+from simulator.scene.parts import Contents, Light, Material, Part, Pose2
 from simulator.scene.sky import RADIUS_M, backdrop, sunlight
 from simulator.scene.static_scene import by_material, lit_meshes
 from simulator.sensors.panorama import BORDER_PX, CubeToEquirect, Image, face_fov_rad, face_rotations
@@ -24,7 +24,6 @@ from simulator.world.world_file import WorldFile
 
 SHADERS = Path(__file__).parent / "shaders" / "baked"
 AWAY = sapien.Pose([0.0, 0.0, -500.0])
-Pose2 = tuple[float, float, float]
 
 
 def set_up_renderer() -> None:

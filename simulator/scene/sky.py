@@ -13,13 +13,12 @@ from simulator.textures.catalogue import draw
 from simulator.textures.noise import Image, spectral_noise
 from simulator.world.world_file import Sky, WorldFile
 
-RADIUS_M = 220.0
-LAND_LOW_M = -0.12
-LOWEST_RAD = math.radians(-4.0)
-LAND_TILE_M = 6.0
-GREEN = (104, 126, 70)
-SEGMENTS, RINGS = 64, 16
-HEIGHT_PX, WIDTH_PX = 512, 2048
+RADIUS_M = 220.0  # beyond any world (world_file.MOST_SPAN_M, from its middle) and its corners
+LAND_LOW_M = -0.12  # below floors and their slabs
+LOWEST_RAD = math.radians(-4.0)  # the dome ends below the horizon, where land hides its edge
+LAND_TILE_M, GREEN = 6.0, (104, 126, 70)  # by eye
+SEGMENTS, RINGS = 64, 16  # by eye: the dome looks round
+HEIGHT_PX, WIDTH_PX = 512, 2048  # a column is as wide as that of the camera's picture
 
 
 def backdrop(world: WorldFile) -> list[Part]:

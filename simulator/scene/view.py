@@ -12,13 +12,11 @@ from simulator.robot.physics_scene import Bodies
 from simulator.robot.robot_shape import HIDER, SEEKER, chassis_parts, leg_parts, wheel_parts, whole_robot
 from simulator.scene.disk_cache import DiskCache
 from simulator.scene.painter import Painter
-from simulator.scene.parts import Contents
+from simulator.scene.parts import Contents, Pose2
 from simulator.scene.render_scene import RenderScene
 from simulator.sensors.panorama import Image
 from simulator.settings import SimulationSettings
 from simulator.world.world_file import WorldFile
-
-Pose2 = tuple[float, float, float]
 
 
 class View:

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 Image = npt.NDArray[np.uint8]
-BORDER_PX = 2  # pixels beyond 90 degrees on each side of a face
+BORDER_PX = 2  # beyond 90 degrees on each side of a face: bilinear sampling needs one, rounding another
 
 # Forward and left axis of each face, in the camera frame.
 FACE_AXES: tuple[tuple[tuple[int, int, int], tuple[int, int, int]], ...] = (

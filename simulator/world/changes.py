@@ -10,10 +10,10 @@ from collections.abc import Mapping
 from pydantic import ValidationError
 
 from simulator.furniture.catalogue import FURNITURE
+from simulator.scene.parts import Pose2
 from simulator.world.world_file import Item, WorldFile
 
 Changes = Mapping[str, Item | None]
-Pose2 = tuple[float, float, float]
 
 
 class ChangeError(ValueError):

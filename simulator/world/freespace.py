@@ -16,11 +16,10 @@ from simulator.world.world_file import WorldFile
 
 FloatArray = npt.NDArray[np.float64]
 Point = tuple[float, float]
-BODY_BAND_M = (0.02, 0.79)
-FINE_M, COARSE_M = 0.05, 0.1
-SMALL_WORLD_M = 30.0
-FAR_M = 3.0
-"""Clearances beyond this are of no interest and not computed."""
+BODY_BAND_M = (0.02, 0.79)  # heights in which the robot hits things: above thresholds, below the camera
+FINE_M, COARSE_M = 0.05, 0.1  # cells; chosen: a fifth of the robot's radius, and twice that beyond
+SMALL_WORLD_M = 30.0  # this size; larger worlds would take minutes
+FAR_M = 3.0  # clearances beyond this are of no interest and not computed; chosen
 
 
 @dataclass(frozen=True)

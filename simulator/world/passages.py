@@ -10,9 +10,9 @@ import numpy.typing as npt
 from simulator.world.freespace import FreeSpace
 
 Grid = npt.NDArray[np.bool_]
-STEP_M = 0.02
-WIDEST_M = 1.6
-LEAST_AREA_M2 = 0.5
+STEP_M = 0.02  # widths are found to twice this; chosen: finer than the grid
+WIDEST_M = 1.6  # what is wider is no passage; chosen: a double door
+LEAST_AREA_M2 = 0.5  # less floor than this is a niche, not a room; chosen: where the robot could turn
 
 
 @dataclass(frozen=True)
