@@ -23,7 +23,7 @@ BACKTRACK_RAD = math.radians(100.0)
 PREFERENCE_RAD = math.radians(50.0)
 """So much easier must the other side be to be taken; chosen: five of the directions that are tried."""
 JUMP_RAD = math.radians(60.0)
-"""A wish that changes this much between two steps is another errand (chosen, see decision 0005)."""
+"""A wish that changes this much between two steps is for another destination (chosen, decision 0005)."""
 FULL_TURN_RAD = 2.0 * math.pi
 
 

@@ -48,17 +48,17 @@ def grid_triangles(rows: int, columns: int) -> IntArray:
     return np.concatenate([np.stack([a, b, c], -1).reshape(-1, 3), np.stack([a, c, d], -1).reshape(-1, 3)])
 
 
-def facing_any(mesh: Mesh, eyes: FloatArray) -> Mesh:
-    """The triangles whose front is turned towards at least one of (k, 3) eye positions.
+def facing_any(mesh: Mesh, viewpoints: FloatArray) -> Mesh:
+    """The triangles whose front is turned towards at least one of (k, 3) viewpoints.
 
-    With the corners of all rooms at camera height as eyes this drops, exactly, what no camera there can see:
-    undersides below the camera, tops above it, backs against walls.
+    With the corners of all rooms at camera height as viewpoints this drops, exactly, what no camera there can
+    see: undersides below the camera, tops above it, backs against walls.
     """
     corner = mesh.vertices[mesh.triangles[:, 0]]
     normal = np.cross(
         mesh.vertices[mesh.triangles[:, 1]] - corner, mesh.vertices[mesh.triangles[:, 2]] - corner
     )
-    ahead = np.einsum("kmc,mc->km", eyes[:, None, :] - corner[None], normal)
+    ahead = np.einsum("kmc,mc->km", viewpoints[:, None, :] - corner[None], normal)
     kept = mesh.triangles[(ahead > 0.0).any(axis=0)]
     used, back = np.unique(kept, return_inverse=True)
     return Mesh(

@@ -130,8 +130,8 @@ class RenderScene:
         self._painter.order(part.material for part in parts)  # drawn while the light is computed
         entity = sapien.Entity()
         body = render.RenderBodyComponent()
-        eyes = _eyes(world, self._settings.height_m)
-        for lit in lit_meshes(parts, lights, world.lighting, eyes, cache, sunlight(world)):
+        viewpoints = _viewpoints(world, self._settings.height_m)
+        for lit in lit_meshes(parts, lights, world.lighting, viewpoints, cache, sunlight(world)):
             glow = lit.material.glow
             shade = np.full_like(lit.light, glow) if glow else lit.light
             body.attach(self._shape(lit.mesh, shade, lit.material))
@@ -178,6 +178,6 @@ class RenderScene:
         return mount, cameras
 
 
-def _eyes(world: WorldFile, height_m: float) -> npt.NDArray[np.float32]:
+def _viewpoints(world: WorldFile, height_m: float) -> npt.NDArray[np.float32]:
     """Corners of all rooms and openings at camera height, (k, 3): the camera is always between them."""
     return np.array([(x, y, height_m) for rx, ry in world.rectangles() for x in rx for y in ry], np.float32)

@@ -38,32 +38,36 @@ def lit_meshes(
     parts: tuple[Part, ...],
     lights: tuple[Light, ...],
     even: Lighting,
-    eyes: FloatArray,
+    viewpoints: FloatArray,
     cache: DiskCache,
     sun: Sunlight | None = None,
 ) -> list[LitMesh]:
-    """Meshes of all parts, without what no eye can see, and their light.
+    """Meshes of all parts, without what no camera can see, and their light.
 
     Args:
         parts: all parts, world frame.
         lights: all lamps.
         even: even light of the world.
-        eyes: (k, 3) positions between which the camera always is.
+        viewpoints: (k, 3) positions between which the camera always is.
         cache: keeps the result, as it takes seconds.
         sun: of worlds with open ground.
     """
     here = Path(__file__)
     code = code_fingerprint([here, *(here.with_name(name) for name in CODE)])
-    key = fingerprint("lit meshes", code, parts, lights, even, eyes.tolist(), sun)
+    key = fingerprint("lit meshes", code, parts, lights, even, viewpoints.tolist(), sun)
     materials = list(dict.fromkeys(part.material for part in parts))
-    packed = cache.fetch(key, lambda: _packed(_lit(parts, lights, even, eyes, sun), materials))
+    packed = cache.fetch(key, lambda: _packed(_lit(parts, lights, even, viewpoints, sun), materials))
     return _unpacked(packed, materials)
 
 
 def _lit(
-    parts: tuple[Part, ...], lights: tuple[Light, ...], even: Lighting, eyes: FloatArray, sun: Sunlight | None
+    parts: tuple[Part, ...],
+    lights: tuple[Light, ...],
+    even: Lighting,
+    viewpoints: FloatArray,
+    sun: Sunlight | None,
 ) -> list[LitMesh]:
-    culled = {material: facing_any(mesh, eyes) for material, mesh in by_material(parts).items()}
+    culled = {material: facing_any(mesh, viewpoints) for material, mesh in by_material(parts).items()}
     groups = {material: mesh for material, mesh in culled.items() if len(mesh.triangles)}
     whole = joined(list(groups.values()))
     rng = np.random.default_rng(0)

@@ -39,129 +39,66 @@ class TrainedModel:
     source: Source = "kornia"
 
 
-def _aliked(variant: str, size_bytes: int, sha256: str) -> TrainedModel:
-    origin = "github.com/Shiaoming/ALIKED"
-    return TrainedModel(variant, f"{variant}.pth", "BSD-3-Clause", origin, (variant,), size_bytes, sha256)
-
-
 MAGIC_LEAP = "Magic Leap, non-commercial research only"
+CHECKSUMS = {
+    "aliked-t16": (794_859, "56782336919db220144a884e710e2b6af13b3b8f8da15b915a239078ab471085"),
+    "aliked-n16": (2_738_091, "5be8704840ed662d9d8c561bf7279c222092674e7eb05fd0feab94899e9d82f2"),
+    "aliked-n16rot": (2_738_325, "ddf3abbf38e86f6a74540d214e1a9712c54b2d8551abc864542199f2347d7332"),
+    "aliked-n32": (3_946_667, "055283fd1624d3ab46a05c3b617b1a79a3f28d1f551737eef2d653e8c8232890"),
+    "tfeat": (2_400_533, "1f2e9516b03c45876161da006ce8047e0a66ef08cc91d3fbf96a75f1a80f445a"),
+    "mkd": (1_372_952, "e31112000009e0d6e159dd7726aeea9f6a7d746cfe7d59b59bfb86c570667641"),
+    "affnet": (339_871, "65c8bb2cf71e913818522d09dcc4262bcbcef5d756baa86a41f28526c2d61160"),
+    "orinet": (323_258, "030e7964ae3e136d00431c7e11c6b67df40ad299f02ac384fee0f1c3fd1dcb30"),
+    "keynet": (79_873, "59d3a46d57b439513acf531877fdfaa95eb550ccd10ec462e23d7c1f7a86d52a"),
+}
+"""Size in bytes and SHA-256 of the files that we have held in our hands."""
+
+
+def _file(name: str, file: str, licence: str, origin: str, *pipelines: str) -> TrainedModel:
+    """A file that kornia downloads, from a repository at GitHub."""
+    known = CHECKSUMS.get(name, (0, ""))
+    return TrainedModel(name, file, licence, f"github.com/{origin}", pipelines or (name,), *known)
+
+
+def _repository(name: str, repository: str, origin: str, pipeline: str) -> TrainedModel:
+    """A repository of Magic Leap that transformers downloads."""
+    return TrainedModel(
+        name,
+        f"magic-leap-community/{repository}",
+        MAGIC_LEAP,
+        f"github.com/magicleap/{origin}",
+        (pipeline,),
+        commercial=False,
+        source="transformers",
+    )
+
 
 MODELS: tuple[TrainedModel, ...] = (
-    _aliked("aliked-t16", 794859, "56782336919db220144a884e710e2b6af13b3b8f8da15b915a239078ab471085"),
-    _aliked("aliked-n16", 2738091, "5be8704840ed662d9d8c561bf7279c222092674e7eb05fd0feab94899e9d82f2"),
-    _aliked("aliked-n16rot", 2738325, "ddf3abbf38e86f6a74540d214e1a9712c54b2d8551abc864542199f2347d7332"),
-    _aliked("aliked-n32", 3946667, "055283fd1624d3ab46a05c3b617b1a79a3f28d1f551737eef2d653e8c8232890"),
-    TrainedModel(
-        "tfeat",
-        "tfeat-liberty.params",
-        "MIT",
-        "github.com/vbalnt/tfeat",
-        ("tfeat",),
-        2400533,
-        "1f2e9516b03c45876161da006ce8047e0a66ef08cc91d3fbf96a75f1a80f445a",
+    _file("aliked-t16", "aliked-t16.pth", "BSD-3-Clause", "Shiaoming/ALIKED"),
+    _file("aliked-n16", "aliked-n16.pth", "BSD-3-Clause", "Shiaoming/ALIKED"),
+    _file("aliked-n16rot", "aliked-n16rot.pth", "BSD-3-Clause", "Shiaoming/ALIKED"),
+    _file("aliked-n32", "aliked-n32.pth", "BSD-3-Clause", "Shiaoming/ALIKED"),
+    _file("tfeat", "tfeat-liberty.params", "MIT", "vbalnt/tfeat"),
+    _file("mkd", "mkd-concat-64.pth", "MIT", "manyids2/mkd_pytorch"),
+    _file("affnet", "AffNet.pth", "MIT", "ducha-aiki/affnet", *PATCH_NETWORKS),
+    _file("orinet", "OriNet.pth", "MIT", "ducha-aiki/affnet", *PATCH_NETWORKS),
+    _file("keynet", "keynet_pytorch.pth", "MIT", "axelBarroso/Key.Net-Pytorch", *PATCH_NETWORKS),
+    _file("hardnet", "HardNetPP.pth", "MIT", "DagnyT/hardnet"),
+    _file("hardnet8", "hardnet8v2.pt", "see its origin", "pultarmi/HardNet8"),
+    _file("sosnet", "sosnet_32x32_liberty.pth", "see its origin", "yuruntian/SOSNet"),
+    _file("disk", "depth-save.pth", "Apache-2.0", "cvlab-epfl/disk"),
+    _file("xfeat", "xfeat.pt", "Apache-2.0", "verlab/accelerated_features"),
+    _file("dedode-detector", "dedode_detector_L_v2.pth", "MIT", "Parskatt/DeDoDe", "dedode"),
+    _file("dedode-descriptor", "dedode_descriptor_B.pth", "MIT", "Parskatt/DeDoDe", "dedode"),
+    _file("lightglue-aliked", "aliked_lightglue_v0-1_arxiv-pth", "Apache-2.0", "cvg/LightGlue", "lightglue"),
+    _file("lightglue-disk", "disk_lightglue_v0-1_arxiv-pth", "Apache-2.0", "cvg/LightGlue", "lightglue"),
+    _file(
+        "lightglue-xfeat", "xfeat-lighterglue.pt", "Apache-2.0", "verlab/accelerated_features", "lightglue"
     ),
-    TrainedModel(
-        "mkd",
-        "mkd-concat-64.pth",
-        "MIT",
-        "github.com/manyids2/mkd_pytorch",
-        ("mkd",),
-        1372952,
-        "e31112000009e0d6e159dd7726aeea9f6a7d746cfe7d59b59bfb86c570667641",
-    ),
-    TrainedModel(
-        "affnet",
-        "AffNet.pth",
-        "MIT",
-        "github.com/ducha-aiki/affnet",
-        tuple(PATCH_NETWORKS),
-        339871,
-        "65c8bb2cf71e913818522d09dcc4262bcbcef5d756baa86a41f28526c2d61160",
-    ),
-    TrainedModel(
-        "orinet",
-        "OriNet.pth",
-        "MIT",
-        "github.com/ducha-aiki/affnet",
-        tuple(PATCH_NETWORKS),
-        323258,
-        "030e7964ae3e136d00431c7e11c6b67df40ad299f02ac384fee0f1c3fd1dcb30",
-    ),
-    TrainedModel(
-        "keynet",
-        "keynet_pytorch.pth",
-        "MIT",
-        "github.com/axelBarroso/Key.Net-Pytorch",
-        tuple(PATCH_NETWORKS),
-        79873,
-        "59d3a46d57b439513acf531877fdfaa95eb550ccd10ec462e23d7c1f7a86d52a",
-    ),
-    TrainedModel("hardnet", "HardNetPP.pth", "MIT", "github.com/DagnyT/hardnet", ("hardnet",)),
-    TrainedModel(
-        "hardnet8", "hardnet8v2.pt", "see its origin", "github.com/pultarmi/HardNet8", ("hardnet8",)
-    ),
-    TrainedModel(
-        "sosnet", "sosnet_32x32_liberty.pth", "see its origin", "github.com/yuruntian/SOSNet", ("sosnet",)
-    ),
-    TrainedModel("disk", "depth-save.pth", "Apache-2.0", "github.com/cvlab-epfl/disk", ("disk",)),
-    TrainedModel("xfeat", "xfeat.pt", "Apache-2.0", "github.com/verlab/accelerated_features", ("xfeat",)),
-    TrainedModel(
-        "dedode-detector", "dedode_detector_L_v2.pth", "MIT", "github.com/Parskatt/DeDoDe", ("dedode",)
-    ),
-    TrainedModel(
-        "dedode-descriptor", "dedode_descriptor_B.pth", "MIT", "github.com/Parskatt/DeDoDe", ("dedode",)
-    ),
-    TrainedModel(
-        "lightglue-aliked",
-        "aliked_lightglue_v0-1_arxiv-pth",
-        "Apache-2.0",
-        "github.com/cvg/LightGlue",
-        ("lightglue",),
-    ),
-    TrainedModel(
-        "lightglue-disk",
-        "disk_lightglue_v0-1_arxiv-pth",
-        "Apache-2.0",
-        "github.com/cvg/LightGlue",
-        ("lightglue",),
-    ),
-    TrainedModel(
-        "lightglue-xfeat",
-        "xfeat-lighterglue.pt",
-        "Apache-2.0",
-        "github.com/verlab/accelerated_features",
-        ("lightglue",),
-    ),
-    TrainedModel(
-        "lightglue-dedode", "dedodeb_lightglue.pth", "Apache-2.0", "github.com/cvg/LightGlue", ("lightglue",)
-    ),
-    TrainedModel(
-        "superpoint",
-        "magic-leap-community/superpoint",
-        MAGIC_LEAP,
-        "github.com/magicleap/SuperPointPretrainedNetwork",
-        ("superpoint",),
-        commercial=False,
-        source="transformers",
-    ),
-    TrainedModel(
-        "superglue-indoor",
-        "magic-leap-community/superglue_indoor",
-        MAGIC_LEAP,
-        "github.com/magicleap/SuperGluePretrainedNetwork",
-        ("superglue",),
-        commercial=False,
-        source="transformers",
-    ),
-    TrainedModel(
-        "superglue-outdoor",
-        "magic-leap-community/superglue_outdoor",
-        MAGIC_LEAP,
-        "github.com/magicleap/SuperGluePretrainedNetwork",
-        ("superglue-outdoor",),
-        commercial=False,
-        source="transformers",
-    ),
+    _file("lightglue-dedode", "dedodeb_lightglue.pth", "Apache-2.0", "cvg/LightGlue", "lightglue"),
+    _repository("superpoint", "superpoint", "SuperPointPretrainedNetwork", "superpoint"),
+    _repository("superglue-indoor", "superglue_indoor", "SuperGluePretrainedNetwork", "superglue"),
+    _repository("superglue-outdoor", "superglue_outdoor", "SuperGluePretrainedNetwork", "superglue-outdoor"),
 )
 
 
