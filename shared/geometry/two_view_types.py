@@ -46,12 +46,12 @@ class TwoViewSettings:
             many matches lie just out of its reach; 0 asks always. Wrong matches alone stay below 1.5 nine
             times in ten, a tilt of three degrees rarely does, a tilt beyond ten among many wrong matches
             often does (tests/unit/shared/geometry/test_two_view.py).
-        fallback_share: ... or which explains less than this share of the matches; chosen: the thesis's frames
-            hold half of right ones.
+        fallback_share: ... or which explains less than this share of the matches; chosen: below
+            the half that is right at 1 to 3 m (decision 0003).
         fallback_min_matches: fewer matches than this are not worth the price of the fallback, ten times the
             planar model's; 40 lose 5 % of the answers of a tilted camera.
-        fallback_samples: five-point samples drawn by the fallback; twice as many answer 2 % more, in twice
-            the time.
+        fallback_samples: five-point samples drawn by the fallback; twice as many answer 2 % more, in one
+            and a half times the time.
         fallback_gain: how much lower the truncated cost of the fallback must be, in outliers, plus a
             twentieth of all matches: chance gives the larger model a few. 6 lose 5 % of the answers.
     """
