@@ -50,19 +50,19 @@ def untrained(profile: Profile) -> Pipeline:
 def test_untrained_networks_give_words_of_the_right_shape(room, name):
     profile = replace(combined(name, "equirectangular", "mutual_ratio"), keypoints=60)
     pipeline = untrained(profile)
-    words = extract(room(0.0, 0.0, 0.0, 400), pipeline.extractor, pipeline.representation, profile)
-    assert 0 < len(words) <= 60
-    assert words.descriptors.shape == (len(words), WIDTHS.get(name, 128))
-    assert words.descriptors.dtype == np.float16
-    np.testing.assert_allclose(np.linalg.norm(words.descriptors.astype(np.float64), axis=1), 1.0, atol=5e-3)
-    assert np.abs(words.lonlat_rad[:, 1]).max() <= np.deg2rad(65.0)
+    found = extract(room(0.0, 0.0, 0.0, 400), pipeline.extractor, pipeline.representation, profile)
+    assert 0 < len(found) <= 60
+    assert found.descriptors.shape == (len(found), WIDTHS.get(name, 128))
+    assert found.descriptors.dtype == np.float16
+    np.testing.assert_allclose(np.linalg.norm(found.descriptors.astype(np.float64), axis=1), 1.0, atol=5e-3)
+    assert np.abs(found.lonlat_rad[:, 1]).max() <= np.deg2rad(65.0)
 
 
 def test_an_untrained_network_works_on_tangent_pictures(room):
     profile = replace(combined("xfeat", "tangent", "mutual_ratio"), keypoints=60)
     pipeline = untrained(profile)
-    words = extract(room(0.0, 0.0, 0.0, 400), pipeline.extractor, pipeline.representation, profile)
-    assert 0 < len(words) <= 60
+    found = extract(room(0.0, 0.0, 0.0, 400), pipeline.extractor, pipeline.representation, profile)
+    assert 0 < len(found) <= 60
 
 
 @pytest.mark.parametrize("name", TRAINED)
@@ -86,8 +86,8 @@ def test_trained_networks_find_the_turn_between_two_views(room, name):
 def test_untrained_lightglue_pairs_words_of_its_extractor(room, extractor):
     profile = replace(combined(extractor, "equirectangular", "lightglue"), keypoints=40)
     pipeline = untrained(profile)
-    words = extract(room(0.0, 0.0, 0.0, 400), pipeline.extractor, pipeline.representation, profile)
-    (pairs,) = pipeline.matcher.match(words, [words])
+    found = extract(room(0.0, 0.0, 0.0, 400), pipeline.extractor, pipeline.representation, profile)
+    (pairs,) = pipeline.matcher.match(found, [found])
     assert pairs.shape[1:] == (2,)
     assert len(np.unique(pairs[:, 0])) == len(pairs)
 
@@ -96,8 +96,8 @@ def test_untrained_superglue_pairs_words_of_superpoint(room):
     pytest.importorskip("transformers")
     profile = replace(combined("superpoint", "equirectangular", "superglue"), keypoints=40)
     pipeline = untrained(profile)
-    words = extract(room(0.0, 0.0, 0.0, 400), pipeline.extractor, pipeline.representation, profile)
-    (pairs,) = pipeline.matcher.match(words, [words])
+    found = extract(room(0.0, 0.0, 0.0, 400), pipeline.extractor, pipeline.representation, profile)
+    (pairs,) = pipeline.matcher.match(found, [found])
     assert pairs.shape[1:] == (2,)
 
 
@@ -130,14 +130,14 @@ def test_every_learned_extractor_has_an_entry_in_the_catalogue_of_weights():
 
 
 @pytest.mark.parametrize(
-    ("parts", "words"),
+    ("parts", "found"),
     [
         (("sift", "equirectangular", "lightglue"), "no lightglue for sift"),
         (("aliked-n16", "tangent", "superglue"), "superpoint alone"),
     ],
 )
-def test_plugins_that_do_not_work_together_are_refused(parts, words):
-    with pytest.raises(ValueError, match=words):
+def test_plugins_that_do_not_work_together_are_refused(parts, found):
+    with pytest.raises(ValueError, match=found):
         combined(*parts)
 
 

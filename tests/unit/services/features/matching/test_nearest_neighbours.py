@@ -9,7 +9,7 @@ from services.features.matching.nearest_neighbours import find_neighbours
 from services.features.pipeline.interfaces import FeatureSet, Profile
 
 
-def words(descriptors: np.ndarray) -> FeatureSet:
+def features(descriptors: np.ndarray) -> FeatureSet:
     count = len(descriptors)
     return FeatureSet(np.zeros((count, 2), np.float32), np.zeros(count, np.float32), descriptors)
 
@@ -49,29 +49,33 @@ def test_float_descriptors_are_compared_as_they_are():
 def test_the_ratio_is_one_of_distances_not_of_squares():
     query, other = np.array([[0]], np.uint8), np.array([[8], [10]], np.uint8)
     for ratio, count in ((0.79, 0), (0.81, 1)):
-        (pairs,) = MutualRatio(Profile("sift", ratio=ratio), "euclidean").match(words(query), [words(other)])
+        (pairs,) = MutualRatio(Profile("sift", ratio=ratio), "euclidean").match(
+            features(query), [features(other)]
+        )
         assert len(pairs) == count
 
 
 def test_the_hamming_ratio_is_one_of_bits():
     query, other = np.array([[0]], np.uint8), np.array([[0b1111], [0b11111]], np.uint8)
     for ratio, count in ((0.79, 0), (0.81, 1)):
-        (pairs,) = MutualRatio(Profile("orb", ratio=ratio), "hamming").match(words(query), [words(other)])
+        (pairs,) = MutualRatio(Profile("orb", ratio=ratio), "hamming").match(
+            features(query), [features(other)]
+        )
         assert len(pairs) == count
 
 
 def test_equal_descriptors_never_share_a_partner():
     query = np.full((3, 8), 7, np.uint8)
     other = np.array([[7] * 8, [200] * 8], np.uint8)
-    (pairs,) = MutualRatio(Profile("sift"), "euclidean").match(words(query), [words(other)])
+    (pairs,) = MutualRatio(Profile("sift"), "euclidean").match(features(query), [features(other)])
     assert pairs.tolist() == [[0, 0]]
-    (pairs,) = BruteForce(Profile("sift"), "euclidean").match(words(query), [words(other)])
+    (pairs,) = BruteForce(Profile("sift"), "euclidean").match(features(query), [features(other)])
     assert pairs.tolist() == [[0, 0]]
 
 
 @pytest.mark.parametrize("matcher", [MutualRatio, BruteForce])
 def test_empty_frames_match_nothing(matcher):
-    none, some = words(np.zeros((0, 128), np.uint8)), words(np.eye(128, dtype=np.uint8))
+    none, some = features(np.zeros((0, 128), np.uint8)), features(np.eye(128, dtype=np.uint8))
     plugin = matcher(Profile("sift"), "euclidean")
     assert [len(pairs) for pairs in plugin.match(some, [none, some, none])] == [0, 128, 0]
     assert [len(pairs) for pairs in plugin.match(none, [none, some])] == [0, 0]

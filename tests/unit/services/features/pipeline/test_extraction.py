@@ -17,7 +17,7 @@ TURNS = 5
 CROP_RAD = np.deg2rad(65.0)
 
 
-def words_of(picture: np.ndarray, profile: Profile) -> FeatureSet:
+def features_in(picture: np.ndarray, profile: Profile) -> FeatureSet:
     pipeline = Pipeline(profile)
     return extract(picture, pipeline.extractor, pipeline.representation, profile)
 
@@ -30,7 +30,7 @@ def turned_share(picture: np.ndarray, profile: Profile, turns: int) -> np.ndarra
     """
     pipeline = Pipeline(profile)
     step = picture.shape[1] // turns
-    views = [words_of(np.roll(picture, step * turn, axis=1), profile) for turn in range(turns)]
+    views = [features_in(np.roll(picture, step * turn, axis=1), profile) for turn in range(turns)]
     found, present = np.zeros(turns), np.zeros(turns)
     for i, here in enumerate(views):
         sector = np.rint((here.lonlat_rad[:, 0] + np.pi) / (2.0 * np.pi) * turns).astype(int) % turns
@@ -46,16 +46,16 @@ def turned_share(picture: np.ndarray, profile: Profile, turns: int) -> np.ndarra
 
 @pytest.mark.parametrize("name", CLASSIC)
 def test_never_more_than_the_profile_keeps_and_none_on_the_robot_body(room, name):
-    words = words_of(room(0.0, 0.0, 0.0, 400), PROFILES[name])
-    assert 0.9 * PROFILES[name].keypoints <= len(words) <= PROFILES[name].keypoints
-    assert np.abs(words.lonlat_rad[:, 1]).max() <= CROP_RAD
-    assert (np.diff(words.scores) <= 0.0).all()
-    assert len(words.descriptors) == len(words.lonlat_rad) == len(words)
+    found = features_in(room(0.0, 0.0, 0.0, 400), PROFILES[name])
+    assert 0.9 * PROFILES[name].keypoints <= len(found) <= PROFILES[name].keypoints
+    assert np.abs(found.lonlat_rad[:, 1]).max() <= CROP_RAD
+    assert (np.diff(found.scores) <= 0.0).all()
+    assert len(found.descriptors) == len(found.lonlat_rad) == len(found)
 
 
 def test_the_body_gives_keypoints_when_nothing_is_cropped(room):
-    words = words_of(room(0.0, 0.0, 0.0, 400), replace(PROFILES["sift"], crop_deg=0.0))
-    assert words.lonlat_rad[:, 1].min() < -CROP_RAD
+    found = features_in(room(0.0, 0.0, 0.0, 400), replace(PROFILES["sift"], crop_deg=0.0))
+    assert found.lonlat_rad[:, 1].min() < -CROP_RAD
 
 
 @pytest.mark.parametrize("name", CLASSIC)
@@ -69,7 +69,7 @@ def test_only_a_continued_seam_has_keypoints(room):
     picture = room(0.0, 0.0, 0.0, 400)
 
     def at_the_seam(profile: Profile) -> int:
-        views = [words_of(np.roll(picture, 160 * turn, axis=1), profile) for turn in range(TURNS)]
+        views = [features_in(np.roll(picture, 160 * turn, axis=1), profile) for turn in range(TURNS)]
         return sum(int((np.abs(view.lonlat_rad[:, 0]) > np.pi - np.deg2rad(2.0)).sum()) for view in views)
 
     assert at_the_seam(PROFILES["sift_planar"]) == 0
@@ -78,7 +78,7 @@ def test_only_a_continued_seam_has_keypoints(room):
 
 @pytest.mark.parametrize("name", CLASSIC)
 def test_the_same_picture_gives_the_same_words(room, name):
-    first, second = (words_of(room(0.0, 0.0, 0.0, 400), PROFILES[name]) for _ in range(2))
+    first, second = (features_in(room(0.0, 0.0, 0.0, 400), PROFILES[name]) for _ in range(2))
     np.testing.assert_array_equal(first.lonlat_rad, second.lonlat_rad)
     np.testing.assert_array_equal(first.descriptors, second.descriptors)
 
@@ -86,7 +86,10 @@ def test_the_same_picture_gives_the_same_words(room, name):
 def test_bearings_do_not_depend_on_the_size_of_the_picture(room):
     profile = PROFILES["sift"]
     pipeline = Pipeline(profile)
-    large, small = words_of(room(0.0, 0.0, 0.0, 512), profile), words_of(room(0.0, 0.0, 0.0, 400), profile)
+    large, small = (
+        features_in(room(0.0, 0.0, 0.0, 512), profile),
+        features_in(room(0.0, 0.0, 0.0, 400), profile),
+    )
     (pairs,) = pipeline.matcher.match(large, [small])
     difference = large.lonlat_rad[pairs[:, 0]] - small.lonlat_rad[pairs[:, 1]]
     assert len(pairs) > 100
@@ -96,17 +99,17 @@ def test_bearings_do_not_depend_on_the_size_of_the_picture(room):
 @pytest.mark.parametrize("name", CLASSIC)
 @pytest.mark.parametrize("shape", [(1, 2), (3, 6), (400, 800)])
 def test_a_blank_or_tiny_picture_has_no_words(name, shape):
-    words = words_of(np.full((*shape, 3), 128, np.uint8), PROFILES[name])
-    assert len(words) == 0
-    assert words.lonlat_rad.shape == (0, 2)
-    assert words.descriptors.shape[1] in (32, 64, 128)
+    found = features_in(np.full((*shape, 3), 128, np.uint8), PROFILES[name])
+    assert len(found) == 0
+    assert found.lonlat_rad.shape == (0, 2)
+    assert found.descriptors.shape[1] in (32, 64, 128)
 
 
 @pytest.mark.parametrize(("name", "width"), [("sift", 128), ("orb", 32), ("beblid", 64)])
 def test_descriptor_widths_are_the_thesis_ones(room, name, width):
-    words = words_of(room(0.0, 0.0, 0.0, 400), PROFILES[name])
-    assert words.descriptors.shape[1] == width
-    assert words.descriptors.dtype == np.uint8
+    found = features_in(room(0.0, 0.0, 0.0, 400), PROFILES[name])
+    assert found.descriptors.shape[1] == width
+    assert found.descriptors.dtype == np.uint8
 
 
 def test_tangent_pictures_lose_no_keypoint_where_two_faces_meet(room):
@@ -122,9 +125,9 @@ def test_tangent_pictures_lose_no_keypoint_where_two_faces_meet(room):
     shares, counts = [], []
     for turn in range(4):
         profile = replace(PROFILES["sift_tangent"], keypoints=4000, crop_deg=0.0)
-        words = words_of(np.roll(picture, 37 * turn, axis=1), profile)
-        shares.append(at_border(bearings_from_lonlat(words.lonlat_rad.astype(float))).mean())
-        counts.append(len(words))
+        found = features_in(np.roll(picture, 37 * turn, axis=1), profile)
+        shares.append(at_border(bearings_from_lonlat(found.lonlat_rad.astype(float))).mean())
+        counts.append(len(found))
     uniform = np.random.default_rng(1).normal(size=(20000, 3))
     expected = at_border(uniform / np.linalg.norm(uniform, axis=1, keepdims=True)).mean()
     assert min(counts) > 1000
@@ -134,15 +137,15 @@ def test_tangent_pictures_lose_no_keypoint_where_two_faces_meet(room):
 def test_tangent_pictures_give_the_same_bearings_each_keypoint_once(room):
     picture = room(0.0, 0.0, 0.0, 512)
     profile = replace(PROFILES["orb_tangent"], keypoints=1000)
-    words = words_of(picture, profile)
-    assert np.abs(words.lonlat_rad[:, 1]).max() <= CROP_RAD
-    whole = words_of(picture, replace(PROFILES["orb"], resize=None, keypoints=1000))
-    (pairs,) = Pipeline(profile).matcher.match(words, [whole])
-    difference = words.lonlat_rad[pairs[:, 0]] - whole.lonlat_rad[pairs[:, 1]]
+    found = features_in(picture, profile)
+    assert np.abs(found.lonlat_rad[:, 1]).max() <= CROP_RAD
+    whole = features_in(picture, replace(PROFILES["orb"], resize=None, keypoints=1000))
+    (pairs,) = Pipeline(profile).matcher.match(found, [whole])
+    difference = found.lonlat_rad[pairs[:, 0]] - whole.lonlat_rad[pairs[:, 1]]
     assert len(pairs) > 50
     assert np.median(np.abs(difference), axis=0).max() < np.deg2rad(0.3)
-    rounded = np.round(words.lonlat_rad / np.deg2rad(0.02))
-    assert len(np.unique(rounded, axis=0)) > 0.8 * len(words)  # levels of the pyramid may share a corner
+    rounded = np.round(found.lonlat_rad / np.deg2rad(0.02))
+    assert len(np.unique(rounded, axis=0)) > 0.8 * len(found)  # levels of the pyramid may share a corner
 
 
 def test_the_strongest_come_first():
