@@ -177,19 +177,21 @@ def node_match() -> NodeMatch:
     )
 
 
-def samples() -> dict[type[Message], Message]:
-    """Message type -> a full example."""
-    at = {"seq": 7, "stamp_ns": STAMP_NS}
-    drive = at | {"robot": "r1", "epoch": 3, "ttl_ms": 300, "why": "ahead"}
-    examples: tuple[Message, ...] = (
+AT = {"seq": 7, "stamp_ns": STAMP_NS}
+DRIVE = AT | {"robot": "r1", "epoch": 3, "ttl_ms": 300, "why": "ahead"}
+
+
+def seen() -> tuple[Message, ...]:
+    """What robots sense and the feature service makes of it."""
+    return (
         frame(),
         Ranges(
-            **at, robot="r1", lockstep=True, angles_rad=(0.5,) * 12, distances_m=(2.5,) * 12, max_range_m=5.0
+            **AT, robot="r1", lockstep=True, angles_rad=(0.5,) * 12, distances_m=(2.5,) * 12, max_range_m=5.0
         ),
         features(),
-        ExtractRequest(**at, frame=frame()),
+        ExtractRequest(**AT, frame=frame()),
         MatchRequest(
-            **at,
+            **AT,
             map="flat",
             map_revision=5,
             features=features(),
@@ -199,7 +201,7 @@ def samples() -> dict[type[Message], Message]:
             with_matches=False,
         ),
         MatchReply(
-            **at,
+            **AT,
             map="flat",
             map_revision=5,
             pipeline="sift",
@@ -208,8 +210,14 @@ def samples() -> dict[type[Message], Message]:
             match_ms=1.5,
             verify_ms=2.5,
         ),
+    )
+
+
+def driven() -> tuple[Message, ...]:
+    """Headings, commands and the emergency stop."""
+    return (
         Heading(
-            **drive,
+            **DRIVE,
             mission_id="m-1",
             action="hold",
             heading_rad=0.5,
@@ -219,11 +227,17 @@ def samples() -> dict[type[Message], Message]:
             speed_fraction=0.5,
             method="epipolar",
         ),
-        Command(**drive, steer_rad=0.25, wheel_speed_radps=4.0, avoiding=True),
-        EStopRequest(**at, action="clear", who="anna", why="the floor is free"),
-        EStopState(**at, robot="r1", engaged=True, who="anna", why="a child", since_ns=STAMP_NS),
+        Command(**DRIVE, steer_rad=0.25, wheel_speed_radps=4.0, avoiding=True),
+        EStopRequest(**AT, action="clear", who="anna", why="the floor is free"),
+        EStopState(**AT, robot="r1", engaged=True, who="anna", why="a child", since_ns=STAMP_NS),
+    )
+
+
+def missions() -> tuple[Message, ...]:
+    """Missions and what is told of them."""
+    return (
         MissionRequest(
-            **at,
+            **AT,
             action="goto",
             map="flat",
             mission_id="m-1",
@@ -234,7 +248,7 @@ def samples() -> dict[type[Message], Message]:
             max_steps=9,
         ),
         MissionStatus(
-            **at,
+            **AT,
             robot="r1",
             mission_id="m-1",
             action="goto",
@@ -256,9 +270,9 @@ def samples() -> dict[type[Message], Message]:
             travel="following",
             travel_reason="a path leads from a node in sight to the destination",
         ),
-        MissionKindsRequest(**at),
+        MissionKindsRequest(**AT),
         MissionKinds(
-            **at,
+            **AT,
             kinds=(
                 MissionKindInfo(
                     name="patrol",
@@ -270,7 +284,7 @@ def samples() -> dict[type[Message], Message]:
             ),
         ),
         Event(
-            **at,
+            **AT,
             robot="r1",
             mission_id="m-1",
             step=12,
@@ -278,8 +292,14 @@ def samples() -> dict[type[Message], Message]:
             reason="similar",
             values=(EventValue(name="s", value=70), EventValue(name="heading", value=0.5)),
         ),
+    )
+
+
+def mapped() -> tuple[Message, ...]:
+    """Maps, and the missions that the map store keeps."""
+    return (
         MapRequest(
-            **at,
+            **AT,
             action="transact",
             author="planner",
             base_revision=4,
@@ -288,19 +308,25 @@ def samples() -> dict[type[Message], Message]:
             node_ids=(1, 2),
         ),
         MapReply(
-            **at,
+            **AT,
             map="flat",
             revision=5,
             nodes=(node(1), node(2)),
             edges=(edge(),),
             features=(NodeFeatures(node_id=1, features=features()),),
         ),
-        MapDelta(**at, map="flat", revision=5, reset=True, author="planner", operations=operations()),
+        MapDelta(**AT, map="flat", revision=5, reset=True, author="planner", operations=operations()),
         mission(),
-        MissionRecordRequest(**at, action="save", record=mission()),
+        MissionRecordRequest(**AT, action="save", record=mission()),
+    )
+
+
+def simulated() -> tuple[Message, ...]:
+    """Simulation only."""
+    return (
         truth(),
         SimulationRequest(
-            **at,
+            **AT,
             action="place_obstacle",
             pose=Pose(x_m=1.0, y_m=2.0, yaw_rad=0.5),
             seed=3,
@@ -308,8 +334,13 @@ def samples() -> dict[type[Message], Message]:
             kind="basket",
             present=True,
         ),
-        SimulationReply(**at, truth=truth(), frame=frame()),
+        SimulationReply(**AT, truth=truth(), frame=frame()),
     )
+
+
+def samples() -> dict[type[Message], Message]:
+    """Message type -> a full example."""
+    examples = (*seen(), *driven(), *missions(), *mapped(), *simulated())
     return {type(example): example for example in examples}
 
 
