@@ -20,12 +20,9 @@ PURE = (
     "services/**/core/**/*.py",
     "services/**/graph.py",
     "services/**/comparison.py",
-    "services/features/matching/*.py",
-    "services/features/pipeline/*.py",
-    "services/features/retrieval/*.py",
-    "services/launcher/processes/plan.py",
+    "services/launcher/compose/plan.py",
     "services/launcher/processes/restart.py",
-    "services/launcher/processes/interpolate.py",
+    "services/launcher/compose/interpolate.py",
 )
 EDGE_FILES = {
     "__main__.py",

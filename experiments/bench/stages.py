@@ -1,4 +1,4 @@
-"""From arrivals of messages to durations of the stages of the loop. Pure.
+"""From arrivals of messages to durations of the stages of the loop, and from frame to command. Pure.
 
     truth(k) -> features(k) -> heading(k) -> command(k) -> truth(k+1)
 
@@ -10,7 +10,7 @@ Truth(k) leaves the simulator together with frame k, so that
 Render, extract, match and verify are measured by the services themselves and travel in their messages.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,10 +51,34 @@ def stage_durations_ms(arrivals: Iterable[Arrival]) -> dict[str, list[float]]:
 
 def table(durations_ms: Mapping[str, list[float]]) -> dict[str, dict[str, float]]:
     """Median and 99th percentile of each measured stage."""
+    return {stage: percentiles(d) for stage, d in durations_ms.items() if d}
+
+
+def percentiles(ms: Sequence[float], digits: int = 2) -> dict[str, float]:
+    """Median and 99th percentile, milliseconds."""
+    return {f"p{q}_ms": rounded(np.percentile(ms, q), digits) for q in (50, 99)}
+
+
+def latency(arrivals: Iterable[Arrival]) -> dict[str, float]:
+    """From frame to command across all processes: percentiles, and the share of frames that got a command.
+
+    Only frames between the first and the last command count: before and after them no mission drives. Of a
+    frame that is sent again, and of a command that is repeated, the first counts.
+    """
+    first: dict[str, dict[int, float]] = {"frame": {}, "command": {}}
+    for arrival in arrivals:
+        first[arrival.topic].setdefault(arrival.message.seq, arrival.time_s)
+    frames, commands = first["frame"], first["command"]
+    if not commands:
+        return {"frames": 0}
+    asked = [seq for seq in frames if min(commands) <= seq <= max(commands)]
+    waits_ms = [1e3 * (commands[seq] - frames[seq]) for seq in asked if seq in commands]
+    if not waits_ms:
+        return {"frames": len(asked)}
     return {
-        stage: {"p50_ms": rounded(np.percentile(d, 50), 2), "p99_ms": rounded(np.percentile(d, 99), 2)}
-        for stage, d in durations_ms.items()
-        if d
+        **percentiles(waits_ms),
+        "frames": len(asked),
+        "answered": rounded(len(waits_ms) / len(asked), 3),
     }
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import httpx
 
 from services.launcher.client.failure import ExperimentError
-from services.launcher.client.map_access import store_client
+from services.launcher.client.maps import post_archive, store_client
 from services.launcher.client.stack import Stack
 from services.launcher.terminal.output import write_json
 
@@ -36,10 +36,8 @@ def export_map(stack: Stack, name: str) -> bytes:
 
 def import_map(stack: Stack, name: str, archive: bytes) -> None:
     """Put a map into a stack that this process runs."""
-    headers = {"Content-Type": "application/zip"}
     with _client(stack) as client:
-        answer = client.post("/maps/import", params={"name": name}, headers=headers, content=archive)
-    answer.raise_for_status()
+        post_archive(client, archive, name)
 
 
 def save_bundle(folder: Path, bundle: MapBundle) -> None:
@@ -64,5 +62,4 @@ def load_bundle(folder: Path) -> MapBundle | None:
 def _client(stack: Stack) -> httpx.Client:
     if stack.launcher is None:
         raise ExperimentError("suites start stacks of their own: stop the one in this folder first")
-    url = stack.launcher.map_store_url
-    return store_client(url, stack.launcher.certs)
+    return store_client(stack.launcher.map_store_url, stack.launcher.certs)

@@ -9,15 +9,16 @@ from pathlib import Path
 from typing import Any
 
 from experiments.bench.listener import Listener
-from experiments.bench.memory import peak_memory_mb
+from experiments.bench.resources import peak_memory_mb
 from experiments.bench.stages import stage_durations_ms, table
 from experiments.hide_and_seek.bundle import MapBundle, export_map, import_map, load_bundle, save_bundle
-from experiments.hide_and_seek.plan import MAP_SEED, RunPlan, world_label
+from experiments.hide_and_seek.plan import MAP_SEED, RunPlan
 from experiments.hide_and_seek.play import Scene, play_rounds
+from experiments.hide_and_seek.report import report
 from services.launcher.client.failure import ExperimentError
+from services.launcher.client.run_record import world_label
 from services.launcher.client.stack import StackChoice, open_stack
 from services.launcher.evaluation.exploration import explore, figures
-from services.launcher.evaluation.report import report
 from services.launcher.evaluation.truth_file import load_truth, save_truth, truth_path
 from services.launcher.terminal.output import write_json
 from simulator.world.freespace import free_space
@@ -25,7 +26,10 @@ from simulator.world.world_file import load_world
 
 MAP = "suite"
 EXPLORE_STEPS = 30_000
+"""Five times what the largest world takes (village: 5476, deploy/MEASURED.md)."""
+
 TIMED_MESSAGES = 1500
+"""About 300 cycles of five messages: enough for a 99th percentile, and no round more of memory."""
 
 
 def make_map(world: str, folder: str) -> MapBundle:
@@ -87,7 +91,7 @@ def play_run(plan: RunPlan, bundle: MapBundle, folder: str) -> dict[str, Any]:
         with open_stack(choice) as stack:
             if fresh:
                 import_map(stack, MAP, bundle.archive)
-            with Listener(stack.address, stack.robot, TIMED_MESSAGES) as listener:
+            with Listener(stack.address, stack.robot, most=TIMED_MESSAGES) as listener:
                 drawings = place if plan.draw else None
                 played = play_rounds(
                     stack, scene, plan.rounds, plan.seed, plan.max_steps, drawings, rounds, quiet=True

@@ -3,11 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from services.launcher.client.run_record import world_label
+
 THESIS_ROUNDS = {"village": 5, "apartment": 3, "break_room": 3, "factory": 3}
 """Rounds of the thesis's section 6, by world."""
 
 SUITES = ("thesis", "random")
 MAP_SEED = 1
+"""Of every suite's maps: runs of different seeds play on the same ones."""
 
 
 @dataclass(frozen=True)
@@ -32,11 +35,6 @@ class RunPlan:
     def name(self) -> str:
         """Folder name: short and unique within a suite."""
         return f"{world_label(self.world)}-{self.profile}-{self.seed}"
-
-
-def world_label(world: str) -> str:
-    """A world's name as a folder or a table shows it."""
-    return world.rsplit("/", 1)[-1].removesuffix(".yaml").removesuffix(".yml")
 
 
 def plan_suite(
@@ -67,10 +65,10 @@ def plan_suite(
         raise ValueError(f"suite must be one of {', '.join(SUITES)}, got {suite!r}")
     chosen = list(worlds) or list(THESIS_ROUNDS)
     if suite == "thesis":
-        strange = [world for world in chosen if world not in THESIS_ROUNDS]
-        if strange:
+        others = [world for world in chosen if world not in THESIS_ROUNDS]
+        if others:
             raise ValueError(
-                f"the thesis has rounds in {', '.join(THESIS_ROUNDS)}, got {', '.join(strange)}: "
+                f"the thesis has rounds in {', '.join(THESIS_ROUNDS)}, got {', '.join(others)}: "
                 "use --suite random"
             )
     counts = THESIS_ROUNDS if suite == "thesis" else dict.fromkeys(chosen, rounds)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
-from services.launcher.client.map_client import require_map
+from services.launcher.client.maps import require_map
 from services.launcher.client.stack import Stack
 from services.launcher.evaluation.drawings import draw_round
 from services.launcher.evaluation.environments import environment_of
@@ -66,21 +66,26 @@ def play_rounds(
     for one in done:
         hiding_place(space, Pose.model_validate(one["start"]), rng)
     if done:
-        game.hand.place_robot(Pose.model_validate(done[-1]["final"]))
+        game.experimenter.place_robot(Pose.model_validate(done[-1]["final"]))
     poses = scene.truth.poses if scene.truth is not None else {}
     for number in range(len(done) + 1, rounds + 1):
-        with mission_progress(console, f"{scene.world.name} round {number}/{rounds}") as watch:
-            played = game.play(seed + number, max_steps, watch)
-        console.print(_line(scene.world.name, number, played), highlight=False)
+        played = play_told(
+            console, game, f"{scene.world.name} round {number}/{rounds}", seed + number, max_steps
+        )
         if folder is not None:
             edges = require_map(stack, scene.map_name).edges
             draw_round(folder / f"round-{number:02d}", scene.world, played, poses, edges, game)
         yield played.figures()
 
 
-def _line(world: str, number: int, played: Round) -> str:
+def play_told(console: Console, game: Game, title: str, seed: int, max_steps: int) -> Round:
+    """Play one round with its progress on the console, and a line about its end."""
+    with mission_progress(console, title) as watch:
+        played = game.play(seed, max_steps, watch)
     verdict = "found" if played.success else "NOT found"
-    return (
-        f"{world} round {number}: {verdict}, {played.distance_m:.2f} m left, SPL {played.spl:.2f}, "
-        f"{played.run.status.step} steps, {played.run.steps_per_s:.1f} steps/s: {played.run.status.reason}"
+    console.print(
+        f"{title}: {verdict}, {played.distance_m:.2f} m left, SPL {played.spl:.2f}, "
+        f"{played.run.status.step} steps, {played.run.steps_per_s:.1f} steps/s: {played.run.status.reason}",
+        highlight=False,
     )
+    return played

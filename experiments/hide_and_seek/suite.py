@@ -12,10 +12,9 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from experiments.hide_and_seek.bundle import MapBundle
 from experiments.hide_and_seek.jobs import make_map, play_run
-from experiments.hide_and_seek.markdown import run_row, suite_markdown
 from experiments.hide_and_seek.plan import RunPlan
-from experiments.studies.workers import workers
-from services.launcher.evaluation.report import combined
+from experiments.hide_and_seek.report import combined, run_row, suite_markdown
+from experiments.work.workers import workers
 from services.launcher.terminal.output import write_json
 from services.launcher.terminal.tables import print_rows, wide_console
 
@@ -59,13 +58,10 @@ def run_suite(choice: SuiteChoice, json_file: Path | None) -> dict[str, Any]:
     result = {"suite": choice.suite, "runs": runs, "summary": combined(runs), "maps": explored}
     seed = choice.plans[0].seed
     write_json(folder / f"{choice.suite}-{seed}.json", result)
-    if json_file is not None:
-        write_json(json_file, result)
-    text = suite_markdown(f"{choice.suite}, seed {seed}", explored, runs)
+    write_json(json_file, result)
     summary = folder / f"{choice.suite}-{seed}.md"
-    summary.write_text(text, encoding="utf-8")
-    rows = [{name: run_row(run)[name] for name in SHOWN} for run in runs]
-    print_rows(f"suite {choice.suite}, seed {seed}: {summary}", rows)
+    summary.write_text(suite_markdown(f"{choice.suite}, seed {seed}", explored, runs), encoding="utf-8")
+    print_rows(f"suite {choice.suite}, seed {seed}: {summary}", [run_row(run) for run in runs], SHOWN)
     return result
 
 

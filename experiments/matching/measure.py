@@ -25,8 +25,8 @@ from shared.geometry.sphere import FloatArray
 
 BORDER_PX = 6.0
 """Keypoints this near the picture's edge are found because of the edge (thesis 3.1)."""
-CORRECT_PX = 3.0
-RANSAC_PX = 3.0
+CORRECT_PX = RANSAC_PX = 3.0
+"""A match lies where the known map or the homography says: OpenCV's usual threshold of reprojection."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,17 +62,17 @@ class OnlyFilled:
 
 @dataclass(frozen=True, eq=False)
 class Placed:
-    """Words of one placed picture.
+    """Features of one placed picture.
 
     Attributes:
-        words: those inside the picture.
+        features: those inside the picture.
         pixels: (N, 2) where they lie in it.
         side_px: its size.
         change: what was done to it.
         time_s: what their extraction took.
     """
 
-    words: FeatureSet
+    features: FeatureSet
     pixels: FloatArray
     side_px: int
     change: Change
@@ -89,28 +89,28 @@ def measure_pair(first: Placed, second: Placed, distance: Distance, matcher: str
         matcher: brute_force or mutual_ratio.
     """
     begin = time.perf_counter()
-    pairs, order = _matched(first.words, second.words, distance, matcher)
+    pairs, order = _matched(first.features, second.features, distance, matcher)
     spent = time.perf_counter() - begin + first.time_s + second.time_s
     here, there = first.pixels[pairs[:, 0]], second.pixels[pairs[:, 1]]
     expected = _mapped(here, similarity_of(second.change, first.side_px))
     known = np.linalg.norm(expected - there, axis=1) < CORRECT_PX
     by_ransac = _ransac(here, there)
-    count = min(len(first.words), len(second.words))
+    count = min(len(first.features), len(second.features))
     agreement = float(np.mean(known == by_ransac)) if len(pairs) else 1.0
     return PairResult(
         curve_of(order, known, count), curve_of(order, by_ransac, count), agreement, count, spent
     )
 
 
-def words_of(picture: Image, change: Change, pipeline: Pipeline, canvas_px: int) -> Placed:
-    """Change a picture (S, S), place it on a canvas, extract: words inside it, away from its edges."""
+def extracted(picture: Image, change: Change, pipeline: Pipeline, canvas_px: int) -> Placed:
+    """Change a picture (S, S), place it on a canvas, extract: features inside it, away from its edges."""
     changed, shown = changed_picture(picture, change)
     view = view_of(change, len(picture))
     canvas = placed(changed, view, canvas_px)
     begin = time.perf_counter()
-    words = extract(canvas, pipeline.extractor, OnlyFilled(pipeline.representation), pipeline.profile)
+    found = extract(canvas, pipeline.extractor, OnlyFilled(pipeline.representation), pipeline.profile)
     spent = time.perf_counter() - begin
-    pixels = rectified(words.lonlat_rad, view)
+    pixels = rectified(found.lonlat_rad, view)
     inner = cv2.erode(np.pad(shown, 1).astype(np.uint8), np.ones((3, 3)), iterations=int(BORDER_PX))[
         1:-1, 1:-1
     ]
@@ -118,7 +118,7 @@ def words_of(picture: Image, change: Change, pipeline: Pipeline, canvas_px: int)
     column, row = (np.clip(np.nan_to_num(pixels[:, k]), 0, len(picture) - 1).astype(int) for k in (0, 1))
     inside &= (np.abs(pixels - len(picture) / 2.0) < len(picture) / 2.0 - BORDER_PX).all(axis=1)
     keep = np.flatnonzero(inside & (inner[row, column] > 0))
-    kept = FeatureSet(words.lonlat_rad[keep], words.scores[keep], words.descriptors[keep])
+    kept = FeatureSet(found.lonlat_rad[keep], found.scores[keep], found.descriptors[keep])
     return Placed(kept, pixels[keep], len(picture), change, spent)
 
 

@@ -7,30 +7,30 @@ import cv2
 import numpy as np
 
 from experiments.matching.placing import FOV_RAD, Image
+from experiments.rendered.frames import simulated
 from services.launcher.client.failure import ExperimentError
 from shared.geometry.perspective import PerspectiveView, view_table
 from shared.geometry.sphere import EquirectGrid
-from simulator.settings import CameraSettings, SimulationSettings
+from simulator.settings import CameraSettings
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
 
 SOURCES = ("apartment", "break_room", "factory", "village")
 PANORAMA_PX = 2048
+"""A view of 90 degrees is then as sharp as the largest that is cut out of it, 512 pixels."""
+
 SUFFIXES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".bmp")
 
 
 def rendered(count: int, side_px: int, seed: int, folder: Path) -> list[Image]:
     """One view per world in turn; kept in `folder`, since rendering a world takes a minute to begin."""
-    from simulator.simulation import Simulation
-
     pictures = []
     for number in range(count):
         world_name = SOURCES[number % len(SOURCES)]
         path = folder / f"{world_name}-{number}-{side_px}-{seed}.png"
         if not path.exists():
             world = load_world(world_name)
-            camera = CameraSettings(width_px=PANORAMA_PX)
-            simulation = Simulation(world, SimulationSettings(camera=camera, cache_dir=folder / "simulator"))
+            simulation = simulated(world, CameraSettings(width_px=PANORAMA_PX))
             rng = np.random.default_rng([seed, number])
             x_m, y_m, _ = free_space(world).random_pose(rng, 0.3)
             panorama = simulation.panorama_at(x_m, y_m, rng.uniform(-math.pi, math.pi))

@@ -2,20 +2,19 @@
 
 import os
 import time
-from collections.abc import Iterator, Sequence
-from pathlib import Path
-from typing import Any
+from collections.abc import Callable, Iterator, Sequence
 
+import cv2
 import numpy as np
 
-from experiments.matching.measure import PairResult, measure_pair, words_of
+from experiments.matching.measure import PairResult, extracted, measure_pair
 from experiments.matching.placing import UNCHANGED, Image
-from experiments.matching.plan import MATCHERS, REPRESENTATIONS, Size, changes, profile_of
+from experiments.matching.plan import MATCHERS, REPRESENTATIONS, TIMED_PX, Size, changes, profile_of
+from experiments.work.results_file import ResultsFile, Row
 from services.features.networks.runtime import WeightsError
 from services.features.pipeline.extraction import extract
 from services.features.pipeline.pipeline import Pipeline
-
-Row = dict[str, Any]
+from services.features.pipeline.plugins import CLASSIC
 
 THESIS_RATIO = {
     "superpoint": 1.12 / 0.16,
@@ -39,6 +38,31 @@ def pipeline_with_weights(descriptor: str, representation: str, matcher: str) ->
         return None
 
 
+def measure_missing(
+    file: ResultsFile, names: Sequence[str], sources: Sequence[Image], size: Size, tick: Callable[[str], None]
+) -> None:
+    """Add the rows of all descriptors that the file does not have yet; `tick` hears how far it is."""
+    done = {row["descriptor"] for row in file.results}
+    for name in (name for name in names if name not in done):
+        rows = []
+        for row in measured(name, sources, size):
+            rows.append(row)
+            tick(f"{name}, {row['representation']}, {row['matcher']}: {row['disturbance']}")
+        file.add(*rows)
+
+
+def time_missing(file: ResultsFile, names: Sequence[str], view: Image, tick: Callable[[str], None]) -> None:
+    """Add the times that the file lacks, of a panorama full of texture: the view, tiled over the sphere."""
+    panorama = np.asarray(cv2.resize(np.tile(view, (2, 4)), (TIMED_PX, TIMED_PX // 2)), np.uint8)
+    done = {row["descriptor"] for row in file.tables["timing"]}
+    done |= {row["descriptor"] for row in file.results if row["map"] is None}  # no weights here
+    for name in (name for name in names if name not in done):
+        tick(f"{name}: time")
+        row = timed(name, panorama, 3 if name in CLASSIC else 1)
+        if row is not None:
+            file.add(row, table="timing")
+
+
 def measured(descriptor: str, pictures: Sequence[Image], size: Size) -> Iterator[Row]:
     """Rows of one descriptor: every representation, matcher and condition, averaged over the pictures."""
     absent_before = False
@@ -47,20 +71,16 @@ def measured(descriptor: str, pictures: Sequence[Image], size: Size) -> Iterator
         absent_before = pipeline is None
         names = {"descriptor": descriptor, "representation": representation}
         if pipeline is None:
-            absent = {
-                "disturbance": "none",
-                "level": 0.0,
-                "map": None,
-                "time_s": None,
-                "weights": "no weights",
-            }
-            yield from (names | {"matcher": matcher} | absent for matcher in MATCHERS)
+            absent = {"disturbance": "none", "level": 0.0, "map": None, "time_s": None}
+            yield from (
+                {**names, "matcher": matcher, **absent, "weights": "no weights"} for matcher in MATCHERS
+            )
             continue
-        middle = [words_of(picture, UNCHANGED, pipeline, size.canvas_px) for picture in pictures]
+        middle = [extracted(picture, UNCHANGED, pipeline, size.canvas_px) for picture in pictures]
         found: dict[tuple[str, str, float], list[PairResult]] = {}
         for change in changes(size):
             for first, picture in zip(middle, pictures, strict=True):
-                second = words_of(picture, change, pipeline, size.canvas_px)
+                second = extracted(picture, change, pipeline, size.canvas_px)
                 for matcher in MATCHERS:
                     result = measure_pair(first, second, pipeline.extractor.distance, matcher)
                     found.setdefault((matcher, change.name, change.level), []).append(result)
@@ -104,21 +124,13 @@ def timed(descriptor: str, panorama: Image, repeats: int) -> Row | None:
 
 def tangent_wins(rows: Sequence[Row], beyond_deg: float = 45.0) -> list[Row]:
     """Per descriptor and matcher: whether tangent pictures beat the canvas away from the equator (row 46)."""
+    far = [row for row in rows if row["disturbance"] == "latitude" and abs(row["level"]) >= beyond_deg]
     verdicts = []
     for name, matcher in dict.fromkeys((r["descriptor"], r["matcher"]) for r in rows if r["map"] is not None):
+        of = [row for row in far if (row["descriptor"], row["matcher"]) == (name, matcher)]
         means = {
             representation: float(
-                np.mean(
-                    [
-                        r["map"]
-                        for r in rows
-                        if (r["descriptor"], r["matcher"], r["representation"])
-                        == (name, matcher, representation)
-                        and r["disturbance"] == "latitude"
-                        and abs(r["level"]) >= beyond_deg
-                    ]
-                    or [np.nan]
-                )
+                np.mean([row["map"] for row in of if row["representation"] == representation] or [np.nan])
             )
             for representation in REPRESENTATIONS
         }
@@ -128,12 +140,7 @@ def tangent_wins(rows: Sequence[Row], beyond_deg: float = 45.0) -> list[Row]:
                 "matcher": matcher,
                 "equirectangular": round(means["equirectangular"], 3),
                 "tangent": round(means["tangent"], 3),
-                "tangent_wins": bool(means["tangent"] > means["equirectangular"]),
+                "tangent_wins": means["tangent"] > means["equirectangular"],
             }
         )
     return verdicts
-
-
-def folder_of(data_dir: Path) -> Path:
-    """Where rendered pictures are kept."""
-    return data_dir / "studies" / "matching"

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,12 +12,15 @@ from experiments.monte_carlo.scene import PLACEMENTS, Placement
 from experiments.monte_carlo.statistics import Statistics
 from experiments.monte_carlo.sweep import FUNCTIONS, WEIGHTED, SweepPlan, scene_sweep
 from experiments.monte_carlo.tracking import DcpePlan, scene_paths
-from experiments.plots.boxes import draw_boxes, draw_comparison
 from services.planner.heading.weights import WeightSettings
 from shared.geometry.sphere import FloatArray
 
 NOISES_DEG = (0.0, 0.25, 0.5, 1.0)
+"""The grid of the study: from none to three pixels of a panorama 1024 wide (0.35 degrees each)."""
+
 OUTLIERS = (0.0, 0.2, 0.4)
+"""The grid of the study: none, one match in five, two in five."""
+
 Rows = list[dict[str, Any]]
 Worker = Callable[[Callable[[Any], FloatArray], Sequence[Any]], list[FloatArray]]
 """Gives function and plans to whoever works, and their results back."""
@@ -39,6 +41,8 @@ class Size:
 
 
 QUICK = Size(8, 200, 4, 4, 6, 2, 3, counts=(5, 13, 34, 60))
+"""Less than a minute on two cores, as --quick promises."""
+
 NORMAL = Size(100, 500, 30, 10, 25, 4, 12)
 FULL = Size(100, 2000, 100, 2000, 100, 10, 40)
 """The thesis's: 100 scenes of 2000 runs (section 3.2.1)."""
@@ -126,12 +130,3 @@ def sweep(size: Size, seed: int, work: Worker) -> Rows:
         for k, p in enumerate(PLACEMENTS)
         for f, name in enumerate(FUNCTIONS)
     ]
-
-
-def draw(folder: Path, name: str, unit: str, figures: dict[Placement, Statistics]) -> None:
-    """Box plots of every method and the comparison, for each placement."""
-    for placement, s in figures.items():
-        title = f"{name}, target in the {placement.replace('_', '-')}"
-        place = folder / f"{name.lower()}-{placement}"
-        draw_boxes(place.with_name(place.name + "-boxes.png"), title, unit, s)
-        draw_comparison(place.with_name(place.name + "-comparison.png"), title, unit, s)

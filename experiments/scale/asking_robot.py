@@ -1,4 +1,4 @@
-"""A robot as the feature service sees it: frames, and a question about the places around each."""
+"""A robot as the feature service sees it: frames, and a question about the nodes around each."""
 
 import math
 import threading
@@ -6,21 +6,24 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from experiments.rendered.frames import camera
 from experiments.scale.frames import Seen, WorldFrames
 from experiments.scale.measure import TRACKED
-from experiments.studies.rendered_views import camera
 from shared.bus import Bus
 from shared.messages import Frame, MatchRequest
 from shared.topics import FEATURES, FRAME, MATCH
 from simulator.world.world_file import load_world
 
 MAP_NAME, VIEWS = "robots", 32
+"""Map of all robots, and how many frames they send in turn."""
+
 ASK_S, AGAIN_S = 30.0, 0.5
+"""Patience with a question, and with a frame before it is sent again: the simulator's own in lockstep."""
 
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A frame as the simulator sends it, and the places of the map around it."""
+    """A frame as the simulator sends it, and the nodes of the map around it."""
 
     frame: Frame
     near: tuple[int, ...]
@@ -30,15 +33,15 @@ def views_of(frames: WorldFrames) -> list[View]:
     """What the camera sees where some of the pictures were taken; loads SAPIEN."""
     asked = frames.queries[:VIEWS]
     shoot = camera(load_world(asked[0].world))
-    return [View(shoot(seen.pose), _near(seen, frames.places)) for seen in asked]
+    return [View(shoot(seen.pose), _near(seen, frames.nodes)) for seen in asked]
 
 
-def _near(seen: Seen, places: Sequence[Seen]) -> tuple[int, ...]:
+def _near(seen: Seen, nodes: Sequence[Seen]) -> tuple[int, ...]:
     def apart_m(number: int) -> float:
-        pose = places[number].pose
+        pose = nodes[number].pose
         return math.dist((pose.x_m, pose.y_m), (seen.pose.x_m, seen.pose.y_m))
 
-    return tuple(sorted(range(len(places)), key=apart_m)[:TRACKED])
+    return tuple(sorted(range(len(nodes)), key=apart_m)[:TRACKED])
 
 
 class AskingRobot:
@@ -67,7 +70,7 @@ class AskingRobot:
             next_s = max(next_s + period_s, time.monotonic())
 
     def step(self) -> float:
-        """Milliseconds from a frame to the answer about the places around it."""
+        """Milliseconds from a frame to the answer about the nodes around it."""
         view, self._seq = self._views[self._seq % len(self._views)], self._seq + 1
         moment = {"seq": self._seq, "stamp_ns": time.time_ns(), "robot": self._name, "lockstep": True}
         frame = view.frame.model_copy(update=moment)

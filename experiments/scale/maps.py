@@ -1,8 +1,8 @@
-"""Maps of any size from rendered places. Pure.
+"""Maps of any size from rendered nodes. Pure.
 
-Beyond the places that were rendered, more are put together: each takes the words of four different rendered
-places, a quarter of all round from each. Their words are those of real pictures, so they compete with the
-right place as other streets of a campus would, though no such place exists.
+Beyond the nodes that were rendered, more are put together: each takes the features of four different rendered
+nodes, a quarter of all round from each. They are features of real pictures, so they compete with the right
+node as other streets of a campus would, though no such spot exists.
 """
 
 from collections.abc import Iterator, Sequence
@@ -10,22 +10,22 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from services.features.pipeline.interfaces import FeatureSet, Float32Array
-from shared.messages.features import Features
 
 PARTS = 4
+"""Sources of a node: with a quarter of its features from each, no rendered node is found in its stead."""
 
 
-def places_of(real: Sequence[FeatureSet], count: int, rng: np.random.Generator) -> Iterator[FeatureSet]:
-    """`count` places: the real ones first, as many as are needed."""
+def nodes_of(real: Sequence[FeatureSet], count: int, rng: np.random.Generator) -> Iterator[FeatureSet]:
+    """`count` nodes: the real ones first, as many as are needed."""
     yield from real[:count]
     for _ in range(count - len(real)):
         yield put_together([real[k] for k in rng.choice(len(real), PARTS, replace=False)], rng)
 
 
 def put_together(sources: Sequence[FeatureSet], rng: np.random.Generator) -> FeatureSet:
-    """A place that shows in each of its sectors what another of `sources` shows in that sector.
+    """A node that shows in each of its sectors what another of `sources` shows in that sector.
 
-    It has the strongest words only, as many as the sources at most.
+    It has the strongest features only, as many as the sources at most.
     """
     start = float(rng.uniform(-np.pi, np.pi))
     masks = [_sector(source.lonlat_rad, start, k, len(sources)) for k, source in enumerate(sources)]
@@ -42,10 +42,3 @@ def put_together(sources: Sequence[FeatureSet], rng: np.random.Generator) -> Fea
 def _sector(lonlat_rad: Float32Array, start: float, k: int, parts: int) -> np.ndarray:
     turn = np.remainder(lonlat_rad[:, 0] - start, 2 * np.pi) / (2 * np.pi)
     return np.asarray(np.minimum((turn * parts).astype(int), parts - 1) == k)
-
-
-def as_message(words: FeatureSet, pipeline: str) -> Features:
-    """The features message of a picture."""
-    return Features(
-        pipeline=pipeline, lonlat_rad=words.lonlat_rad, scores=words.scores, descriptors=words.descriptors
-    )

@@ -1,4 +1,4 @@
-"""One map: how long it takes to load it, to find a place in it and to follow a way."""
+"""One map: how long it takes to load it, to find a node in it and to follow a way."""
 
 import time
 from collections.abc import Iterable, Sequence
@@ -7,18 +7,18 @@ from typing import Any
 
 import numpy as np
 
+from experiments.bench.stages import percentiles
+from experiments.rendered.features import as_message
 from experiments.scale.frames import Seen
-from experiments.scale.maps import as_message
-from services.features.map_features.map_features import MapFeatures
-from services.features.matching.requests import match_candidates, verify_candidates
+from services.features.matching.matching_requests import pair, verify_paired
 from services.features.matching.verification import Candidate, verify
 from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.pipeline import Pipeline
-from services.launcher.terminal.output import rounded
+from services.features.places.places import Places
 from shared.messages.matching import MatchRequest, NodeMatch
 
 TRACKED = 4
-"""Places compared on a way: those ahead and around (services/planner/travel/path_follower.py)."""
+"""Nodes compared on a way: those ahead and around (services/planner/travel/path_follower.py)."""
 
 
 @dataclass(frozen=True)
@@ -30,10 +30,10 @@ class Found:
     ms: float
 
 
-def load(words: Iterable[FeatureSet], pipeline: Pipeline) -> tuple[MapFeatures, float]:
-    """Places of a map, numbered from zero, and the seconds it took to take them over."""
-    messages = (as_message(each, pipeline.identity) for each in words)
-    places = MapFeatures.of(pipeline)
+def load(nodes: Iterable[FeatureSet], pipeline: Pipeline) -> tuple[Places, float]:
+    """Nodes of a map, numbered from zero, and the seconds it took to take them over."""
+    messages = (as_message(each, pipeline.identity) for each in nodes)
+    places = Places.of(pipeline)
     took_s = 0.0
     for node_id, message in enumerate(messages):
         start_s = time.perf_counter()
@@ -44,8 +44,8 @@ def load(words: Iterable[FeatureSet], pipeline: Pipeline) -> tuple[MapFeatures, 
     return places, took_s + time.perf_counter() - start_s
 
 
-def localise(queries: Sequence[Seen], places: MapFeatures, pipeline: Pipeline) -> list[Found]:
-    """The most similar place of each picture as the running service finds it, verified."""
+def localise(queries: Sequence[Seen], places: Places, pipeline: Pipeline) -> list[Found]:
+    """The most similar node of each picture as the running service finds it, verified."""
     return [
         _ask(query, MatchRequest(seq=n, map="scale", best_k=1), places, pipeline)
         for n, query in enumerate(queries)
@@ -55,15 +55,15 @@ def localise(queries: Sequence[Seen], places: MapFeatures, pipeline: Pipeline) -
 def track(
     queries: Sequence[Seen], near: Sequence[Sequence[int]], places: MapFeatures, pipeline: Pipeline
 ) -> list[Found]:
-    """Each picture compared with the few places given for it, verified."""
+    """Each picture compared with the few nodes given for it, verified."""
     return [
         _ask(query, MatchRequest(seq=n, map="scale", node_ids=tuple(ids)), places, pipeline)
         for n, (query, ids) in enumerate(zip(queries, near, strict=True))
     ]
 
 
-def _ask(query: Seen, request: MatchRequest, places: MapFeatures, pipeline: Pipeline) -> Found:
-    message = as_message(query.words, pipeline.identity)
+def _ask(query: Seen, request: MatchRequest, places: Places, pipeline: Pipeline) -> Found:
+    message = as_message(query.features, pipeline.identity)
     start_s = time.perf_counter()
     answers: tuple[NodeMatch, ...] = verify_candidates(
         pipeline, request, match_candidates(pipeline, request, message, places)
@@ -73,21 +73,17 @@ def _ask(query: Seen, request: MatchRequest, places: MapFeatures, pipeline: Pipe
     return Found(-1 if best is None else best.node_id, 0 if best is None else best.inliers, took_ms)
 
 
-def exhaustive(query: Seen, words: Sequence[FeatureSet], pipeline: Pipeline) -> tuple[np.ndarray, float]:
-    """Verified matches with every place of the map, and the milliseconds that took."""
+def exhaustive(query: Seen, nodes: Sequence[FeatureSet], pipeline: Pipeline) -> tuple[np.ndarray, float]:
+    """Verified matches with every node of the map, and the milliseconds that took."""
     start_s = time.perf_counter()
-    pairs = pipeline.matcher.match(query.words, words)
+    pairs = pipeline.matcher.match(query.features, nodes)
     inliers = [
-        verify(query.words, Candidate(n, place), rows, 0, pipeline.verification, False).inliers
-        for n, (place, rows) in enumerate(zip(words, pairs, strict=True))
+        verify(query.features, Candidate(n, node), rows, 0, pipeline.verification, False).inliers
+        for n, (node, rows) in enumerate(zip(nodes, pairs, strict=True))
     ]
     return np.array(inliers), (time.perf_counter() - start_s) * 1e3
 
 
 def times(found: Sequence[Found], name: str) -> dict[str, Any]:
     """Median and 99th percentile."""
-    ms = [each.ms for each in found]
-    return {
-        f"{name}_p50_ms": rounded(np.percentile(ms, 50), 2),
-        f"{name}_p99_ms": rounded(np.percentile(ms, 99), 2),
-    }
+    return {f"{name}_{key}": value for key, value in percentiles([each.ms for each in found]).items()}

@@ -1,4 +1,4 @@
-"""What packing the words of places costs in verified matches, for one pipeline after the other."""
+"""What packing the features of nodes costs in verified matches, for one pipeline after the other."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 
 from experiments.matching.study import pipeline_with_weights
-from experiments.scale.poses import SPACING_M, place_poses, query_poses
-from experiments.studies.rendered_views import eye
-from services.features.map_features.packing import Packing
+from experiments.rendered.features import features_seen
+from experiments.scale.poses import SPACING_M, node_poses, query_poses
 from services.features.matching.verification import Candidate, verify
 from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.pipeline import Pipeline
@@ -30,54 +29,54 @@ def packing_losses(world: WorldFile, pictures: int, seed: int, tick: Callable[[s
     """A row for each extractor: matches before and after packing; None where its weights are absent."""
     poses = _pairs(world, pictures, seed)
     for name in EXTRACTORS:
-        tick(f"packed words of {name}")
+        tick(f"packed features of {name}")
         pipeline = pipeline_with_weights(name, "equirectangular", "mutual_ratio")
         if pipeline is None:
             yield {"extractor": name, "pictures": 0, **dict.fromkeys(MEASURED)}
             continue
-        look = eye(world, pipeline)
-        yield {"extractor": name, **loss(pipeline, [(look(here), look(place)) for here, place in poses])}
+        look = features_seen(world, pipeline)
+        yield {"extractor": name, **loss(pipeline, [(look(here), look(node)) for here, node in poses])}
 
 
 def loss(pipeline: Pipeline, pairs: list[Pair]) -> Row:
-    """Verified matches of pictures with places, before and after packing the places."""
-    kept = sum(_matches(pipeline, picture, place) for picture, place in pairs)
-    packed = sum(_matches(pipeline, picture, _packed(pipeline, place)) for picture, place in pairs)
-    word = pairs[0][1].descriptors[:1]
+    """Verified matches of pictures with nodes, before and after packing the nodes."""
+    kept = sum(_matches(pipeline, picture, node) for picture, node in pairs)
+    packed = sum(_matches(pipeline, picture, _packed(pipeline, node)) for picture, node in pairs)
+    descriptor = pairs[0][1].descriptors[:1]
     record = _packing(pipeline, pairs[0][1]).record
     return {
         "pictures": len(pairs),
         "matches": rounded(kept / len(pairs), 1),
         "lost": rounded(1.0 - packed / max(kept, 1e-9), 4),
-        "descriptor_bytes": word.nbytes,
+        "descriptor_bytes": descriptor.nbytes,
         "bytes_per_word": rounded(record.itemsize / pipeline.profile.keypoints, 1),
     }
 
 
 def _pairs(world: WorldFile, count: int, seed: int) -> list[tuple[Pose, Pose]]:
-    """Poses of pictures, each with the nearest place's."""
+    """Poses of pictures, each with the nearest node's."""
     space, rng, spacing_m = free_space(world), np.random.default_rng(seed), SPACING_M[world.environment]
-    places = place_poses(space, spacing_m, rng)
+    nodes = node_poses(space, spacing_m, rng)
 
     def nearest(to: Pose) -> Pose:
-        return min(places, key=lambda place: math.dist((to.x_m, to.y_m), (place.x_m, place.y_m)))
+        return min(nodes, key=lambda node: math.dist((to.x_m, to.y_m), (node.x_m, node.y_m)))
 
-    return [(pose, nearest(pose)) for pose in query_poses(space, places, spacing_m, count, rng)]
+    return [(pose, nearest(pose)) for pose in query_poses(space, nodes, spacing_m, count, rng)]
 
 
-def _matches(pipeline: Pipeline, picture: FeatureSet, place: FeatureSet) -> float:
-    (rows,) = pipeline.matcher.match(picture, [place])
+def _matches(pipeline: Pipeline, picture: FeatureSet, node: FeatureSet) -> float:
+    (rows,) = pipeline.matcher.match(picture, [node])
     draws = [
-        verify(picture, Candidate(0, place), rows, seq, pipeline.verification, False).inliers
+        verify(picture, Candidate(0, node), rows, seq, pipeline.verification, False).inliers
         for seq in range(SCATTER_DRAWS)
     ]
     return float(np.mean(draws))
 
 
-def _packed(pipeline: Pipeline, place: FeatureSet) -> FeatureSet:
-    packing = _packing(pipeline, place)
-    return packing.unpack(packing.pack(place))
+def _packed(pipeline: Pipeline, node: FeatureSet) -> FeatureSet:
+    packing = _packing(pipeline, node)
+    return packing.unpack(packing.pack(node))
 
 
-def _packing(pipeline: Pipeline, place: FeatureSet) -> Packing:
-    return Packing.of(place, pipeline.profile.keypoints, pipeline.extractor.distance)
+def _packing(pipeline: Pipeline, node: FeatureSet) -> Packing:
+    return Packing.of(node, pipeline.profile.keypoints, pipeline.extractor.distance)

@@ -1,6 +1,6 @@
-"""What a user would pick instead to find a place: each ranks all places of a map for one picture.
+"""What a user would pick instead to find a node: each ranks all nodes of a map for one picture.
 
-Plain descriptors against all places (OpenCV, kornia), a bag of visual words (Sivic and Zisserman 2003) and
+Plain descriptors against all nodes (OpenCV, kornia), a bag of visual words (Sivic and Zisserman 2003) and
 VLAD alone, without the verification of geometry that topnav ends with.
 """
 
@@ -17,19 +17,22 @@ from services.features.pipeline.interfaces import FeatureSet, Float32Array
 from services.features.retrieval.global_descriptor import learn, unit
 
 RATIO = 0.85
-BAG_WORDS = 1000
-BAG_SAMPLE = 40_000
+"""Of the default pipeline's own matcher, so that all see the same matches."""
+
+BAG_WORDS, BAG_SAMPLE = 1000, 40_000
+"""Clusters, and descriptors they are learned from: forty a cluster, where k-means no longer changes much."""
+
 Rank = Callable[[FeatureSet], int]
-"""The number of the place that resembles a picture most."""
+"""The number of the node that resembles a picture most."""
 
 
-def peers(words: Sequence[FeatureSet]) -> dict[str, Rank]:
+def peers(nodes: Sequence[FeatureSet]) -> dict[str, Rank]:
     """Each way by name, ready for pictures."""
     return {
-        "OpenCV BFMatcher, ratio test": _brute_force(words),
-        "kornia match_smnn": _smnn(words),
-        f"bag of {BAG_WORDS} visual words": _bag(words),
-        "VLAD alone": _vlad(words),
+        "OpenCV BFMatcher, ratio test": _brute_force(nodes),
+        "kornia match_smnn": _smnn(nodes),
+        f"bag of {BAG_WORDS} visual words": _bag(nodes),
+        "VLAD alone": _vlad(nodes),
     }
 
 
@@ -43,9 +46,9 @@ def timed(rank: Rank, queries: Sequence[FeatureSet]) -> tuple[list[int], float]:
     return answers, float(np.median(ms))
 
 
-def _brute_force(words: Sequence[FeatureSet]) -> Rank:
+def _brute_force(nodes: Sequence[FeatureSet]) -> Rank:
     matcher = cv2.BFMatcher(cv2.NORM_L2)
-    floats = [as_vectors(each.descriptors, "euclidean") for each in words]
+    floats = [as_vectors(each.descriptors, "euclidean") for each in nodes]
 
     def rank(query: FeatureSet) -> int:
         own = as_vectors(query.descriptors, "euclidean")
@@ -61,8 +64,8 @@ def _brute_force(words: Sequence[FeatureSet]) -> Rank:
     return rank
 
 
-def _smnn(words: Sequence[FeatureSet]) -> Rank:
-    tensors = [torch.from_numpy(as_vectors(each.descriptors, "euclidean")) for each in words]
+def _smnn(nodes: Sequence[FeatureSet]) -> Rank:
+    tensors = [torch.from_numpy(as_vectors(each.descriptors, "euclidean")) for each in nodes]
 
     def rank(query: FeatureSet) -> int:
         own = torch.from_numpy(as_vectors(query.descriptors, "euclidean"))
@@ -72,8 +75,8 @@ def _smnn(words: Sequence[FeatureSet]) -> Rank:
     return rank
 
 
-def _bag(words: Sequence[FeatureSet]) -> Rank:
-    vectors = [as_vectors(each.descriptors, "euclidean") for each in words]
+def _bag(nodes: Sequence[FeatureSet]) -> Rank:
+    vectors = [as_vectors(each.descriptors, "euclidean") for each in nodes]
     everything, rng = np.concatenate(vectors), np.random.default_rng(1)
     sample = everything[rng.choice(len(everything), min(BAG_SAMPLE, len(everything)), replace=False)]
     cv2.setRNGSeed(1)
@@ -93,8 +96,8 @@ def _bag(words: Sequence[FeatureSet]) -> Rank:
     )
 
 
-def _vlad(words: Sequence[FeatureSet]) -> Rank:
-    vectors = [as_vectors(each.descriptors, "euclidean") for each in words]
+def _vlad(nodes: Sequence[FeatureSet]) -> Rank:
+    vectors = [as_vectors(each.descriptors, "euclidean") for each in nodes]
     model = learn(vectors[:1024], np.random.default_rng(1))
     table = np.stack([model.describe(each) for each in vectors])
     return lambda query: int(np.argmax(table @ model.describe(as_vectors(query.descriptors, "euclidean"))))

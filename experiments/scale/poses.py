@@ -1,4 +1,4 @@
-"""Where the places of a study stand and where its pictures are taken. Pure."""
+"""Where the nodes of a study lie and where its pictures are taken. Pure."""
 
 import math
 
@@ -8,13 +8,13 @@ from shared.messages.simulation import Pose
 from simulator.world.freespace import FreeSpace
 
 SPACING_M = {"indoor": 0.6, "outdoor": 1.5}
-"""Distance of neighbouring places, as exploring leaves them."""
+"""Distance of neighbouring nodes, as exploring leaves them: 76 in the apartment, 468 in the village."""
 
 NEAR = (0.3, 1.2)
-"""A picture is taken within these parts of the spacing from a place, in free sight of it."""
+"""A picture is taken within these parts of the spacing from a node, in free sight of it."""
 
 
-def place_poses(space: FreeSpace, spacing_m: float, rng: np.random.Generator) -> list[Pose]:
+def node_poses(space: FreeSpace, spacing_m: float, rng: np.random.Generator) -> list[Pose]:
     """As many poses as fit on the free floor, none nearer than `spacing_m` to another, in random order."""
     cells: dict[tuple[int, int], list[tuple[float, float]]] = {}
     kept = []
@@ -28,15 +28,15 @@ def place_poses(space: FreeSpace, spacing_m: float, rng: np.random.Generator) ->
 
 
 def query_poses(
-    space: FreeSpace, places: list[Pose], spacing_m: float, count: int, rng: np.random.Generator
+    space: FreeSpace, nodes: list[Pose], spacing_m: float, count: int, rng: np.random.Generator
 ) -> list[Pose]:
-    """Poses beside places, turned at random."""
+    """Poses beside nodes, turned at random."""
     found: list[Pose] = []
     while len(found) < count:
-        place = places[int(rng.integers(len(places)))]
+        node = nodes[int(rng.integers(len(nodes)))]
         bearing = float(rng.uniform(-math.pi, math.pi))
         distance_m = float(rng.uniform(*NEAR)) * spacing_m
-        end = (place.x_m + distance_m * math.cos(bearing), place.y_m + distance_m * math.sin(bearing))
-        if space.is_free(end) and space.line_of_sight((place.x_m, place.y_m), end):
+        end = (node.x_m + distance_m * math.cos(bearing), node.y_m + distance_m * math.sin(bearing))
+        if space.is_free(end) and space.line_of_sight((node.x_m, node.y_m), end):
             found.append(Pose(x_m=end[0], y_m=end[1], yaw_rad=float(rng.uniform(-math.pi, math.pi))))
     return found

@@ -1,4 +1,4 @@
-"""When a picture is "not in this map": from how many verified matches on a place is believed. Pure."""
+"""When a picture is "not in this map": from how many verified matches on an answer is believed. Pure."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ class Refusal:
 
     Attributes:
         threshold: fewer verified matches mean "not in this map".
-        false_accept: share of foreign pictures that were taken for a place.
+        false_accept: share of foreign pictures that were taken for a node.
         false_reject: share of pictures of the map that were refused.
     """
 

@@ -1,7 +1,7 @@
 """Robots against load: many robots ask one feature service, or several that share them.
 
 Real processes on a real bus. Each robot sends rendered frames and, as soon as it has the features of one,
-asks which of the places around that frame it shows, as on a way.
+asks which of the nodes around that frame it shows, as on a way.
 """
 
 import sys
@@ -14,15 +14,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from experiments.bench.processor_time import processors_s
+from experiments.bench.resources import processors_s
+from experiments.bench.stages import percentiles
+from experiments.rendered.features import as_message
 from experiments.scale.asking_robot import ASK_S, MAP_NAME, AskingRobot, View, views_of
 from experiments.scale.frames import Seen, WorldFrames
-from experiments.scale.maps import as_message
 from services.features.pipeline.named_pipelines import find_profile
 from services.launcher.client.failure import ExperimentError
-from services.launcher.processes.compose_file import COMPOSE_FILE
+from services.launcher.compose.compose_file import COMPOSE_FILE
 from services.launcher.processes.process import ChildProcess, stop_all
 from services.launcher.processes.supervisor import Launcher
 from services.launcher.terminal.output import rounded
@@ -32,6 +31,8 @@ from shared.messages.maps import AddNode, Node
 from shared.topics import MAP
 
 START_S, GRACE_S = 120.0, 5.0
+"""As of the launcher: for all to come up, and for each to end."""
+
 Row = dict[str, Any]
 
 
@@ -49,7 +50,7 @@ class Work:
     """What every load is measured with.
 
     Attributes:
-        frames: places of the map and pictures beside them, of one world.
+        frames: nodes of the map and pictures beside them, of one world.
         pipeline: name of the feature pipeline.
         folder: for the map and the logs.
         during_s: how long each load lasts.
@@ -62,7 +63,7 @@ class Work:
 
 
 def measure_loads(loads: Sequence[Load], work: Work, tick: Callable[[str], None]) -> Iterator[Row]:
-    """One row for each load; latency is from a frame to the answer about its places; `tick` hears of each.
+    """One row for each load; latency is from a frame to the answer about its nodes; `tick` hears of each.
 
     Raises:
         ExperimentError: a feature service does not come up, or answers nothing.
@@ -70,7 +71,7 @@ def measure_loads(loads: Sequence[Load], work: Work, tick: Callable[[str], None]
     tick("pictures for the robots")
     views = views_of(work.frames)
     with Launcher(work.folder, only=["map-store"]) as launcher, open_bus(launcher.endpoint) as bus:
-        _fill(bus, work.frames.places, work.pipeline)
+        _fill(bus, work.frames.nodes, work.pipeline)
         for load in loads:
             tick(f"{load.robots} robots on {load.services} feature services")
             yield _measure(load, work, launcher, bus, views)
@@ -102,8 +103,7 @@ def _measure(load: Load, work: Work, launcher: Launcher, bus: Bus, views: Sequen
         "services": load.services,
         "rate_hz": load.rate_hz,
         "frames_per_s": rounded(len(waits_ms) / wall_s, 2),
-        "p50_ms": rounded(np.percentile(waits_ms, 50), 1),
-        "p99_ms": rounded(np.percentile(waits_ms, 99), 1),
+        **percentiles(waits_ms, 1),
         "cpu_ms_per_frame": rounded(1e3 * spent_s / len(waits_ms), 1),
     }
 
@@ -132,12 +132,12 @@ def _services(
         stop_all(dict.fromkeys(children, GRACE_S))
 
 
-def _fill(bus: Bus, places: Sequence[Seen], pipeline: str) -> None:
-    """Put the places into a map of the map store."""
+def _fill(bus: Bus, nodes: Sequence[Seen], pipeline: str) -> None:
+    """Put the nodes into a map of the map store."""
     identity = find_profile(pipeline).identity
     operations = tuple(
-        AddNode(node=Node(node_id=number, pipeline=identity), features=as_message(place.words, identity))
-        for number, place in enumerate(places)
+        AddNode(node=Node(node_id=number, pipeline=identity), features=as_message(node.features, identity))
+        for number, node in enumerate(nodes)
     )
     bus.ask(MAP, MapRequest(action="create"), ASK_S, map=MAP_NAME)
     bus.ask(MAP, MapRequest(action="transact", operations=operations), ASK_S, map=MAP_NAME)

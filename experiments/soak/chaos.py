@@ -15,14 +15,19 @@ from services.launcher.processes.wait import LaunchError
 from services.launcher.terminal.output import rounded
 
 PAUSE_S = (5.0, 25.0)
-FROZEN_S = (0.5, 6.0)
-CUT_S = (0.3, 5.0)
+"""Between two faults: from one that hits a stack just healthy again to one that lets it drive for a while."""
+
+FROZEN_S, CUT_S = (0.5, 6.0), (0.3, 5.0)
+"""Shorter and longer than what the bus takes for the end of a peer."""
+
 BACK_S = 90.0
+"""Six times what a hung service takes to be killed (15 s); all are healthy again within seconds as a rule."""
+
 POLL_S = 0.1
 NOTICED_S = 0.5
 """So soon the launcher knows what became of a process."""
 SERVICES = ("planner", "features", "drive", "map-store", "gateway", "router", "simulator")
-HARMS = ("kill", "kill", "freeze", "freeze", "end", "cut")
+FAULTS = ("kill", "kill", "freeze", "freeze", "end", "cut")
 
 
 class Chaos:
@@ -31,31 +36,31 @@ class Chaos:
     def __init__(self, launcher: Launcher, journal: Journal, seed: int, *, may_cut: bool) -> None:
         self._launcher, self._journal = launcher, journal
         self._rng = np.random.default_rng(seed)
-        self._harms = HARMS if may_cut else tuple(harm for harm in HARMS if harm != "cut")
+        self._faults = FAULTS if may_cut else tuple(fault for fault in FAULTS if fault != "cut")
 
     def run(self, stop: threading.Event) -> None:
         """Until `stop`."""
         while not stop.wait(float(self._rng.uniform(*PAUSE_S))):
-            harm = str(self._rng.choice(self._harms))
-            service = "" if harm == "cut" else str(self._rng.choice(SERVICES))
+            fault = str(self._rng.choice(self._faults))
+            service = "" if fault == "cut" else str(self._rng.choice(SERVICES))
             at_s = rounded(self._journal.elapsed_s, 1)
             started_s, pid = time.monotonic(), self._launcher.pid(service) if service else None
-            self._do(harm, service)
-            healthy = self._healthy(stop, service, pid if harm in ("kill", "end") else None)
+            self._do(fault, service)
+            healthy = self._healthy(stop, service, pid if fault in ("kill", "end") else None)
             after_s = rounded(time.monotonic() - started_s, 2) if healthy else None
-            self._journal.event(at_s=at_s, harm=harm, service=service, healthy_after_s=after_s)
+            self._journal.event(at_s=at_s, harm=fault, service=service, healthy_after_s=after_s)
             if not healthy and not stop.is_set():
                 states = {name: s.state.value for name, s in self._launcher.status().items()}
                 self._journal.violation("every service returns", f"not healthy in {BACK_S} s: {states}")
 
-    def _do(self, harm: str, service: str) -> None:
+    def _do(self, fault: str, service: str) -> None:
         doing: dict[str, Callable[[], None]] = {
             "kill": lambda: self._send(service, signal.SIGKILL),
             "end": lambda: self._send(service, signal.SIGTERM),
             "freeze": lambda: self._freeze(service),
             "cut": lambda: cut(float(self._rng.uniform(*CUT_S))),
         }
-        doing[harm]()
+        doing[fault]()
 
     def _freeze(self, service: str) -> None:
         self._send(service, signal.SIGSTOP)

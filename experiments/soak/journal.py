@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from experiments.soak.growth import Sample, growth
-from experiments.studies.results_file import ResultsFile
+from experiments.work.results_file import ResultsFile
 
 TABLES = ("events", "violations", "memory", "sessions")
 WRITE_PERIOD_S = 20.0
+"""What a soak that is killed forgets at most; writing hours of samples takes a fraction of a second."""
 
 
 class Journal:

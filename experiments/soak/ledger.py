@@ -17,10 +17,11 @@ PERIOD_S = 1.0
 CHECK_PERIOD_S = 60.0
 ANSWER_S = 10.0
 PATIENCE_S = 120.0
+"""As long as the launcher may take to bring everything up."""
 
 
 class Ledger:
-    """One place after the other in a map of its own, and the account of those acknowledged."""
+    """One node after the other in a map of its own, and the account of those acknowledged."""
 
     def __init__(self, endpoint: str, journal: Journal) -> None:
         self._endpoint, self._journal = endpoint, journal
@@ -42,7 +43,7 @@ class Ledger:
     def _write(self, bus: Bus, number: int) -> None:
         if not self._acknowledged:
             self._try(bus, MapRequest(action="create"))
-        if self._try(bus, MapRequest(action="transact", author="soak", operations=(_place(number),))):
+        if self._try(bus, MapRequest(action="transact", author="soak", operations=(_node(number),))):
             self._acknowledged.add(number)
             self._journal.writes(len(self._acknowledged))
 
@@ -57,7 +58,7 @@ class Ledger:
                 continue
             lost = sorted(self._acknowledged - {node.node_id for node in found.nodes})
             if lost:
-                self._journal.violation("no acknowledged write is lost", f"places {lost[:20]} of {self._map}")
+                self._journal.violation("no acknowledged write is lost", f"nodes {lost[:20]} of {self._map}")
                 self._acknowledged -= set(lost)
             return
         if self._acknowledged:
@@ -71,7 +72,7 @@ class Ledger:
         return True
 
 
-def _place(number: int) -> AddNode:
+def _node(number: int) -> AddNode:
     rng = np.random.default_rng(number)
     features = Features(
         pipeline="soak",

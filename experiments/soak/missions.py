@@ -8,21 +8,25 @@ from typing import TypeVar
 import numpy as np
 
 from experiments.soak.journal import Journal
-from services.launcher.client.experimenter import Hand
+from services.launcher.client.experimenter import Experimenter
 from services.launcher.client.failure import ExperimentError
+from services.launcher.client.mission import TERMINAL, goal_features
 from services.launcher.client.stack import Stack
 from services.launcher.evaluation.rounds import hiding_place
 from services.launcher.terminal.output import rounded
-from shared.messages import ExtractRequest, MissionRequest, MissionStatus
+from shared.messages import MissionRequest, MissionStatus
 from shared.queries import QueryError
-from shared.topics import EXTRACT, MISSION
+from shared.topics import MISSION
 from shared.wire import WireError
 from simulator.world.freespace import FreeSpace
 
-TERMINAL = frozenset({"succeeded", "failed", "cancelled"})
 MAX_STEPS = 600
 LONGEST_S = 900.0
+"""MAX_STEPS at a frame a second, and half as long again for services that restart."""
+
 PATIENCE_S = 120.0
+"""As long as the launcher may take to bring everything up."""
+
 ANSWER_S = 10.0
 PERIOD_S = 1.0
 
@@ -39,7 +43,7 @@ class Missions:
     def __init__(self, stack: Stack, space: FreeSpace, map_name: str, seed: int, journal: Journal) -> None:
         self._stack, self._space, self._map, self._journal = stack, space, map_name, journal
         self._rng = np.random.default_rng(seed)
-        self._hand = Hand(stack.bus, stack.robot)
+        self._experimenter = Experimenter(stack.bus, stack.robot)
         self._count = 0
 
     def run(self, stop: threading.Event) -> None:
@@ -56,12 +60,10 @@ class Missions:
     def _one(self, stop: threading.Event) -> None:
         self._count += 1
         mission_id = f"soak-{self._count}-{time.time_ns():x}"
-        seeker = self._patiently(lambda: self._hand.truth().pose, stop)
+        seeker = self._patiently(lambda: self._experimenter.truth().pose, stop)
         place = hiding_place(self._space, seeker, self._rng)
-        picture = self._patiently(lambda: self._hand.look(place), stop)
-        goal = self._patiently(
-            lambda: self._stack.bus.ask(EXTRACT, ExtractRequest(frame=picture), ANSWER_S), stop
-        )
+        picture = self._patiently(lambda: self._experimenter.look(place), stop)
+        goal = self._patiently(lambda: goal_features(self._stack.bus, picture), stop)
         request = MissionRequest(
             action="goto",
             map=self._map,
@@ -75,7 +77,7 @@ class Missions:
         status = self._follow(mission_id, started_s, stop)
         if status is None:
             return
-        final = self._patiently(lambda: self._hand.truth().pose, stop)
+        final = self._patiently(lambda: self._experimenter.truth().pose, stop)
         left_m = float(np.hypot(final.x_m - place.x_m, final.y_m - place.y_m))
         self._journal.mission(
             state="unknown" if status.state == "idle" else status.state,

@@ -3,7 +3,7 @@
 import threading
 import time
 
-from experiments.bench.memory import RESIDENT, memory_mb
+from experiments.bench.resources import RESIDENT, memory_mb
 from experiments.soak.growth import Sample
 from experiments.soak.journal import Journal
 from services.launcher.processes.supervisor import Launcher

@@ -157,11 +157,11 @@ class SelectKeypointDescriptor:
         """A picture from a path, an OpenCV image or a torch image."""
         return picture_of(info)
 
-    def words(self, picture: Image) -> FeatureSet:
-        """Visual words of a picture, without those at the border where `ignore_border_kp` is set."""
-        return self._words(resized(picture, self.resize))
+    def features(self, picture: Image) -> FeatureSet:
+        """Features of a picture, without those at the border where `ignore_border_kp` is set."""
+        return self._extracted(resized(picture, self.resize))
 
-    def _words(self, whole: Image) -> FeatureSet:
+    def _extracted(self, whole: Image) -> FeatureSet:
         pipeline = self.pipeline
         found = extract(whole, pipeline.extractor, pipeline.representation, pipeline.profile)
         if self.ignore_border_kp:
@@ -202,9 +202,9 @@ class SelectKeypointDescriptor:
 
     def _details(self, info: Any) -> Details:
         whole = resized(picture_of(info), self.resize)
-        words = self._words(whole)
-        places = np.column_stack([_pixels(words, whole), words.lonlat_rad]).astype(np.float32)
-        return torch.from_numpy(places), torch.from_numpy(np.ascontiguousarray(words.descriptors))
+        found = self._extracted(whole)
+        keypoints = np.column_stack([_pixels(found, whole), found.lonlat_rad]).astype(np.float32)
+        return torch.from_numpy(keypoints), torch.from_numpy(np.ascontiguousarray(found.descriptors))
 
 
 def _known(what: str, name: str, names: dict[str, str]) -> str:
@@ -214,28 +214,28 @@ def _known(what: str, name: str, names: dict[str, str]) -> str:
     return found
 
 
-def _pixels(words: FeatureSet, whole: Image) -> FloatArray:
+def _pixels(found: FeatureSet, whole: Image) -> FloatArray:
     """Columns and rows (N, 2) of keypoints in a whole panorama."""
     height, width = whole.shape[:2]
-    return EquirectGrid(width, height).pixels_from_lonlat(words.lonlat_rad)
+    return EquirectGrid(width, height).pixels_from_lonlat(found.lonlat_rad)
 
 
-def _cells(words: FeatureSet, whole: Image) -> IndexArray:
+def _cells(found: FeatureSet, whole: Image) -> IndexArray:
     """The pixels (N, 2) that keypoints lie in."""
     height, width = whole.shape[:2]
-    return np.minimum(_pixels(words, whole).astype(np.intp), [width - 1, height - 1])
+    return np.minimum(_pixels(found, whole).astype(np.intp), [width - 1, height - 1])
 
 
-def _inside(words: FeatureSet, picture: Image) -> FeatureSet:
+def _inside(found: FeatureSet, picture: Image) -> FeatureSet:
     lit = (picture if picture.ndim == 2 else picture.max(axis=2)) > 0
     inner = cv2.erode(lit.astype(np.uint8), np.ones((3, 3)), iterations=BORDER_PX, borderValue=0)
-    column, row = _cells(words, picture).T
+    column, row = _cells(found, picture).T
     keep = np.flatnonzero(inner[row, column])
-    return FeatureSet(words.lonlat_rad[keep], words.scores[keep], words.descriptors[keep])
+    return FeatureSet(found.lonlat_rad[keep], found.scores[keep], found.descriptors[keep])
 
 
-def _drawn(picture: Image, words: FeatureSet) -> Image:
+def _drawn(picture: Image, found: FeatureSet) -> Image:
     shown = cv2.cvtColor(picture, cv2.COLOR_GRAY2BGR) if picture.ndim == 2 else picture.copy()
-    for column, row in _cells(words, picture):
+    for column, row in _cells(found, picture):
         cv2.circle(shown, (int(column), int(row)), 3, (0, 220, 0), 1, cv2.LINE_AA)
     return np.asarray(shown, np.uint8)

@@ -3,8 +3,6 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from services.features.matching.verification import feature_set
-from services.features.pipeline.interfaces import FeatureSet
 from services.map_store.errors import MapError
 from services.map_store.storage.archive import Archive, write_archive
 from services.map_store.storage.blobs import checksum, pack_features, unpack_features
@@ -34,10 +32,6 @@ class MemoryMap:
     def features_of(self, node_id: int) -> Features:
         """What a node looks like."""
         return self.features[node_id]
-
-    def words(self, node_id: int) -> FeatureSet:
-        """Visual words of a node."""
-        return feature_set(self.features[node_id])
 
 
 def save(maps: MemoryMap, path: Path) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import torch
 from matplotlib.figure import Figure
 
+from experiments.rendered.features import as_message
 from experiments.topological_navigation.drawing import graph_figure
 from experiments.topological_navigation.keypoints import SelectKeypointDescriptor
 from experiments.topological_navigation.matcher import LocalMatcher
@@ -331,14 +332,7 @@ class TopologicalNavigation(SelectKeypointDescriptor):
         return Ranges(robot="library", angles_rad=angles, distances_m=values, max_range_m=FAR_M)
 
     def _features(self, info: Any) -> Features:
-        words = self.words(picture_of(info))
-        return Features(
-            seq=self._frames,
-            pipeline=self.pipeline.identity,
-            lonlat_rad=words.lonlat_rad,
-            scores=words.scores,
-            descriptors=words.descriptors,
-        )
+        return as_message(self.features(picture_of(info)), self.pipeline.identity, self._frames)
 
     def _choose_pipeline(self) -> None:
         try:

@@ -1,14 +1,40 @@
-"""The `topnav` command."""
+"""The `topnav` command: those of the product, and those that other distributions add.
 
-import os
+A command module imports only typer and its options at its top, and its work in its function: `topnav --help`
+must not wait for zenoh, torch or matplotlib.
+"""
+
 import sys
-from pathlib import Path
-from typing import Annotated, Any
+from collections.abc import Iterable
+from importlib.metadata import EntryPoint, entry_points
 
 import typer
-from rich.console import Console
 
-from services.launcher.lazy_commands import COMMANDS, CommandMissingError, register
+from services.launcher.commands import (
+    certs,
+    demo,
+    doctor,
+    down,
+    estop,
+    explore,
+    foxglove,
+    goto,
+    map,
+    models,
+    record,
+    recover,
+    replay,
+    status,
+    token,
+    up,
+    world,
+)
+
+ADDED = "topnav.commands"
+"""Entry points of this group are Typer apps of further commands."""
+
+STUDIES = ("hide-and-seek", "study", "calibrate", "bench", "soak")
+"""Commands of the distribution topnav-studies; without it they say where to get it."""
 
 app = typer.Typer(
     name="topnav",
@@ -17,106 +43,71 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-register(app, COMMANDS)
-
-DataDir = Annotated[Path, typer.Option(envvar="TOPNAV_DATA_DIR", help="Maps, logs and state live here.")]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
-DEFAULT_DATA_DIR = Path("data")
-COMPOSE_FILE = Path(__file__).resolve().parents[2] / "docker-compose.yml"
-
-
-@app.command()
-def up(
-    world: Annotated[
-        str | None, typer.Option(help="A world that comes with topnav, or a .yaml file.")
-    ] = None,
-    lockstep: Annotated[
-        bool | None, typer.Option(help="As fast as the machine allows; same seed, same path.")
-    ] = None,
-    seed: Annotated[int | None, typer.Option(help="Of every random draw.")] = None,
-    profile: Annotated[
-        str | None, typer.Option(help="Rules of planner and drive: default or thesis.")
-    ] = None,
-    secure: Annotated[
-        bool, typer.Option("--secure/--open", help="Certificates and access rules on the bus.")
-    ] = False,
-    detach: Annotated[
-        bool, typer.Option("--detach/--foreground", help="Return once all is healthy.")
-    ] = False,
-    data_dir: DataDir = DEFAULT_DATA_DIR,
-    timeout_s: Annotated[float, typer.Option(help="How long the start may take.")] = 120.0,
-    file: Annotated[Path, typer.Option("--file", "-f", help="Which processes there are.")] = COMPOSE_FILE,
-) -> None:
-    """Start the processes of docker-compose.yml on this machine."""
-    from services.launcher.commands.up import run_detached, run_foreground
-    from services.launcher.processes.stack_settings import StackSettings
-
-    choices: dict[str, Any] = {"world": world, "lockstep": lockstep, "seed": seed, "profile": profile}
-    settings = StackSettings(data_dir.resolve(), **choices, secure=secure)
-    if detach:
-        run_detached(settings, file.resolve(), timeout_s)
-    else:
-        run_foreground(settings, file.resolve(), timeout_s)
+for command in (
+    demo,
+    explore,
+    goto,
+    estop,
+    world,
+    models,
+    record,
+    replay,
+    recover,
+    foxglove,
+    map,
+    certs,
+    token,
+):
+    app.add_typer(command.app)
+for command in (up, down, status, doctor):
+    app.add_typer(command.app)
 
 
-@app.command()
-def down(
-    data_dir: DataDir = DEFAULT_DATA_DIR,
-    timeout_s: Annotated[float, typer.Option(help="Kill the launcher after this.")] = 30.0,
-) -> None:
-    """Stop the stack of a data folder."""
-    from services.launcher.commands.down import stop_stack
-
-    typer.echo(stop_stack(data_dir.resolve(), timeout_s))
+class MissingCommandError(ValueError):
+    """A command that is not to be had here; the text says what to do."""
 
 
-@app.command()
-def status(data_dir: DataDir = DEFAULT_DATA_DIR, as_json: AsJson = False) -> None:
-    """Show the stack of a data folder; exit 1 unless every service is healthy."""
-    from services.launcher.processes.state import StateFolder
-    from services.launcher.terminal.display import status_table
-
-    state = StateFolder(data_dir.resolve()).read()
-    if as_json:
-        typer.echo(state.model_dump_json(indent=2) if state else "null")
-    elif state is None:
-        typer.echo(f"no stack runs in {data_dir}; start one with 'topnav up'")
-    else:
-        console = Console()
-        console.print(status_table(state.services))
-        console.print(
-            f"console {state.gateway_url}  bus {state.endpoint}  logs {state.logs}", highlight=False
-        )
-    raise typer.Exit(0 if state and state.healthy else 1)
+def add_commands(to: typer.Typer, found: Iterable[EntryPoint]) -> None:
+    """Add the commands of other distributions; what cannot be had says so when it is called."""
+    names = set()
+    for entry in found:
+        names.add(entry.name)
+        try:
+            to.add_typer(entry.load())
+        except Exception as error:  # noqa: BLE001 - whatever another distribution does wrong, the rest must work
+            why = f"cannot be loaded from {entry.value}: {type(error).__name__}: {error}"
+            _add_missing(to, entry.name, why, hidden=False)
+    for name in set(STUDIES) - names:
+        why = "is a study: install topnav-studies ('pip install ./experiments' in a clone of topnav)"
+        _add_missing(to, name, why, hidden=True)
 
 
-@app.command()
-def doctor(data_dir: DataDir = DEFAULT_DATA_DIR, as_json: AsJson = False) -> None:
-    """Say what this machine lacks for a run and how to fix it; exit 1 when something is missing."""
-    import json
-    from dataclasses import asdict
+def _add_missing(to: typer.Typer, name: str, why: str, *, hidden: bool) -> None:
+    @to.command(
+        name,
+        help="Not available here.",
+        hidden=hidden,
+        add_help_option=False,
+        context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
+    )
+    def tell() -> None:
+        raise MissingCommandError(f"topnav {name} {why}")
 
-    from services.launcher.commands.doctor import examine
-    from services.launcher.processes.stack_settings import Ports
-    from services.launcher.terminal.display import check_table
 
-    checks = examine(data_dir.resolve(), Ports.from_variables(os.environ))
-    if as_json:
-        typer.echo(json.dumps([asdict(check) for check in checks], indent=2))
-    else:
-        Console().print(check_table(checks), highlight=False)
-    raise typer.Exit(0 if all(check.ok for check in checks) else 1)
+add_commands(app, entry_points(group=ADDED))
 
 
 def main() -> None:
     """Run a command; what users can mend is one line on standard error and exit 1."""
-    from services.launcher.processes.state import AlreadyRunningError
-    from services.launcher.processes.wait import LaunchError
-
     try:
         app()  # reports wrong options itself and raises SystemExit
     except KeyboardInterrupt:
         sys.exit(130)
-    except (LaunchError, AlreadyRunningError, CommandMissingError, ValueError, OSError) as error:
+    except Exception as error:
+        from services.launcher.processes.state import AlreadyRunningError
+        from services.launcher.processes.wait import LaunchError
+
+        if not isinstance(error, LaunchError | AlreadyRunningError | ValueError | OSError):
+            raise
         sys.stderr.write(f"topnav: {error}\n")
         sys.exit(1)

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from experiments.bench.machine import machine
+from experiments.bench.resources import machine
 from services.launcher.terminal.output import rounded, write_json
 
 

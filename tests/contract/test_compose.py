@@ -11,9 +11,9 @@ import pytest
 import yaml
 from jsonschema import Draft201909Validator
 
-from services.launcher.processes.compose_file import COMPOSE_FILE, load_compose
-from services.launcher.processes.interpolate import interpolate_tree
-from services.launcher.processes.local import LocalMachine, local_process
+from services.launcher.compose.compose_file import COMPOSE_FILE, load_compose
+from services.launcher.compose.interpolate import interpolate_tree
+from services.launcher.compose.local import LocalMachine, local_process
 from services.launcher.processes.stack_settings import Ports, StackSettings
 from shared.certificates.holders import AUTHORITY, everyone
 from shared.settings import ServiceSettings

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from services.launcher.client.experimenter import Hand
+from services.launcher.client.experimenter import Experimenter
 from services.launcher.client.mission import MissionClient, MissionRun
 from services.launcher.client.stack import Stack
 from shared.bus import Inbox, wait_until
@@ -27,7 +27,7 @@ class Robot:
 
     stack: Stack
     client: MissionClient
-    hand: Hand
+    experimenter: Experimenter
     events: Inbox[Event]
     runs: list[MissionRun] = field(default_factory=list)
 
@@ -47,7 +47,7 @@ def taking_part(stack: Stack, name: str) -> Iterator[Robot]:
     """Take part as the experimenter of one robot."""
     with replace(stack, robot=name).session() as own:
         yield Robot(
-            own, MissionClient(own.bus, name), Hand(own.bus, name), own.bus.subscribe(EVENT, robot=name)
+            own, MissionClient(own.bus, name), Experimenter(own.bus, name), own.bus.subscribe(EVENT, robot=name)
         )
 
 

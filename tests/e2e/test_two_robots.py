@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from services.launcher.client.map_client import require_map
+from services.launcher.client.maps import require_map
 from services.launcher.client.stack import StackChoice, open_stack
 from services.launcher.evaluation.components import components
 from services.launcher.evaluation.false_edges import check_edges
@@ -58,11 +58,11 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Shared]:
         robots = {name: open_.enter_context(taking_part(stack, name)) for name in (FIRST, SECOND)}
         first, second = robots.values()
         threads = open_.enter_context(ThreadPoolExecutor(2))
-        first.client.wait_for_frame(first.hand.reset(seed=1).stamp_ns)
+        first.client.wait_for_frame(first.experimenter.reset(seed=1).stamp_ns)
         first.run(**ALONE)
         begun = first.made()
         start = join_truth(WORLD, require_map(stack, MAP).nodes, first.client.trail, None).poses[begun[0]]
-        second.client.wait_for_frame(second.hand.place_robot(turned(start)).stamp_ns)
+        second.client.wait_for_frame(second.experimenter.place_robot(turned(start)).stamp_ns)
         list(threads.map(lambda each: each.run(**TOGETHER), robots.values()))
         mapping = threads.submit(first.run, **TOGETHER)
         second.run(action="goto", map=MAP, goal_node=max(begun), max_steps=200)

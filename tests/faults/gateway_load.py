@@ -14,7 +14,7 @@ from pathlib import Path
 
 import httpx
 
-from experiments.bench.memory import RESIDENT, memory_mb
+from experiments.bench.resources import RESIDENT, memory_mb
 from shared.bus import open_bus, wait_until
 from tests.faults.latency import Stopwatch, told
 

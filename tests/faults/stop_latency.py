@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from services.launcher.client.experimenter import Hand
+from services.launcher.client.experimenter import Experimenter
 from services.launcher.client.stack import Stack, StackChoice, open_stack
 from services.launcher.processes.wait import LaunchError
 from shared.bus import wait_until
@@ -129,7 +129,7 @@ def explore(stack: Stack, name: str, seed: int) -> None:
             return ask(stack, action="explore", map=name, seed=seed, max_steps=MISSION_STEPS) is not None
         return False
 
-    Hand(stack.bus, stack.robot).reset(seed)
+    Experimenter(stack.bus, stack.robot).reset(seed)
     assert wait_until(begun, PATIENCE_S, 0.5), "the planner takes no mission"
 
 

@@ -11,7 +11,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from experiments.bench.memory import RESIDENT, memory_mb
+from experiments.bench.resources import RESIDENT, memory_mb
 from shared.bus import open_bus, wait_until
 from shared.messages import Event
 from shared.topics import EVENT

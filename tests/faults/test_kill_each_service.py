@@ -92,7 +92,7 @@ def drive_and_kill(real_time, service, stop_s=math.inf):
     with Watch(stack.endpoint, stack.robot) as watch, Killer(real_time, service, watch, stop_s) as killer:
         run = game.client.run(request)
     assert killer.killed_s, "the robot never drove"
-    played = game.finish(start, hider, game.hand.look(hider), run, 0)
+    played = game.finish(start, hider, game.experimenter.look(hider), run, 0)
     for _ in range(TRIES - len(killer.killed_s)):  # how soon it is back can be seen of a robot at rest, too
         if killer.healthy_s > BACK_S:
             killer.kill()

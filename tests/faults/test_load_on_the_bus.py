@@ -2,7 +2,7 @@
 
 import pytest
 
-from experiments.bench.memory import RESIDENT, memory_mb
+from experiments.bench.resources import RESIDENT, memory_mb
 from tests.faults.latency import Stopwatch, told
 
 pytestmark = [pytest.mark.timeout(300), pytest.mark.usefixtures("patient_sessions")]

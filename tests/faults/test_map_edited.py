@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from services.launcher.client.experimenter import Hand
-from services.launcher.client.map_client import delete_map, read_map
+from services.launcher.client.experimenter import Experimenter
+from services.launcher.client.maps import delete_map, read_map
 from services.launcher.client.mission import MissionClient
 from services.launcher.client.stack import Stack, StackChoice, open_stack
 from shared.messages import MapRequest, MissionRequest
@@ -35,11 +35,11 @@ def stack(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stack]:
 def client(stack: Stack) -> MissionClient:
     """Follows missions of a robot that has just explored map `small` and is back at its start."""
     client = MissionClient(stack.bus, stack.robot)
-    hand = Hand(stack.bus, stack.robot)
+    experimenter = Experimenter(stack.bus, stack.robot)
     if read_map(stack, "small") is None:
-        client.wait_for_frame(hand.reset(1).stamp_ns)
+        client.wait_for_frame(experimenter.reset(1).stamp_ns)
         client.run(MissionRequest(action="explore", map="small", seed=1, max_steps=STEPS))
-    client.wait_for_frame(hand.reset(1).stamp_ns)
+    client.wait_for_frame(experimenter.reset(1).stamp_ns)
     return client
 
 

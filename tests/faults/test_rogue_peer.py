@@ -11,7 +11,7 @@ import httpx
 import pytest
 import zenoh
 
-from services.launcher.client.map_access import store_client
+from services.launcher.client.maps import store_client
 from services.launcher.processes.free_ports import free_ports
 from shared.access.credentials import credentials_in
 from shared.bus import wait_until

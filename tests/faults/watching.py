@@ -6,8 +6,8 @@ from contextlib import contextmanager
 from itertools import pairwise
 from typing import Any
 
-from experiments.bench.background import Background
-from services.launcher.client.experimenter import Hand
+from experiments.bench.listener import Background
+from services.launcher.client.experimenter import Experimenter
 from services.launcher.client.stack import Stack
 from shared.bus import Bus, open_bus, wait_until
 from shared.messages import Command, Heading, MissionRequest, MissionStatus
@@ -53,7 +53,7 @@ def exploring(stack: Stack, map_name: str, back_s: float) -> Iterator["Watch"]:
 
 def set_off(stack: Stack, watching: "Watch", map_name: str) -> None:
     """Have the robot explore from the world's start; returns once it moves."""
-    Hand(stack.bus, stack.robot).reset(1)
+    Experimenter(stack.bus, stack.robot).reset(1)
     began_s = time.monotonic()
     ask(stack, action="explore", map=map_name, seed=1)
     assert wait_until(lambda: watching.moving(began_s), MOVES_S)

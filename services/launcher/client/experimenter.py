@@ -1,4 +1,4 @@
-"""The experimenter's hand in the simulation: reset, hide the other robot, look, read the true state."""
+"""The experimenter in the simulation: resets, hides the other robot, looks, reads the true state."""
 
 import math
 import time
@@ -18,7 +18,7 @@ STILL_POLLS = 2
 POLL_S = 0.1
 
 
-class Hand:
+class Experimenter:
     """Asks the simulator; counts every time it moves the robot."""
 
     def __init__(self, bus: Bus, robot: str) -> None:

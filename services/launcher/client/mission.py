@@ -7,13 +7,21 @@ from dataclasses import dataclass
 from services.launcher.client.failure import ExperimentError
 from services.launcher.evaluation.trail import Trail
 from shared.bus import Bus
-from shared.messages import Features, MissionRequest, MissionStatus, Truth
+from shared.messages import ExtractRequest, Features, MissionRequest, MissionStatus, Truth
+from shared.messages.sensors import Frame
 from shared.queries import QueryError
-from shared.topics import FEATURES, HEADING, MISSION, STATUS, TRUTH
+from shared.topics import EXTRACT, FEATURES, HEADING, MISSION, STATUS, TRUTH
 
 TERMINAL = frozenset({"succeeded", "failed", "cancelled"})
 ASK_TIMEOUT_S = 10.0
+"""A planner answers within a step, of which the slowest takes a second on a loaded machine."""
+
+EXTRACT_TIMEOUT_S = 30.0
+"""A learned extractor takes seconds for its first picture."""
+
 SILENCE_S = 60.0
+"""Longer than a service that died needs to be back and to take its mission up again."""
+
 PERIOD_S = 0.2
 
 Watch = Callable[[MissionStatus], None]
@@ -45,6 +53,11 @@ class MissionRun:
     def steps_per_s(self) -> float:
         """Frames answered per second of wall time."""
         return self.status.step / max(self.wall_s, 1e-9)
+
+
+def goal_features(bus: Bus, picture: Frame) -> Features:
+    """What the feature service sees in a goal picture, as a mission goto wants it."""
+    return bus.ask(EXTRACT, ExtractRequest(frame=picture), EXTRACT_TIMEOUT_S)
 
 
 class MissionClient:

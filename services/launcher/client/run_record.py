@@ -1,29 +1,22 @@
 """What a command leaves in `runs/` of the data folder, for the list of runs in the console."""
 
-import functools
-import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from experiments.hide_and_seek.plan import world_label
-from services.launcher.evaluation.report import summary
-from services.launcher.terminal import options
 from services.launcher.terminal.tables import wide_console
-from shared.runs import CommandRun, Figure
+from shared.runs import CommandRun
 
-EXPLORE_SHOWN = ("nodes", "edges", "coverage", "collisions", "false_edges", "steps", "steps_per_s", "outcome")
 MAX_NUMBER = 1000
-
-Figures = Mapping[str, Any]
+"""Runs that end within one second: more than any machine can do."""
 
 
 def keep_run(
     data_dir: Path,
     command: str,
     started: datetime,
-    figures: Mapping[str, Figure],
+    figures: Mapping[str, Any],
     *,
     worlds: Sequence[str] = (),
     map_name: str | None = None,
@@ -59,50 +52,9 @@ def keep_run(
         wide_console(stderr=True).print(f"no record of this run in {folder}: {error}", highlight=False)
 
 
-def explore_figures(report: Figures) -> dict[str, Figure]:
-    """Of what `topnav explore --json` writes."""
-    return {name: report[name] for name in EXPLORE_SHOWN}
-
-
-def rounds_figures(rounds: Sequence[Figures]) -> dict[str, Figure]:
-    """Of rounds of hide and seek; without any found the command fails."""
-    found, told = sum(bool(one["success"]) for one in rounds), summary(rounds)
-    shown = {name: told[name] for name in ("final_distance_median_m", "spl_mean", "collisions")}
-    return {"rounds": len(rounds), "found": found, **shown, "outcome": "succeeded" if found else "failed"}
-
-
-def suite_figures(runs: Sequence[Figures]) -> dict[str, Figure]:
-    """Of all rounds of a suite; several profiles are told apart by name."""
-    profiles = list(dict.fromkeys(str(run["profile"]) for run in runs))
-    told: dict[str, Figure] = {}
-    for profile in profiles:
-        figures = rounds_figures([one for run in runs if run["profile"] == profile for one in run["rounds"]])
-        del figures["outcome"]
-        before = f"{Path(profile).stem}: " if len(profiles) > 1 else ""
-        told |= {before + name: value for name, value in figures.items()}
-    return told
-
-
-def on_record(command: str, study: Callable[..., int]) -> Callable[..., None]:
-    """The same command with a record at its end; `study` returns the number of its results."""
-
-    @functools.wraps(study)
-    def run(**chosen: Any) -> None:
-        started = datetime.now(UTC)
-        results = study(**chosen)
-        world = chosen.get("world")
-        keep_run(
-            chosen.get("data_dir") or Path(os.environ.get("TOPNAV_DATA_DIR") or options.DATA_DIR),
-            command,
-            started,
-            {"study": command.split()[-1], "results": results},
-            worlds=[world] if world else [],
-            map_name=chosen.get("map_name"),
-            seed=chosen.get("seed"),
-            json_file=chosen.get("json_file"),
-        )
-
-    return run
+def world_label(world: str) -> str:
+    """A world's name as a folder or a table shows it, of a path that of its file."""
+    return world.rsplit("/", 1)[-1].removesuffix(".yaml").removesuffix(".yml")
 
 
 def _write(folder: Path, run: CommandRun) -> None:

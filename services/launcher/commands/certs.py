@@ -3,18 +3,15 @@
 import datetime as dt
 import json
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
-from shared.access.rules import Role
-from shared.certificates.checking import Finding, check
-from shared.certificates.holders import AUTHORITY, Holder, another_robot, everyone
-from shared.certificates.issuing import make, renew
+if TYPE_CHECKING:
+    from shared.certificates.checking import Finding
+    from shared.certificates.holders import Holder
 
-app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+app = typer.Typer()
 
 
 @app.command()
@@ -25,7 +22,7 @@ def certs(
         list[str] | None, typer.Option(help="A further robot: a set of its own, in ROLE.ROBOT.")
     ] = None,
     name: Annotated[str | None, typer.Option(help="One further holder, in a folder of this name.")] = None,
-    role: Annotated[Role | None, typer.Option(help="What that holder may do.")] = None,
+    role: Annotated[str | None, typer.Option(help="What that holder may do.", metavar="ROLE")] = None,
     host: Annotated[
         list[str] | None, typer.Option(help="Further host name or address of the router.")
     ] = None,
@@ -34,7 +31,14 @@ def certs(
     look: Annotated[bool, typer.Option("--check", help="Say what expires or does not fit.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> None:
-    """Make, renew or check certificates; the key of the authority is in FOLDER/authority: keep it apart."""
+    """Make, renew and check the certificates of a secured stack.
+
+    The key of the authority is in FOLDER/authority: keep it apart.
+    """
+    from shared.certificates.checking import check
+    from shared.certificates.issuing import make, renew
+    from shared.certificates.holders import AUTHORITY
+
     now, hosts = dt.datetime.now(dt.UTC), tuple(host or ())
     if look:
         findings = check(folder, now)
@@ -51,17 +55,25 @@ def certs(
     typer.echo(f"give each service its own folder only; {folder / AUTHORITY} signs new ones: keep it apart")
 
 
-def _wanted(robot: str, add_robot: list[str], name: str | None, role: Role | None) -> list[Holder]:
+def _wanted(robot: str, add_robot: list[str], name: str | None, role: str | None) -> "list[Holder]":
+    from shared.access.rules import Role
+    from shared.certificates.holders import Holder, another_robot, everyone
+
     if (name is None) != (role is None):
         raise ValueError(f"--name and --role belong together, got --name {name} --role {role}")
     if name is not None and role is not None:
-        return [Holder(name, role, robot)]
+        if role not in (known := [one.value for one in Role]):
+            raise typer.BadParameter(f"--role must be one of {', '.join(known)}, got {role[:40]!r}")
+        return [Holder(name, Role(role), robot)]
     if add_robot:
         return [holder for further in add_robot for holder in another_robot(further)]
     return list(everyone(robot))
 
 
-def _show(findings: list[Finding], as_json: bool) -> None:
+def _show(findings: "list[Finding]", as_json: bool) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
     if as_json:
         rows = [
             {
@@ -77,13 +89,8 @@ def _show(findings: list[Finding], as_json: bool) -> None:
         return
     table = Table("", "holder", "common name", "expires", "what is wrong", box=None)
     for f in findings:
-        mark = (
-            "[bold red]FAIL[/bold red]"
-            if f.faults
-            else "[yellow]SOON[/yellow]"
-            if f.warnings
-            else "[green]OK[/green]"
-        )
+        mark = "[yellow]SOON[/yellow]" if f.warnings else "[green]OK[/green]"
+        mark = "[bold red]FAIL[/bold red]" if f.faults else mark
         expires = f"{f.expires:%Y-%m-%d}" if f.expires else ""
         table.add_row(mark, f.name, f.common_name, expires, "; ".join((*f.faults, *f.warnings)))
     Console().print(table, highlight=False)

@@ -2,26 +2,22 @@
 
 import getpass
 from datetime import datetime
-from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from services.launcher.client.address import Address, find_address
-from services.launcher.client.stack import ROBOT
 from services.launcher.terminal import options
-from shared.messages import EStopRequest, EStopState
-from shared.queries import AbsentError, RefusedError, TimedOutError
-from shared.settings import ServiceSettings
-from shared.topics import ESTOP
 
-app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+if TYPE_CHECKING:
+    from shared.messages import EStopRequest, EStopState
+
+app = typer.Typer()
 
 TIMEOUT_S = 2.0
+"""Whoever presses the emergency stop waits no longer to hear that nobody answers."""
+
 ENGAGED, UNKNOWN = 1, 2
 """Exit codes besides 0."""
-
-ALONE = "no drive service answers: the robot's own time-out stops it"
 
 Robot = Annotated[str, typer.Option(help="Which robot.")]
 Why = Annotated[str, typer.Option(help="Reason, for the others.")]
@@ -31,8 +27,8 @@ Status = Annotated[bool, typer.Option("--status", help="Only say how it stands; 
 
 
 @app.command()
-def main(
-    robot: Robot = ROBOT,
+def estop(
+    robot: Robot = "r1",
     why: Why = "",
     clear: Clear = False,
     who: Who = "",
@@ -40,21 +36,24 @@ def main(
     data_dir: options.DataDir = options.DATA_DIR,
     endpoint: options.Endpoint = None,
 ) -> None:
-    """Engage the emergency stop; with --clear end it, with --status look."""
-    if clear and status:
-        raise typer.BadParameter("--clear and --status exclude each other")
-    if clear and not who.strip():
-        raise typer.BadParameter("--clear needs --who NAME: the person who saw that the robot may move")
-    if status:
-        request = EStopRequest(action="status")
-    elif clear:
-        request = EStopRequest(action="clear", who=who.strip()[:64], why=why[:400])
-    else:
-        request = EStopRequest(action="engage", who=(who.strip() or getpass.getuser())[:64], why=why[:400])
+    """Stop a robot at once; only a person lets it go again.
+
+    With --clear end the stop, with --status look.
+    """
+    from services.launcher.client.address import Address, find_address
+    from shared.queries import AbsentError, RefusedError, TimedOutError
+    from shared.settings import ServiceSettings
+    from shared.topics import ESTOP
+
+    request = _request(why, clear, who.strip(), status)
+    # The router of the stack that runs in the folder, else the usual one: a stop does not ask for settings.
+    usual = ServiceSettings.from_environment()
+    address = find_address(endpoint, data_dir) or Address(usual.endpoint, usual.certs)
     try:
-        state = _ask(robot, request, _address(endpoint, data_dir))
+        with address.open() as bus:
+            state = bus.ask(ESTOP, request, TIMEOUT_S, robot=robot)
     except (AbsentError, TimedOutError):
-        typer.echo(f"topnav: {ALONE}", err=True)
+        typer.echo("topnav: no drive service answers: the robot's own time-out stops it", err=True)
         raise typer.Exit(UNKNOWN) from None
     except RefusedError as error:
         typer.echo(f"topnav: {error}", err=True)
@@ -63,18 +62,20 @@ def main(
     raise typer.Exit(ENGAGED if status and state.engaged else 0)
 
 
-def _ask(robot: str, request: EStopRequest, address: Address) -> EStopState:
-    with address.open() as bus:
-        return bus.ask(ESTOP, request, TIMEOUT_S, robot=robot)
+def _request(why: str, clear: bool, who: str, status: bool) -> "EStopRequest":
+    from shared.messages import EStopRequest
+
+    if clear and status:
+        raise typer.BadParameter("--clear and --status exclude each other")
+    if clear and not who:
+        raise typer.BadParameter("--clear needs --who NAME: the person who saw that the robot may move")
+    if status:
+        return EStopRequest(action="status")
+    who = (who or getpass.getuser())[:64]
+    return EStopRequest(action="clear" if clear else "engage", who=who, why=why[:400])
 
 
-def _address(endpoint: str | None, data_dir: Path) -> Address:
-    """Router of the stack that runs in the folder, else the usual one: a stop does not ask for settings."""
-    usual = ServiceSettings.from_environment()
-    return find_address(endpoint, data_dir) or Address(usual.endpoint, usual.certs)
-
-
-def _sentence(state: EStopState) -> str:
+def _sentence(state: "EStopState") -> str:
     word = "engaged" if state.engaged else "clear"
     if not state.since_ns:
         return f"{state.robot}: {word}{f' ({state.why})' if state.why else ''}"

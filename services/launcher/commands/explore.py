@@ -6,25 +6,15 @@ from typing import Annotated
 
 import typer
 
-from services.launcher.client.failure import ExperimentError, one_line_errors
-from services.launcher.client.map_client import delete_map, read_map
-from services.launcher.client.run_record import explore_figures, keep_run
-from services.launcher.client.stack import Stack, StackChoice, open_stack
-from services.launcher.drawing.plans import draw_map
-from services.launcher.evaluation.exploration import explore, figures
-from services.launcher.evaluation.truth_file import MapTruth, load_truth, save_truth, truth_path
 from services.launcher.terminal import options
-from services.launcher.terminal.output import write_json
-from services.launcher.terminal.progress import mission_progress
-from services.launcher.terminal.tables import print_figures, wide_console
-from simulator.world.freespace import free_space
-from simulator.world.world_file import load_world
 
-app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+app = typer.Typer()
+
+RECORDED = ("nodes", "edges", "coverage", "collisions", "false_edges", "steps", "steps_per_s", "outcome")
 
 
 @app.command()
-def main(
+def explore(
     world: options.World = "apartment",
     map_name: options.MapName = "flat",
     seed: options.Seed = 1,
@@ -40,22 +30,33 @@ def main(
     endpoint: options.Endpoint = None,
 ) -> None:
     """Explore a world and build a map of pictures."""
+    from services.launcher.client.failure import ExperimentError, one_line_errors
+    from services.launcher.client.run_record import keep_run
+    from services.launcher.client.stack import StackChoice, open_stack
+    from services.launcher.drawing.plans import draw_map
+    from services.launcher.evaluation.exploration import explore, figures, make_room
+    from services.launcher.evaluation.truth_file import save_truth, truth_path
+    from services.launcher.terminal.output import write_json
+    from services.launcher.terminal.progress import mission_progress
+    from services.launcher.terminal.tables import print_figures, wide_console
+    from simulator.world.freespace import free_space
+    from simulator.world.world_file import load_world
+
     started, space = datetime.now(UTC), free_space(load_world(world))
     choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
     path = truth_path(data_dir, map_name)
     with one_line_errors(), open_stack(choice) as stack:
-        before = _prepare(stack, map_name, path, go_on=continue_, fresh=fresh)
+        before = make_room(stack, map_name, path, go_on=continue_, fresh=fresh)
         with mission_progress(wide_console(stderr=True), f"exploring {world}") as watch:
             result = explore(stack, world, map_name, seed, max_steps, before, watch)
     save_truth(path, map_name, result.truth)
     report = figures(result, space, map_name, seed)
-    if json_file is not None:
-        write_json(json_file, report)
+    write_json(json_file, report)
     keep_run(
         data_dir,
         "explore",
         started,
-        explore_figures(report),
+        {name: report[name] for name in RECORDED},
         worlds=[world],
         map_name=map_name,
         seed=seed,
@@ -66,19 +67,3 @@ def main(
     print_figures(f"map {map_name}", report)
     if not result.run.succeeded:
         raise ExperimentError(f"exploration ended as {result.run.status.state}: {result.run.status.reason}")
-
-
-def _prepare(stack: Stack, map_name: str, path: Path, *, go_on: bool, fresh: bool) -> MapTruth | None:
-    """Make room for the map, or return the truth of the one to go on with."""
-    found = read_map(stack, map_name)
-    if found is not None and found.nodes and not (go_on or fresh):
-        raise ExperimentError(
-            f"map {map_name!r} exists with {len(found.nodes)} nodes: go on with it (--continue), "
-            "delete it first (--fresh), or choose another name (--map)"
-        )
-    if fresh:
-        if found is not None:
-            delete_map(stack, map_name)
-        path.unlink(missing_ok=True)
-        return None
-    return load_truth(path) if found is not None else None

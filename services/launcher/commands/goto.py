@@ -5,26 +5,13 @@ from typing import Annotated
 
 import typer
 
-from services.launcher.client.failure import ExperimentError, one_line_errors
-from services.launcher.client.map_client import require_map
-from services.launcher.client.mission import MissionClient
-from services.launcher.client.stack import StackChoice, open_stack
-from services.launcher.drawing.pictures import frame_from_file
-from services.launcher.evaluation.trail import driven_m
 from services.launcher.terminal import options
-from services.launcher.terminal.output import rounded, write_json
-from services.launcher.terminal.progress import mission_progress
-from services.launcher.terminal.tables import print_figures, wide_console
-from shared.messages import ExtractRequest, MissionRequest
-from shared.topics import EXTRACT
 
-app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-
-EXTRACT_TIMEOUT_S = 30.0
+app = typer.Typer()
 
 
 @app.command()
-def main(
+def goto(
     image: Annotated[Path, typer.Option(help="An equirectangular picture, twice as wide as high.")],
     map_name: options.MapName = "flat",
     world: options.World = "apartment",
@@ -38,12 +25,22 @@ def main(
     endpoint: options.Endpoint = None,
 ) -> None:
     """Drive to where a picture was taken."""
+    from services.launcher.client.failure import ExperimentError, one_line_errors
+    from services.launcher.client.maps import require_map
+    from services.launcher.client.mission import MissionClient, goal_features
+    from services.launcher.client.stack import StackChoice, open_stack
+    from services.launcher.drawing.pictures import frame_from_file
+    from services.launcher.evaluation.trail import driven_m
+    from services.launcher.terminal.output import rounded, write_json
+    from services.launcher.terminal.progress import mission_progress
+    from services.launcher.terminal.tables import print_figures, wide_console
+    from shared.messages import MissionRequest
+
     choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
     with one_line_errors(), open_stack(choice) as stack:
         require_map(stack, map_name)
         client = MissionClient(stack.bus, stack.robot)
-        frame = frame_from_file(image, stack.robot)
-        goal = stack.bus.ask(EXTRACT, ExtractRequest(frame=frame), EXTRACT_TIMEOUT_S)
+        goal = goal_features(stack.bus, frame_from_file(image, stack.robot))
         request = MissionRequest(action="goto", map=map_name, goal=goal, seed=seed, max_steps=max_steps)
         with mission_progress(wide_console(stderr=True), f"going to {image.name}") as watch:
             run = client.run(request, watch)
@@ -58,8 +55,7 @@ def main(
         "wall_s": rounded(run.wall_s, 2),
         "steps_per_s": rounded(run.steps_per_s, 2),
     }
-    if json_file is not None:
-        write_json(json_file, report)
+    write_json(json_file, report)
     print_figures(f"goto {image.name}", report)
     if not run.succeeded:
         raise ExperimentError(

@@ -1,27 +1,24 @@
 """`topnav models`: trained weights of the learned pipelines."""
 
 import os
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from services.features.networks.cache import path_of, state_of
-from services.features.networks.catalogue import MODELS, TrainedModel, find_model
-from services.launcher.client.failure import ExperimentError
-from services.launcher.terminal.tables import print_rows, wide_console
+if TYPE_CHECKING:
+    from services.features.networks.catalogue import TrainedModel
 
-app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, no_args_is_help=True)
+app = typer.Typer(name="models", no_args_is_help=True, help="Trained weights of the learned pipelines.")
 Names = Annotated[list[str] | None, typer.Argument(help="Models; none: all that are there.")]
-
-
-@app.callback()
-def choose() -> None:
-    """Trained weights of the learned pipelines."""
 
 
 @app.command("list")
 def list_models() -> None:
     """Every model: what needs it, its licence, its size, and whether it is here."""
+    from services.features.networks.cache import place_of, state_of
+    from services.features.networks.catalogue import MODELS
+    from services.launcher.terminal.tables import print_rows, wide_console
+
     rows = [
         {
             "model": model.name,
@@ -45,7 +42,10 @@ def pull(
     ] = False,
 ) -> None:
     """Download models through the libraries that own them, and check them."""
-    for model in _named(names):
+    from services.features.networks.catalogue import find_model
+    from services.launcher.client.failure import ExperimentError
+
+    for model in [find_model(name) for name in names]:
         if not model.commercial and not non_commercial:
             raise ExperimentError(f"{model.name}: {model.licence}: give --non-commercial if that is your use")
         _load(model)
@@ -55,7 +55,12 @@ def pull(
 @app.command()
 def verify(names: Names = None) -> None:
     """Compare what is here with its checksums; ends with 1 where a file is broken."""
-    here = [model for model in _named(names or []) or MODELS if names or state_of(model) != "absent"]
+    from services.features.networks.cache import state_of
+    from services.features.networks.catalogue import MODELS, find_model
+    from services.launcher.client.failure import ExperimentError
+
+    asked = [find_model(name) for name in names or []]
+    here = asked or [model for model in MODELS if state_of(model) != "absent"]
     if not here:
         raise ExperimentError("no model is here: 'topnav models pull NAME' brings one")
     broken = [model.name for model in here if _print_state(model) == "broken"]
@@ -63,16 +68,11 @@ def verify(names: Names = None) -> None:
         raise ExperimentError(f"broken: {', '.join(broken)}; delete the files and pull them again")
 
 
-def _named(names: list[str]) -> list[TrainedModel]:
-    try:
-        return [find_model(name) for name in names]
-    except ValueError as error:
-        raise ExperimentError(str(error)) from None
-
-
-def _load(model: TrainedModel) -> None:
+def _load(model: "TrainedModel") -> None:
     from services.features.networks.loaders import load
-    from services.features.networks.runtime import NON_COMMERCIAL, WeightsError
+    from services.features.networks.non_commercial import VARIABLE
+    from services.features.networks.runtime import WeightsError
+    from services.launcher.client.failure import ExperimentError
 
     if not model.commercial:
         os.environ[NON_COMMERCIAL] = "1"
@@ -82,7 +82,10 @@ def _load(model: TrainedModel) -> None:
         raise ExperimentError(str(error)) from error
 
 
-def _print_state(model: TrainedModel) -> str:
+def _print_state(model: "TrainedModel") -> str:
+    from services.features.networks.cache import place_of, state_of
+    from services.launcher.terminal.tables import wide_console
+
     state = state_of(model)
     wide_console().print(f"{model.name}: {state}, {path_of(model)}")
     return state

@@ -5,37 +5,37 @@ from typing import Annotated
 
 import typer
 
-from services.launcher.client.address import find_address
-from services.launcher.client.failure import ExperimentError
 from services.launcher.terminal import options
-from services.launcher.terminal.tables import print_rows, wide_console
-from services.recorder.channels import topics_named
-from services.recorder.recorder import record
-from services.recorder.recording import RecordingWriter
-from shared.lifecycle import stop_on_signals
 
-app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+app = typer.Typer()
 
 
 @app.command()
-def main(
+def record(
     file: Annotated[Path, typer.Argument(help="MCAP file to write.")],
     seconds: Annotated[float | None, typer.Option(min=0.1, help="Stop by itself; else Ctrl+C does.")] = None,
     without: Annotated[str, typer.Option(help='Topics to leave out, as "frame,features".')] = "",
     endpoint: options.Endpoint = None,
     data_dir: options.DataDir = options.DATA_DIR,
 ) -> None:
-    """Record the bus of a running stack until Ctrl+C."""
+    """Write what the bus of a running stack says into an MCAP file, until Ctrl+C."""
+    from services.launcher.client.address import find_address
+    from services.launcher.client.failure import ExperimentError
+    from services.launcher.terminal.tables import print_rows, wide_console
+    from services.recorder.channels import topics_named
+    from services.recorder.recorder import record
+    from services.recorder.recording import RecordingWriter
+    from shared.lifecycle import stop_on_signals
+
     left_out = topics_named(without)
     address = find_address(endpoint, data_dir)
     if address is None:
         raise ExperimentError(f"no stack runs in {data_dir}: start one ('topnav up') or give --endpoint")
     stop = stop_on_signals()
     with RecordingWriter(file) as writer, address.open() as bus:
-        told = f"recording {address.endpoint} into {file}; Ctrl+C ends it"
-        wide_console(stderr=True).print(told, highlight=False)
-        backlog = record(bus, writer, left_out, stop, seconds)
-    lost = backlog.dropped()
+        text = f"recording {address.endpoint} into {file}; Ctrl+C ends it"
+        wide_console(stderr=True).print(text, highlight=False)
+        lost = record(bus, writer, left_out, stop, seconds).dropped()
     rows = [
         {"key": key, "messages": count, "lost": lost.get(key, 0)}
         for key, count in sorted(writer.counts.items())

@@ -5,17 +5,17 @@ from typing import Annotated
 
 import typer
 
-from services.recorder.recovering import recover
-
-app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+app = typer.Typer()
 
 
 @app.command()
-def main(
+def recover(
     file: Annotated[Path, typer.Argument(help="The broken recording; it is left as it is.")],
     out: Annotated[Path, typer.Argument(help="The new, whole one.")],
 ) -> None:
-    """Copy every message up to the first damage into a new recording."""
+    """Save what is in a broken recording: every message up to the first damage, in a new one."""
+    from services.recorder.recovering import recover
+
     found = recover(file, out)
     state = "was whole" if found.whole else f"ends early ({found.problem})"
     typer.echo(f"{found.messages} messages in {out}; {file} {state}")

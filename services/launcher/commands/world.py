@@ -2,20 +2,17 @@
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
-from services.launcher.drawing.saving import save
 from services.launcher.terminal import options
-from services.launcher.terminal.output import write_json
-from simulator.world.world_check import WorldReport, examine
-from simulator.world.world_file import WorldFile, load_world
-from simulator.world.world_reference import reference, renewed
 
-app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, no_args_is_help=True)
+if TYPE_CHECKING:
+    from simulator.world.world_check import WorldReport
+    from simulator.world.world_file import WorldFile
+
+app = typer.Typer(name="world", no_args_is_help=True, help="Check a world file before anybody drives in it.")
 
 World = Annotated[str, typer.Argument(help="A .yaml file, or the name of a world that comes with topnav.")]
 Plan = Annotated[Path | None, typer.Option(help="Draw the floor plan to this PNG file.")]
@@ -23,23 +20,23 @@ Panorama = Annotated[Path | None, typer.Option(help="Render what the robot sees 
 PANORAMA_PX = 2048
 
 
-@app.callback()
-def worlds() -> None:
-    """World files."""
-
-
 @app.command()
 def check(
     world: World, plan: Plan = None, panorama: Panorama = None, json_file: options.JsonFile = None
 ) -> None:
     """Say how large a world is, what the robot cannot reach and where it is narrow; exit 1 on faults."""
+    from services.launcher.terminal.output import write_json
+    from simulator.world.world_check import examine
+    from simulator.world.world_file import load_world
+
     file = load_world(world)
     report = examine(file)
     _show(report)
-    if json_file is not None:
-        write_json(json_file, asdict(report))
+    write_json(json_file, asdict(report))
     if plan is not None:
-        _draw(file, plan)
+        from services.launcher.drawing.plans import draw_start
+
+        draw_start(plan, file)
     if panorama is not None and not report.faults:
         _render(file, panorama)
     raise typer.Exit(1 if report.faults else 0)
@@ -50,13 +47,18 @@ def kinds(
     into: Annotated[Path | None, typer.Option(help="Renew the tables of this page instead.")] = None,
 ) -> None:
     """List furniture with its options, and textures, as Markdown."""
+    from simulator.world.world_reference import reference, renewed
+
     if into is None:
         typer.echo(reference())
     else:
         into.write_text(renewed(into.read_text(encoding="utf-8")), encoding="utf-8")
 
 
-def _show(report: WorldReport) -> None:
+def _show(report: "WorldReport") -> None:
+    from rich.console import Console
+    from rich.table import Table
+
     console = Console()
     table = Table(title=f"world {report.name}", show_header=False)
     figures = {
@@ -82,22 +84,7 @@ def _show(report: WorldReport) -> None:
         console.print(f"[yellow]check[/yellow]  {doubt}", highlight=False)
 
 
-def _draw(world: WorldFile, path: Path) -> None:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    from services.launcher.drawing.world import draw_world
-
-    figure = Figure(figsize=(8, 8), layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.add_subplot()
-    draw_world(axes, world)
-    axes.plot([world.start.x_m], [world.start.y_m], "o", color="#1a9a3c")
-    axes.set_title(f"{world.name}, start in green")
-    save(figure, path)
-
-
-def _render(world: WorldFile, path: Path) -> None:
+def _render(world: "WorldFile", path: Path) -> None:
     import cv2
 
     from simulator.service_settings import SimulatorSettings

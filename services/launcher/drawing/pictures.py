@@ -1,12 +1,19 @@
-"""Frames as picture files."""
+"""Frames and figures as picture files."""
 
 from io import BytesIO
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from PIL import Image
 
 from shared.messages.sensors import Frame
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+DPI = 130
+"""A figure of 10 inches fills the width of a laptop's screen."""
 
 
 def picture_of(frame: Frame) -> Image.Image:
@@ -27,6 +34,12 @@ def png_bytes(frame: Frame) -> bytes:
 def save_picture(path: Path, frame: Frame) -> None:
     """Write the frame as PNG."""
     path.write_bytes(png_bytes(frame))
+
+
+def save_figure(figure: "Figure", path: Path) -> None:
+    """Write a drawing as PNG; its folder is made where it is missing."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=DPI)
 
 
 def frame_from_file(path: Path, robot: str) -> Frame:

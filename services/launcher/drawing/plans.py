@@ -8,11 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from services.launcher.drawing.saving import save
+from services.launcher.drawing.pictures import save_figure
 from services.launcher.drawing.world import draw_world
 from shared.messages.maps import Edge
 from shared.messages.simulation import Pose
@@ -43,12 +42,20 @@ class Way:
     via: tuple[int, ...]
 
 
+def draw_start(path: Path, world: WorldFile) -> None:
+    """Draw a world alone, and where the robot starts in it."""
+    figure, axes = _sheet(world)
+    axes.plot([world.start.x_m], [world.start.y_m], "o", color=START)
+    axes.set_title(f"{world.name}, start in green")
+    save_figure(figure, path)
+
+
 def draw_map(path: Path, world: WorldFile, poses: Mapping[int, Pose], edges: Iterable[Edge]) -> None:
-    """Draw the places and edges of a map at their true poses."""
+    """Draw the nodes and edges of a map at their true poses."""
     figure, axes = _sheet(world)
     _graph(axes, poses, edges)
-    axes.set_title(f"map of {world.name}: {len(poses)} places")
-    save(figure, path)
+    axes.set_title(f"map of {world.name}: {len(poses)} nodes")
+    save_figure(figure, path)
 
 
 def draw_way(
@@ -68,12 +75,11 @@ def draw_way(
     handles = [Line2D([], [], color=c, marker="o", linestyle="", label=name) for name, c in named]
     handles.append(Line2D([], [], color=PATH, label="way driven"))
     axes.legend(handles=handles, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, fontsize=8)
-    save(figure, path)
+    save_figure(figure, path)
 
 
 def _sheet(world: WorldFile) -> tuple[Figure, Axes]:
     figure = Figure(figsize=SIZE_IN, layout="constrained")
-    FigureCanvasAgg(figure)
     axes = figure.add_subplot()
     draw_world(axes, world)
     return figure, axes

@@ -30,4 +30,4 @@ def draw_round(
     draw_way(folder / "path.png", world, poses, edges, way_of(played))
     save_picture(folder / "goal.png", played.goal)
     save_picture(folder / "seeker_final.png", game.view())
-    save_picture(folder / "hider_final.png", game.hand.look(played.hider))
+    save_picture(folder / "hider_final.png", game.experimenter.look(played.hider))

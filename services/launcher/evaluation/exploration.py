@@ -1,19 +1,19 @@
 """One exploration of a world, followed and judged on true poses."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
-from services.launcher.client.experimenter import Hand
-from services.launcher.client.map_client import require_map
+from services.launcher.client.experimenter import Experimenter
+from services.launcher.client.failure import ExperimentError
+from services.launcher.client.maps import delete_map, read_map, require_map
 from services.launcher.client.mission import MissionClient, MissionRun, Watch
 from services.launcher.client.stack import Stack
-from services.launcher.evaluation.components import components
-from services.launcher.evaluation.coverage import coverage
 from services.launcher.evaluation.environments import environment_of
-from services.launcher.evaluation.false_edges import EdgeCheck, check_edges
+from services.launcher.evaluation.map_quality import EdgeCheck, check_edges, components, coverage
 from services.launcher.evaluation.trail import collisions, driven_m, manual_moves
-from services.launcher.evaluation.truth_file import MapTruth, join_truth
+from services.launcher.evaluation.truth_file import MapTruth, join_truth, load_truth
 from services.launcher.terminal.output import rounded
 from shared.messages import MapReply, MissionRequest
 from shared.messages.simulation import Pose
@@ -26,14 +26,34 @@ class Exploration:
 
     Attributes:
         final: where the robot really stands after it.
-        hand_moves: times the experiment itself moved the robot during the mission.
+        experimenter_moves: times the experiment itself moved the robot during the mission.
     """
 
     run: MissionRun
     graph: MapReply
     truth: MapTruth
     final: Pose
-    hand_moves: int
+    experimenter_moves: int
+
+
+def make_room(stack: Stack, map_name: str, truth_file: Path, *, go_on: bool, fresh: bool) -> MapTruth | None:
+    """Make room for a map, or return the truth of the one to go on with.
+
+    Raises:
+        ExperimentError: there is one, and neither was wished for.
+    """
+    found = read_map(stack, map_name)
+    if found is not None and found.nodes and not (go_on or fresh):
+        raise ExperimentError(
+            f"map {map_name!r} exists with {len(found.nodes)} nodes: go on with it (--continue), "
+            "delete it first (--fresh), or choose another name (--map)"
+        )
+    if fresh:
+        if found is not None:
+            delete_map(stack, map_name)
+        truth_file.unlink(missing_ok=True)
+        return None
+    return load_truth(truth_file) if found is not None else None
 
 
 def explore(
@@ -47,17 +67,17 @@ def explore(
 ) -> Exploration:
     """Reset the simulator, explore, and join the map's nodes to their true poses."""
     with stack.session() as own:
-        client, hand = MissionClient(own.bus, own.robot), Hand(own.bus, own.robot)
-        client.wait_for_frame(hand.reset(seed).stamp_ns)
-        moved = hand.moves
+        client, experimenter = MissionClient(own.bus, own.robot), Experimenter(own.bus, own.robot)
+        client.wait_for_frame(experimenter.reset(seed).stamp_ns)
+        moved = experimenter.moves
         request = MissionRequest(action="explore", map=map_name, seed=seed, max_steps=max_steps)
         run = client.run(request, watch)
-        hand_moves = hand.moves - moved
-        final = hand.settled_truth(run.last_seq).pose
+        moved = experimenter.moves - moved
+        final = experimenter.settled_truth(run.last_seq).pose
         client.collect()
     graph = require_map(stack, map_name)
     truth = join_truth(world, graph.nodes, client.trail, before)
-    return Exploration(run, graph, truth, final, hand_moves)
+    return Exploration(run, graph, truth, final, moved)
 
 
 def figures(result: Exploration, space: FreeSpace, map_name: str, seed: int) -> dict[str, object]:
@@ -74,7 +94,7 @@ def figures(result: Exploration, space: FreeSpace, map_name: str, seed: int) -> 
         "edges": len(result.graph.edges),
         "coverage": rounded(coverage(space.centres_m(), positions, place.covered_m)),
         "components": components(poses, [(e.a, e.b) for e in result.graph.edges]),
-        "manual_moves": max(result.hand_moves, manual_moves(run.truths)),
+        "manual_moves": max(result.experimenter_moves, manual_moves(run.truths)),
         "collisions": collisions(run.truths),
         "false_edges": sum(check.false for check in checks),
         "steps": run.status.step,
@@ -93,9 +113,8 @@ def _bearing_errors(checks: list[EdgeCheck]) -> dict[str, float]:
     errors = np.rad2deg([error for check in checks for error in check.errors_rad])
     if not len(errors):
         return {}
-    return {
-        name: rounded(np.percentile(errors, q), 2) for name, q in (("median", 50), ("p99", 99), ("max", 100))
-    }
+    percentiles = (("median", 50), ("p99", 99), ("max", 100))
+    return {name: rounded(np.percentile(errors, q), 2) for name, q in percentiles}
 
 
 def _false_edge(check: EdgeCheck) -> dict[str, object]:

@@ -1,30 +1,38 @@
 """One round of hide and seek: a robot hides, the other gets its picture and looks for it."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from services.launcher.client.experimenter import Hand
+from services.launcher.client.experimenter import Experimenter
 from services.launcher.client.failure import ExperimentError
-from services.launcher.client.map_client import read_map
-from services.launcher.client.mission import MissionClient, MissionRun, Watch
+from services.launcher.client.maps import read_map
+from services.launcher.client.mission import MissionClient, MissionRun, Watch, goal_features
 from services.launcher.client.stack import Stack
-from services.launcher.evaluation.spl import spl
-from services.launcher.evaluation.trail import collisions, driven_m, manual_moves
+from services.launcher.evaluation.trail import collisions, driven_m, manual_moves, spl
 from services.launcher.terminal.output import rounded
-from shared.messages import ExtractRequest, MissionRequest
+from shared.messages import MissionRequest
 from shared.messages.sensors import Frame
 from shared.messages.simulation import Pose, Truth
-from shared.topics import EXTRACT, FRAME
+from shared.topics import FRAME
 from simulator.world.freespace import FreeSpace
 
 ARRIVED_M = 0.5
+"""Two robots of 0.25 m radius touch: seeker and hider stand on the same spot."""
+
 MIN_APART_M = 1.5
+"""Three times ARRIVED_M of way: nobody is found without driving."""
+
 MARGIN_M = 0.05
+"""One cell of the free space's grid: a hider touches nothing, wherever in its cell it stands."""
+
 MAX_DRAWS = 1000
-EXTRACT_TIMEOUT_S = 30.0
+"""Finds one part in a hundred of the floor but for 4 times in 100,000: 0.99 ** 1000."""
+
 FRAME_TIMEOUT_S = 10.0
+"""Frames come every 0.5 s at most; a simulator that restarts needs seconds."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +44,7 @@ class Round:
         final: where the seeker really ended.
         goal: the picture it was given.
         shortest_m: length of the shortest collision-free way.
+        experimenter_moves: times the experiment itself moved the seeker during it.
         arrived_m: how near the hider counts as found.
         edges_suspended: edges of the map that experience of this round put aside.
     """
@@ -46,7 +55,7 @@ class Round:
     goal: Frame
     run: MissionRun
     shortest_m: float
-    hand_moves: int
+    experimenter_moves: int
     arrived_m: float = ARRIVED_M
     edges_suspended: int = 0
 
@@ -77,7 +86,7 @@ class Round:
             "collisions": collisions(self.run.truths),
             "reason": f"{failure}: {status.reason}" if failure else status.reason,
             "failure": failure,
-            "manual_moves": max(self.hand_moves, manual_moves(self.run.truths)),
+            "manual_moves": max(self.experimenter_moves, manual_moves(self.run.truths)),
             "shortest_m": rounded(self.shortest_m, 3),
             "driven_m": rounded(driven_m(self.run.truths), 3),
             "path_ratio": rounded(driven_m(self.run.truths) / self.shortest_m, 3),
@@ -104,7 +113,16 @@ def hiding_place(space: FreeSpace, seeker: Pose, rng: np.random.Generator) -> Po
 
 
 class Game:
-    """Rounds in one stack; the seeker stays where the last one ended."""
+    """Rounds in one stack; the seeker stays where the last one ended.
+
+    Args:
+        stack: services that know the map.
+        space: the free floor as it is.
+        map_name: of the map to find the way in.
+        rng: draws the hiding places.
+        arrived_m: how near the hider counts as found.
+        hideouts: where a robot may hide; by default all of `space`.
+    """
 
     def __init__(
         self,
@@ -113,25 +131,27 @@ class Game:
         map_name: str,
         rng: np.random.Generator,
         arrived_m: float = ARRIVED_M,
+        hideouts: FreeSpace | None = None,
     ) -> None:
         self._stack, self._space, self._map, self._rng = stack, space, map_name, rng
-        self._arrived_m = arrived_m
-        self.client, self.hand = MissionClient(stack.bus, stack.robot), Hand(stack.bus, stack.robot)
+        self._arrived_m, self._hideouts = arrived_m, hideouts or space
+        self.client = MissionClient(stack.bus, stack.robot)
+        self.experimenter = Experimenter(stack.bus, stack.robot)
 
     def begin(self, seed: int) -> Truth:
         """Put the seeker at the world's start and wait until it sees something; returns the state there."""
-        truth = self.hand.reset(seed)
+        truth = self.experimenter.reset(seed)
         self.client.wait_for_frame(truth.stamp_ns)
         return truth
 
     def choose(self) -> tuple[Pose, Pose]:
         """Where the seeker stands, and a random place to hide."""
-        start = self.hand.settled_truth().pose
-        return start, hiding_place(self._space, start, self._rng)
+        start = self.experimenter.settled_truth().pose
+        return start, hiding_place(self._hideouts, start, self._rng)
 
     def hide(self, hider: Pose) -> Frame:
         """Hide the other robot; returns its picture once the seeker may see it."""
-        picture = self.hand.place_hider(hider)
+        picture = self.experimenter.place_hider(hider)
         self.client.wait_for_frame(picture.stamp_ns)
         return picture
 
@@ -141,17 +161,21 @@ class Game:
 
     def seek(self, start: Pose, hider: Pose, seed: int, max_steps: int, watch: Watch | None = None) -> Round:
         """Hide, extract the picture's features, go there."""
-        picture, usable = self.hide(hider), self._usable_edges()
-        goal = self._stack.bus.ask(EXTRACT, ExtractRequest(frame=picture), EXTRACT_TIMEOUT_S)
-        moved = self.hand.moves
-        request = MissionRequest(action="goto", map=self._map, goal=goal, seed=seed, max_steps=max_steps)
-        run = self.client.run(request, watch)
-        played = self.finish(start, hider, picture, run, self.hand.moves - moved)
-        return replace(played, edges_suspended=max(0, usable - self._usable_edges()))
 
-    def _usable_edges(self) -> int:
-        found = read_map(self._stack, self._map)
-        return sum(not edge.suspended for edge in found.edges) if found is not None else 0
+        def drive(picture: Frame) -> MissionRun:
+            goal = goal_features(self._stack.bus, picture)
+            request = MissionRequest(action="goto", map=self._map, goal=goal, seed=seed, max_steps=max_steps)
+            return self.client.run(request, watch)
+
+        return self.seek_by(start, hider, drive)
+
+    def seek_by(self, start: Pose, hider: Pose, drive: Callable[[Frame], MissionRun]) -> Round:
+        """Hide, and let `drive` bring the seeker to the picture."""
+        picture, usable = self.hide(hider), self._usable_edges()
+        moved = self.experimenter.moves
+        run = drive(picture)
+        played = self.finish(start, hider, picture, run, self.experimenter.moves - moved)
+        return replace(played, edges_suspended=max(0, usable - self._usable_edges()))
 
     def view(self) -> Frame:
         """What the seeker sees now."""
@@ -161,12 +185,16 @@ class Game:
             raise ExperimentError(f"no frame of {self._stack.robot} within {FRAME_TIMEOUT_S:.0f} s")
         return frame
 
-    def finish(self, start: Pose, hider: Pose, goal: Frame, run: MissionRun, hand_moves: int) -> Round:
+    def finish(self, start: Pose, hider: Pose, goal: Frame, run: MissionRun, moves: int) -> Round:
         """Read where the seeker stands now."""
-        final = self.hand.settled_truth(run.last_seq).pose
+        final = self.experimenter.settled_truth(run.last_seq).pose
         self.client.collect()
         shortest_m = self._space.shortest_path_m((start.x_m, start.y_m), (hider.x_m, hider.y_m))
-        return Round(start, hider, final, goal, run, shortest_m, hand_moves, self._arrived_m)
+        return Round(start, hider, final, goal, run, shortest_m, moves, self._arrived_m)
+
+    def _usable_edges(self) -> int:
+        found = read_map(self._stack, self._map)
+        return sum(not edge.suspended for edge in found.edges) if found is not None else 0
 
 
 def _plain(pose: Pose) -> dict[str, float]:

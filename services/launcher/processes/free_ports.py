@@ -34,6 +34,17 @@ def free_ports(count: int, ephemeral_range: Path = EPHEMERAL_RANGE) -> list[int]
     return ports
 
 
+def is_free(port: int) -> bool:
+    """Whether a service could listen on a port now; one that has just ended there does not count."""
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((HOST, port))
+        except OSError:
+            return False
+    return True
+
+
 def _ephemeral_first(path: Path) -> int:
     return int(path.read_text(encoding="ascii").split()[0]) if path.exists() else USUAL_EPHEMERAL_FIRST
 

@@ -5,8 +5,8 @@ import signal
 from collections.abc import Callable
 from enum import StrEnum
 
+from services.launcher.compose.local import ProcessSpec
 from services.launcher.processes.health import Health
-from services.launcher.processes.local import ProcessSpec
 from services.launcher.processes.process import ChildProcess
 from services.launcher.processes.restart import RestartPolicy
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from services.launcher.processes.free_ports import HOST, free_ports
+from services.launcher.processes.free_ports import HOST, free_ports, is_free
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,11 @@ class Ports:
             int(variables.get("TOPNAV_GATEWAY_PORT") or default.gateway),
             int(variables.get("TOPNAV_MAP_STORE_PORT") or default.map_store),
         )
+
+    def taken(self) -> dict[str, int]:
+        """Those that somebody else listens on, by the middle of the variable that moves them."""
+        names = {"ROUTER": self.router, "GATEWAY": self.gateway, "MAP_STORE": self.map_store}
+        return {name: port for name, port in names.items() if not is_free(port)}
 
 
 @dataclass(frozen=True)

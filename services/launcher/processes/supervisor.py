@@ -17,11 +17,11 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from services.launcher.processes.compose_file import COMPOSE_FILE, load_compose
+from services.launcher.compose.compose_file import COMPOSE_FILE, load_compose
+from services.launcher.compose.local import LocalMachine, ProcessSpec, certificate_folder, local_process
+from services.launcher.compose.plan import active_services, start_stages
 from services.launcher.processes.health import AlwaysReady, CommandHealth, Health, Liveliness
-from services.launcher.processes.local import LocalMachine, ProcessSpec, certificate_folder, local_process
 from services.launcher.processes.loop import SupervisorLoop
-from services.launcher.processes.plan import active_services, start_stages
 from services.launcher.processes.preparing import OPERATOR, prepare
 from services.launcher.processes.process import ChildProcess
 from services.launcher.processes.restart import RestartPolicy

@@ -9,6 +9,7 @@ World = Annotated[str, typer.Option(help="A world that comes with topnav, or a .
 MapName = Annotated[str, typer.Option("--map", help="Name of the map.")]
 Seed = Annotated[int, typer.Option(min=0, help="Of every random draw.")]
 JsonFile = Annotated[Path | None, typer.Option("--json", help="Write the figures to this file.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
 Lockstep = Annotated[
     bool | None,
     typer.Option(help="As fast as the machine allows, same seed, same path. Default for a stack of its own."),
@@ -20,6 +21,7 @@ PipelineName = Annotated[str | None, typer.Option("--pipeline", help="Feature pi
 DataDir = Annotated[
     Path, typer.Option(envvar="TOPNAV_DATA_DIR", help="Maps and logs; a stack that runs there is joined.")
 ]
+StackDir = Annotated[Path, typer.Option(envvar="TOPNAV_DATA_DIR", help="Maps, logs and state live here.")]
 Endpoint = Annotated[
     str | None, typer.Option(help="Join the stack whose router is here, for example tcp/127.0.0.1:7447.")
 ]

@@ -2,14 +2,17 @@
 
 import json
 import time
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 
-def write_json(path: Path, figures: dict[str, Any]) -> None:
-    """Write in one step, so that no reader ever sees half of it."""
+def write_json(path: Path | None, figures: Mapping[str, Any]) -> None:
+    """Write in one step, so that no reader ever sees half of it; None writes nothing."""
+    if path is None:
+        return
     path.parent.mkdir(parents=True, exist_ok=True)
     new = path.with_name(path.name + ".new")
     new.write_text(json.dumps(figures, indent=2, allow_nan=False) + "\n", encoding="utf-8")

@@ -57,7 +57,7 @@ def export(source: Path, target: Path, draw_more: "Draw | None" = None) -> Expor
     Raises:
         RecordingError: the foxglove-sdk is missing, `source` holds no readable message, or `target` exists.
     """
-    draw = _sdk()
+    draw = load_drawings()
     with source.open("rb") as recording, _new_file(target) as stream:
         whole = WholePart(recording)
         exporter = Exporter(stream, (draw,) if draw_more is None else (draw, draw_more))
@@ -142,8 +142,12 @@ class Exporter:
         self._writer.add_message(self._channels[name], arrived_ns, data, arrived_ns, self.counts[name])
 
 
-def _sdk() -> "Draw":
-    """The drawings, imported only here: nothing else of the recorder needs the extra."""
+def load_drawings() -> "Draw":
+    """The drawings, imported only here: nothing else of the recorder needs the extra.
+
+    Raises:
+        RecordingError: the foxglove-sdk is missing.
+    """
     try:
         from services.recorder.foxglove.drawings import draw
     except ImportError as error:

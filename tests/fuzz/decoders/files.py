@@ -8,7 +8,7 @@ import yaml
 
 from services.gateway.live.mission_log import read_missions
 from services.gateway.routes.runs import list_runs
-from services.launcher.processes.compose_file import COMPOSE_FILE, load_compose
+from services.launcher.compose.compose_file import COMPOSE_FILE, load_compose
 from services.launcher.processes.stack_settings import profile_variables
 from services.planner.profile_file import profile_of_file
 from shared.estop.latch import UNREADABLE, Latch

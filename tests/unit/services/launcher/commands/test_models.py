@@ -64,5 +64,5 @@ def test_without_a_network_one_line_says_what_to_do(monkeypatch):
 
 
 def test_an_unknown_model_lists_those_there_are():
-    with pytest.raises(ExperimentError, match="aliked-t16"):
+    with pytest.raises(ValueError, match="aliked-t16"):
         pull(["superglow"])

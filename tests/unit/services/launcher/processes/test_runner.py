@@ -4,7 +4,7 @@ import signal
 
 import pytest
 
-from services.launcher.processes.local import ProcessSpec
+from services.launcher.compose.local import ProcessSpec
 from services.launcher.processes.restart import RestartPolicy
 from services.launcher.processes.runner import HUNG_AFTER_S, ServiceRunner, State
 

@@ -1,0 +1,56 @@
+"""`topnav study heading-frames`: heading errors of all seven methods on rendered frame pairs."""
+
+from typing import Annotated
+
+import typer
+
+from experiments.work.record import on_record
+from services.launcher.terminal import options
+
+app = typer.Typer()
+
+Pairs = Annotated[int, typer.Option(min=1, help="How many pairs of frames.")]
+Quick = Annotated[bool, typer.Option("--quick", help="60 pairs only.")]
+QUICK_PAIRS = 60
+
+
+@app.command("heading-frames")
+@on_record("study heading-frames")
+def heading_frames(
+    world: options.World = "apartment",
+    pairs: Pairs = 500,
+    quick: Quick = False,
+    seed: options.Seed = 1,
+    pipeline: options.PipelineName = None,
+    json_file: options.JsonFile = None,
+    data_dir: options.DataDir = options.DATA_DIR,
+) -> int:
+    """Heading errors of all seven methods from the same matches, frames 0.3 to 3 m apart."""
+    from experiments.rendered.headings import measure
+    from experiments.rendered.tables import distance_table, method_table, status_counts
+    from services.features.pipeline.named_pipelines import find_profile
+    from services.features.pipeline.pipeline import Pipeline
+    from services.launcher.terminal.output import write_json
+    from services.launcher.terminal.tables import print_rows, wide_console
+    from simulator.world.world_file import load_world
+
+    chosen, count = Pipeline(find_profile(pipeline or "sift")), QUICK_PAIRS if quick else pairs
+    with wide_console(stderr=True).status("") as status:
+        results = measure(load_world(world), chosen, count, seed, data_dir, status.update)
+    verified, raw = method_table(results), method_table(results, raw=True)
+    by_distance = distance_table(results)
+    report = {
+        "pairs": len(results),
+        "methods": verified,
+        "world": world,
+        "seed": seed,
+        "pipeline": pipeline or "sift",
+        "methods_raw_matches": raw,
+        "by_distance": by_distance,
+        "two_view_status": status_counts(results),
+    }
+    write_json(json_file, report)
+    for title, table in (("verified matches", verified), ("raw matches", raw)):
+        print_rows(f"heading error, {title}", [{"method": name, **row} for name, row in table.items()])
+    print_rows("by distance, epipolar", by_distance)
+    return len(results)

@@ -1,0 +1,121 @@
+"""`topnav hide-and-seek`: the thesis's evaluation, rounds of finding a hidden robot from its picture."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from services.launcher.terminal import options
+
+if TYPE_CHECKING:
+    from experiments.hide_and_seek.suite import SuiteChoice
+
+app = typer.Typer()
+
+SHOWN = ("success", "final_distance_m", "spl", "steps", "collisions", "shortest_m", "driven_m", "reason")
+ROUNDS, SUITE_ROUNDS = 20, 25
+
+
+@app.command("hide-and-seek")
+def hide_and_seek(
+    world: options.World = "apartment",
+    map_name: options.MapName = "flat",
+    rounds: Annotated[
+        int | None, typer.Option(min=1, help="How many hiders to find; default 20, of a random suite 25.")
+    ] = None,
+    seed: options.Seed = 1,
+    lockstep: options.Lockstep = None,
+    json_file: options.JsonFile = None,
+    profile: options.ProfileName = None,
+    pipeline: options.PipelineName = None,
+    max_steps: options.MaxSteps = 1500,
+    drawings: Annotated[
+        Path | None, typer.Option(help="Folder for plans and final frames; default: a new one in runs/.")
+    ] = None,
+    draw: Annotated[bool, typer.Option(help="Draw every round.")] = True,
+    data_dir: options.DataDir = options.DATA_DIR,
+    endpoint: options.Endpoint = None,
+    suite: Annotated[
+        str | None,
+        typer.Option(help="thesis: its 14 rounds; random: rounds in each of four worlds. Maps them first."),
+    ] = None,
+    worlds: Annotated[
+        str, typer.Option(help="Of a suite: only these, separated by commas; names or .yaml files.")
+    ] = "",
+    compare: Annotated[
+        str | None, typer.Option(help="Of a suite: play everything under this profile as well.")
+    ] = None,
+    jobs: Annotated[int, typer.Option(min=1, help="Of a suite: stacks at a time.")] = 1,
+    cluster: Annotated[
+        str | None, typer.Option(help="Of a suite: Dask scheduler, for example tcp://10.0.0.5:8786.")
+    ] = None,
+) -> None:
+    """Find robots that hide at random places, from the pictures they send: the thesis's evaluation."""
+    from experiments.hide_and_seek.plan import plan_suite
+    from experiments.hide_and_seek.play import Scene, play_rounds
+    from experiments.hide_and_seek.report import report, rounds_figures
+    from experiments.hide_and_seek.suite import SuiteChoice
+    from services.launcher.client.failure import ExperimentError, one_line_errors
+    from services.launcher.client.run_record import keep_run
+    from services.launcher.client.stack import StackChoice, open_stack
+    from services.launcher.evaluation.truth_file import load_truth, truth_path
+    from services.launcher.terminal.output import new_run_folder, write_json
+    from services.launcher.terminal.tables import print_rows
+    from simulator.world.world_file import load_world
+
+    if suite is not None:
+        plans = plan_suite(
+            suite,
+            seed,
+            rounds=rounds or SUITE_ROUNDS,
+            worlds=[name.strip() for name in worlds.split(",") if name.strip()],
+            profiles=[profile or "default", *([compare] if compare else [])],
+            max_steps=max_steps,
+            draw=draw,
+        )
+        _play_suite(SuiteChoice(suite, plans, data_dir / "suites", jobs, cluster), data_dir, json_file)
+        return
+    started = datetime.now(UTC)
+    choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
+    scene = Scene(load_world(world), map_name, load_truth(truth_path(data_dir, map_name)))
+    folder = (drawings or new_run_folder(options.RUNS_DIR)) if draw else None
+    played: list[dict[str, Any]] = []
+    with one_line_errors(), open_stack(choice) as stack:
+        for one in play_rounds(stack, scene, rounds or ROUNDS, seed, max_steps, folder):
+            played.append(one)
+            write_json(json_file, report(world, profile or "default", seed, played))
+    keep_run(
+        data_dir,
+        "hide-and-seek",
+        started,
+        rounds_figures(played),
+        worlds=[world],
+        map_name=map_name,
+        seed=seed,
+        json_file=json_file,
+    )
+    print_rows(f"hide and seek in {world}, seed {seed}", played, SHOWN)
+    print_rows("summary", [report(world, profile or "default", seed, played)["summary"]])
+    if not any(r["success"] for r in played):
+        raise ExperimentError("no round succeeded")
+
+
+def _play_suite(choice: "SuiteChoice", data_dir: Path, json_file: Path | None) -> None:
+    from experiments.hide_and_seek.report import suite_figures
+    from experiments.hide_and_seek.suite import run_suite
+    from services.launcher.client.failure import one_line_errors
+    from services.launcher.client.run_record import keep_run
+
+    started = datetime.now(UTC)
+    with one_line_errors():
+        result = run_suite(choice, json_file)
+    keep_run(
+        data_dir,
+        f"hide-and-seek --suite {choice.suite}",
+        started,
+        suite_figures(result["runs"]),
+        worlds=list(dict.fromkeys(plan.world for plan in choice.plans)),
+        seed=choice.plans[0].seed,
+        json_file=json_file,
+    )

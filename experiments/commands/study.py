@@ -1,0 +1,29 @@
+"""`topnav study`: the thesis's studies and ours."""
+
+import typer
+
+from experiments.commands import (
+    disturbance,
+    disturbance_matches,
+    failures,
+    heading,
+    heading_frames,
+    matching,
+    recovery,
+    scale,
+)
+
+app = typer.Typer(
+    name="study", no_args_is_help=True, help="Experiments on headings, matching, disturbances and scale."
+)
+for study in (
+    heading,
+    heading_frames,
+    disturbance,
+    disturbance_matches,
+    failures,
+    matching,
+    recovery,
+    scale,
+):
+    app.add_typer(study.app)

@@ -1,0 +1,91 @@
+"""Hide and seek on a clean map while camera and world are disturbed: the rounds of one level."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from experiments.hide_and_seek.play import play_told
+from experiments.hide_and_seek.report import summary
+from experiments.rendered.disturbed import CLEAN, disturbances
+from experiments.work.results_file import Row
+from services.launcher.client.maps import require_map
+from services.launcher.client.stack import StackChoice, open_stack
+from services.launcher.evaluation.rounds import Game
+from services.launcher.terminal.tables import wide_console
+from simulator.disturbances.levels import Disturbances
+from simulator.disturbances.rearranging import rearranged
+from simulator.world.changes import changed_world
+from simulator.world.freespace import free_space
+from simulator.world.world_file import WorldFile, load_world
+
+
+@dataclass(frozen=True)
+class Study:
+    """What all levels share."""
+
+    world: str
+    map_name: str
+    rounds: int
+    seed: int
+    max_steps: int
+    data_dir: Path
+
+
+def settings_to_run(names: Iterable[str], levels: Iterable[float], results: list[Row]) -> list[Row]:
+    """Pairs of disturbance and level without a result; level 0 is one run for all of them."""
+    wanted: list[tuple[str, float]] = []
+    for level in sorted(set(levels)):
+        wanted += [(CLEAN, 0.0)] if level == 0.0 else [(name, level) for name in names]
+    done = {(row["disturbance"], row["level"]) for row in results}
+    return [{"disturbance": name, "level": level} for name, level in wanted if (name, level) not in done]
+
+
+def run_level(study: Study, disturbance: str, level: float) -> Row:
+    """Start a stack with one disturbance at a level and play the rounds."""
+    levels, console = disturbances(disturbance, level), wide_console(stderr=True)
+    choice = StackChoice(
+        study.data_dir,
+        study.world,
+        study.seed,
+        lockstep=True,
+        environment={"SIMULATOR_DISTURBANCE": levels.text()},
+    )
+    clean = load_world(study.world)
+    space, mapped = free_space(true_world(clean, levels, study.seed)), free_space(clean)
+    # Where furniture stood while the map was made, no node of the map need be near.
+    hideouts = replace(space, free=space.free & mapped.free)
+    with open_stack(choice) as stack:
+        require_map(stack, study.map_name)
+        rng = np.random.default_rng(study.seed)
+        game = Game(stack, space, study.map_name, rng, hideouts=hideouts)
+        game.begin(study.seed)
+        played = [
+            play_told(
+                console, game, f"{disturbance} {level:g}: {n}/{study.rounds}", study.seed + n, study.max_steps
+            )
+            for n in range(1, study.rounds + 1)
+        ]
+    return level_row(disturbance, level, [one.figures() for one in played])
+
+
+def level_row(disturbance: str, level: float, rounds: list[Row]) -> Row:
+    """One entry of "results" from the figures of its rounds; the keys up to rounds are fixed."""
+    failures, whole = [str(one["failure"]) for one in rounds if one["failure"]], summary(rounds)
+    return {
+        "disturbance": disturbance,
+        "level": level,
+        "success_rate": whole["success_rate"],
+        "spl_mean": whole["spl_mean"],
+        "rounds": len(rounds),
+        "final_distance_m_median": whole["final_distance_median_m"],
+        "collisions": whole["collisions"],
+        "failures": {name: failures.count(name) for name in sorted(set(failures))},
+        "each": rounds,
+    }
+
+
+def true_world(world: WorldFile, levels: Disturbances, seed: int) -> WorldFile:
+    """The world as the simulator has it: hiders must not be put into furniture that was moved."""
+    return changed_world(world, rearranged(world, levels.furniture, seed))

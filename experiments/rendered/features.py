@@ -1,0 +1,84 @@
+"""Features of rendered frames, kept on disk: rendering them takes most of a study's time.
+
+Uses the pure code of `services.features`, and the simulator in this process.
+"""
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+
+from experiments.rendered.frames import CAMERA, camera
+from services.features.matching.verification import feature_set
+from services.features.pipeline.interfaces import FeatureSet
+from services.features.pipeline.pipeline import Pipeline
+from shared.messages.features import Features
+from shared.messages.simulation import Pose
+from simulator.world.world_file import WorldFile
+
+CHUNK = 50
+"""Frames in a file: what an interruption loses at most."""
+
+Tick = Callable[[str], None]
+
+
+def features_seen(world: WorldFile, pipeline: Pipeline) -> Callable[[Pose], FeatureSet]:
+    """What the pipeline extracts from a world's frame at any pose; loads SAPIEN."""
+    shoot = camera(world)
+    return lambda pose: feature_set(pipeline.features_of(shoot(pose)))
+
+
+def cache_folder(root: Path, kind: str, world: WorldFile, pipeline: Pipeline, *choices: object) -> Path:
+    """Where features of one kind are kept: another world, camera, pipeline or choice is another folder."""
+    parts = (world.model_dump_json(), CAMERA.model_dump_json(), asdict(pipeline.profile), *choices)
+    text = "|".join(str(part) for part in parts)
+    return root / f"{kind}-{world.name}-{pipeline.identity}-{hashlib.sha256(text.encode()).hexdigest()[:12]}"
+
+
+def kept_features(
+    world: WorldFile, pipeline: Pipeline, poses: Sequence[Pose], folder: Path, tick: Tick
+) -> list[FeatureSet]:
+    """Read from `folder` what is there, render the rest and keep it; `tick` hears how far it is."""
+    folder.mkdir(parents=True, exist_ok=True)
+    look: Callable[[Pose], FeatureSet] | None = None
+    found: list[FeatureSet] = []
+    for start in range(0, len(poses), CHUNK):
+        path = folder / f"{start:06d}-{min(CHUNK, len(poses) - start)}.npz"
+        if not path.exists():
+            look = look or features_seen(world, pipeline)
+            _save(path, [look(pose) for pose in poses[start : start + CHUNK]])
+        found += _load(path)
+        tick(f"{world.name}: {len(found)} of {len(poses)} frames")
+    return found
+
+
+def as_message(features: FeatureSet, pipeline: str, seq: int = 0) -> Features:
+    """The message that the feature service would send of a frame."""
+    return Features(
+        seq=seq,
+        pipeline=pipeline,
+        lonlat_rad=features.lonlat_rad,
+        scores=features.scores,
+        descriptors=features.descriptors,
+    )
+
+
+def _save(path: Path, features: Sequence[FeatureSet]) -> None:
+    new = path.with_suffix(".new.npz")
+    np.savez(
+        new,
+        counts=np.array([len(each) for each in features]),
+        lonlat_rad=np.concatenate([each.lonlat_rad for each in features]),
+        scores=np.concatenate([each.scores for each in features]),
+        descriptors=np.concatenate([each.descriptors for each in features]),
+    )
+    new.replace(path)
+
+
+def _load(path: Path) -> list[FeatureSet]:
+    with np.load(path, allow_pickle=False) as kept:
+        ends = np.cumsum(kept["counts"])[:-1]
+        columns = [np.split(kept[name], ends) for name in ("lonlat_rad", "scores", "descriptors")]
+    return [FeatureSet(*each) for each in zip(*columns, strict=True)]

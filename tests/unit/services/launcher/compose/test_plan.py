@@ -1,0 +1,57 @@
+"""Start order."""
+
+import pytest
+
+from services.launcher.compose.compose_file import COMPOSE_FILE, Service, load_compose
+from services.launcher.compose.plan import active_services, start_stages
+
+
+def service(*needs, profiles=()):
+    return Service(command=("x",), depends_on={need: {} for need in needs}, profiles=profiles)
+
+
+def test_each_stage_needs_only_earlier_ones_and_keeps_the_order_of_the_file():
+    services = {"d": service("b", "c"), "c": service("a"), "b": service("a"), "a": service()}
+    assert start_stages(services) == [["a"], ["c", "b"], ["d"]]
+
+
+def test_the_router_starts_first_and_planner_waits_for_the_map_store():
+    services = active_services(load_compose(COMPOSE_FILE, {"TOPNAV_TOKEN": ""}).services)
+    rank = {name: index for index, stage in enumerate(start_stages(services)) for name in stage}
+    assert rank["router"] == 0
+    assert [name for name, index in rank.items() if index == 0] == ["router"]
+    assert rank["map-store"] < rank["planner"]
+    assert rank["map-store"] < rank["features"]
+    assert set(rank) == set(services)
+
+
+def test_a_circle_is_refused_with_its_members():
+    with pytest.raises(ValueError, match=r"in a circle: .*a.*"):
+        start_stages({"a": service("b"), "b": service("a")})
+
+
+def test_a_dependency_that_will_not_run_is_named():
+    with pytest.raises(ValueError, match=r"a depends on \['gone'\]"):
+        start_stages({"a": service("gone")})
+
+
+def test_what_is_not_required_counts_only_where_it_runs():
+    optional = Service(command=("x",), depends_on={"b": {"required": False}, "c": {}})
+    services = {"a": optional, "b": service(profiles=("secure",)), "c": service()}
+    assert start_stages(active_services(services)) == [["c"], ["a"]]
+    assert list(active_services(services, only=["a"])) == ["a", "c"]
+    assert start_stages(active_services(services, profiles=["secure"])) == [["b", "c"], ["a"]]
+    assert list(active_services(services, profiles=["secure"], only=["a"])) == ["a", "b", "c"]
+
+
+def test_a_profile_is_off_until_chosen():
+    services = {"a": service(), "b": service(profiles=("record",))}
+    assert list(active_services(services)) == ["a"]
+    assert list(active_services(services, profiles=["record"])) == ["a", "b"]
+
+
+def test_choosing_services_brings_what_they_need():
+    services = {"a": service(), "b": service("a"), "c": service("b"), "d": service("a")}
+    assert list(active_services(services, only=["c"])) == ["a", "b", "c"]
+    with pytest.raises(ValueError, match="no service 'z'"):
+        active_services(services, only=["z"])
