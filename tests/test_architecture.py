@@ -1,6 +1,8 @@
 """Import rules: who may know whom. Read from the syntax trees, nothing is imported."""
 
 import ast
+import re
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -20,9 +22,8 @@ PURE = (
     "services/**/core/**/*.py",
     "services/**/graph.py",
     "services/**/comparison.py",
-    "services/launcher/compose/plan.py",
+    "services/launcher/compose/**/*.py",
     "services/launcher/processes/restart.py",
-    "services/launcher/compose/interpolate.py",
 )
 EDGE_FILES = {
     "__main__.py",
@@ -60,7 +61,35 @@ FORBIDDEN = {
     "recorder": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
     "launcher": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
 }
-SHELL = ("client", "commands", "drawing", "evaluation", "terminal")
+ROOMS = ("compose", "processes", "terminal", "client", "drawing", "evaluation", "commands")
+"""Of the launcher, from the ground up: a room imports itself and those before it."""
+
+SHELL = ("terminal", "client", "drawing", "evaluation", "commands", "cli.py", "__main__.py")
+"""What people use of the launcher: the shell of all processes and no process itself."""
+
+JOINS = {
+    "client/environments.py": {"simulator"},
+    "commands/demo.py": {"simulator"},
+    "commands/explore.py": {"simulator"},
+    "commands/foxglove.py": {"recorder"},
+    "commands/map.py": {"map_store"},
+    "commands/models.py": {"features"},
+    "commands/record.py": {"recorder"},
+    "commands/recover.py": {"recorder"},
+    "commands/replay.py": {"recorder"},
+    "commands/world.py": {"simulator"},
+    "drawing/plans.py": {"simulator"},
+    "drawing/true_pose.py": {"recorder"},
+    "drawing/world.py": {"simulator"},
+    "evaluation/demo.py": {"simulator"},
+    "evaluation/drawings.py": {"simulator"},
+    "evaluation/exploration.py": {"simulator"},
+    "evaluation/rounds.py": {"simulator"},
+}
+"""All that the launcher imports of other processes, by file."""
+
+OUR_MODULE = re.compile(r"(services|shared|simulator|experiments)\.[\w.:]*")
+PLUGIN_TABLES = {"services/features/pipeline/plugins.py"}
 TRUTH_NAMES = {"Truth", "TRUTH"}
 
 
@@ -112,8 +141,24 @@ def pure_files() -> list[Path]:
 
 
 def shell_files() -> list[Path]:
-    """The rooms of the launcher that are no process but the shell of all of them."""
-    return [path for room in SHELL for path in files(f"services/launcher/{room}")]
+    """The parts of the launcher that are no process but the shell of all of them."""
+    launcher = REPOSITORY / "services/launcher"
+    return [path for path in files("services/launcher") if path.relative_to(launcher).parts[0] in SHELL]
+
+
+def modules_in_strings(source: str) -> list[str]:
+    """Every string that names a module of ours, but for those that follow "-m": they start a process."""
+    tree = ast.parse(source)
+    rows = [node.elts for node in ast.walk(tree) if isinstance(node, ast.List | ast.Tuple)]
+    started = {
+        id(word)
+        for row in rows
+        for flag, word in pairwise(row)
+        if isinstance(flag, ast.Constant) and flag.value == "-m"
+    }
+    found = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and id(node) not in started]
+    texts = [node.value for node in found if isinstance(node.value, str)]
+    return [text for text in texts if OUR_MODULE.fullmatch(text)]
 
 
 def module_file(name: str) -> Path | None:
@@ -143,6 +188,28 @@ def test_a_service_imports_no_other_service_no_simulator_and_no_experiment(servi
         names = imported(path.read_text(encoding="utf-8"))
         assert services_in(names) <= {service}, path
         assert not tops(names) & {"simulator", "experiments"}, path
+
+
+def test_the_rooms_of_the_launcher_know_only_those_below_and_join_what_the_table_says():
+    launcher, joins = REPOSITORY / "services/launcher", {}
+    for path in files("services/launcher"):
+        names, own = imported(path.read_text(encoding="utf-8")), path.relative_to(launcher)
+        others = (services_in(names) - {"launcher"}) | (tops(names) & {"simulator", "experiments"})
+        if others:
+            joins[own.as_posix()] = others
+        rooms = {name.split(".")[2] for name in names if name.startswith("services.launcher.")}
+        if own.parts[0] in ROOMS:
+            below = ROOMS[: ROOMS.index(own.parts[0]) + 1]
+            assert rooms <= set(below), f"{own} imports {rooms - set(below)}"
+    assert joins == JOINS
+
+
+@pytest.mark.parametrize("folder", PACKAGES)
+def test_nobody_reaches_a_module_by_a_string(folder):
+    for path in files(folder):
+        if path.relative_to(REPOSITORY).as_posix() not in PLUGIN_TABLES:
+            named = modules_in_strings(path.read_text(encoding="utf-8"))
+            assert not named, f"{path} names {named}: import it"
 
 
 @pytest.mark.parametrize("path", by_path(files("shared")))
@@ -201,6 +268,20 @@ def test_pure_code_was_found_at_all():
 )
 def test_the_reader_sees_imports_in_every_form(source, names):
     assert imported(source) == names
+
+
+@pytest.mark.parametrize(
+    ("source", "names"),
+    [
+        ("load('services.drive.core')", ["services.drive.core"]),
+        ("TABLE = {'x': 'experiments.bench:app'}", ["experiments.bench:app"]),
+        ("load(f'services.{name}.core')", ["services."]),
+        ("run([python, '-m', 'services.drive'])", []),
+        ("'The tests of services.drive are elsewhere.'", []),
+    ],
+)
+def test_the_reader_sees_modules_in_strings(source, names):
+    assert modules_in_strings(source) == names
 
 
 def test_the_reader_sees_the_truth_behind_an_attribute():

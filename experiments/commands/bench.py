@@ -32,14 +32,13 @@ def loop(
     from experiments.bench.listener import ENDS, Listener
     from experiments.bench.resources import ServiceTimes, machine
     from experiments.bench.stages import latency, stage_durations_ms, table
-    from services.launcher.client.failure import ExperimentError, one_line_errors
+    from services.launcher.client.failure import ExperimentError
     from services.launcher.client.stack import StackChoice, open_stack
     from services.launcher.evaluation.exploration import explore
-    from services.launcher.terminal.output import rounded, write_json
+    from services.launcher.terminal.output import print_rows, rounded, wide_console, write_json
     from services.launcher.terminal.progress import mission_progress
-    from services.launcher.terminal.tables import print_rows, wide_console
 
-    with tempfile.TemporaryDirectory(prefix="topnav-bench-") as folder, one_line_errors():
+    with tempfile.TemporaryDirectory(prefix="topnav-bench-") as folder:
         choice = StackChoice(Path(folder), world, seed, lockstep=not real_time, pipeline=pipeline)
         with (
             open_stack(choice) as stack,

@@ -30,9 +30,8 @@ def calibrate(
     from experiments.rendered.thresholds import propose
     from services.features.pipeline.named_pipelines import find_profile
     from services.features.pipeline.pipeline import Pipeline
-    from services.launcher.evaluation.environments import environment_of
-    from services.launcher.terminal.output import write_json
-    from services.launcher.terminal.tables import print_figures, print_rows, wide_console
+    from services.launcher.client.environments import environment_of
+    from services.launcher.terminal.output import print_figures, print_rows, wide_console, write_json
     from simulator.world.world_file import load_world
 
     place, file = environment_of(world), load_world(world)

@@ -45,12 +45,10 @@ def disturbance(
     own, and the same rounds from the same seeds.
     """
     from experiments.driving import disturbance as driven
-    from experiments.driving.curves import draw_curves
-    from experiments.rendered.disturbed import CLEAN
     from experiments.work.results_file import ResultsFile, Row
-    from services.launcher.client.failure import ExperimentError, one_line_errors
+    from services.launcher.client.failure import ExperimentError
     from services.launcher.processes.state import StateFolder
-    from services.launcher.terminal.tables import print_rows
+    from services.launcher.terminal.output import print_rows
 
     names, numbers = _names(only), _numbers(levels)
     if StateFolder(data_dir.resolve()).read() is not None:
@@ -59,12 +57,11 @@ def disturbance(
     setup: Row = {"world": world, "map": map_name, "seed": seed, "rounds": rounds, "max_steps": max_steps}
     found = ResultsFile(json_file, setup)
     for setting in driven.settings_to_run(names, numbers, found.results):
-        with one_line_errors():
-            found.add(driven.run_level(study, setting["disturbance"], setting["level"]))
+        found.add(driven.run_level(study, setting["disturbance"], setting["level"]))
         if plot is not None:
-            draw_curves(plot, found.results, CLEAN)
+            driven.draw_curves(plot, found.results)
     if plot is not None:
-        draw_curves(plot, found.results, CLEAN)
+        driven.draw_curves(plot, found.results)
     print_rows(f"disturbances in {world}, seed {seed}", found.results, SHOWN)
     return len(found.results)
 

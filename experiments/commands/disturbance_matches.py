@@ -24,8 +24,7 @@ def disturbance_matches(
     from experiments.rendered.disturbed import APART_M, measured
     from services.features.pipeline.named_pipelines import find_profile
     from services.features.pipeline.pipeline import Pipeline
-    from services.launcher.terminal.output import write_json
-    from services.launcher.terminal.tables import print_rows
+    from services.launcher.terminal.output import print_rows, write_json
     from simulator.world.world_file import load_world
 
     chosen, numbers = Pipeline(find_profile(pipeline or "sift")), [float(each) for each in levels.split(",")]

@@ -38,9 +38,7 @@ def failures(
     """Each failure of the thesis: reproduced with its rule, and the same work with ours."""
     from experiments.driving.thesis_failures import corner, oscillation
     from experiments.rendered.thesis_failures import long_edges, wrong_headings
-    from services.launcher.client.failure import one_line_errors
-    from services.launcher.terminal.output import write_json
-    from services.launcher.terminal.tables import print_rows
+    from services.launcher.terminal.output import print_rows, write_json
     from services.planner.profiles import OUTDOOR
 
     studies: dict[str, Callable[[], dict[str, Any]]] = {
@@ -57,10 +55,9 @@ def failures(
     if only and only not in studies:
         raise typer.BadParameter(f"--only must be one of {', '.join(KINDS)}, got {only!r}")
     rows = []
-    with one_line_errors():
-        for name in [only] if only else KINDS:
-            rows.append({**studies[name](), "command": f"topnav study failures --only {name}"})
-            write_json(json_file, {"seed": seed, "results": rows})
+    for name in [only] if only else KINDS:
+        rows.append({**studies[name](), "command": f"topnav study failures --only {name}"})
+        write_json(json_file, {"seed": seed, "results": rows})
     for row in rows:
         title = f"{row['failure']} ({row['command']})"
         print_rows(title, [{"rule": rule, **row[rule]} for rule in ("thesis", "ours")])

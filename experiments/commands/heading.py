@@ -42,8 +42,7 @@ def heading(
     from experiments.monte_carlo import report, study
     from experiments.work.workers import results_of
     from services.launcher.client.failure import ExperimentError
-    from services.launcher.terminal.output import write_json
-    from services.launcher.terminal.tables import wide_console
+    from services.launcher.terminal.output import wide_console, write_json
 
     if quick and full:
         raise ExperimentError("--quick and --full exclude each other: choose one")

@@ -30,8 +30,7 @@ def heading_frames(
     from experiments.rendered.tables import distance_table, method_table, status_counts
     from services.features.pipeline.named_pipelines import find_profile
     from services.features.pipeline.pipeline import Pipeline
-    from services.launcher.terminal.output import write_json
-    from services.launcher.terminal.tables import print_rows, wide_console
+    from services.launcher.terminal.output import print_rows, wide_console, write_json
     from simulator.world.world_file import load_world
 
     chosen, count = Pipeline(find_profile(pipeline or "sift")), QUICK_PAIRS if quick else pairs

@@ -56,12 +56,11 @@ def hide_and_seek(
     from experiments.hide_and_seek.play import Scene, play_rounds
     from experiments.hide_and_seek.report import report, rounds_figures
     from experiments.hide_and_seek.suite import SuiteChoice
-    from services.launcher.client.failure import ExperimentError, one_line_errors
+    from services.launcher.client.failure import ExperimentError
     from services.launcher.client.run_record import keep_run
     from services.launcher.client.stack import StackChoice, open_stack
     from services.launcher.evaluation.truth_file import load_truth, truth_path
-    from services.launcher.terminal.output import new_run_folder, write_json
-    from services.launcher.terminal.tables import print_rows
+    from services.launcher.terminal.output import new_run_folder, print_rows, write_json
     from simulator.world.world_file import load_world
 
     if suite is not None:
@@ -81,7 +80,7 @@ def hide_and_seek(
     scene = Scene(load_world(world), map_name, load_truth(truth_path(data_dir, map_name)))
     folder = (drawings or new_run_folder(options.RUNS_DIR)) if draw else None
     played: list[dict[str, Any]] = []
-    with one_line_errors(), open_stack(choice) as stack:
+    with open_stack(choice) as stack:
         for one in play_rounds(stack, scene, rounds or ROUNDS, seed, max_steps, folder):
             played.append(one)
             write_json(json_file, report(world, profile or "default", seed, played))
@@ -104,12 +103,10 @@ def hide_and_seek(
 def _play_suite(choice: "SuiteChoice", data_dir: Path, json_file: Path | None) -> None:
     from experiments.hide_and_seek.report import suite_figures
     from experiments.hide_and_seek.suite import run_suite
-    from services.launcher.client.failure import one_line_errors
     from services.launcher.client.run_record import keep_run
 
     started = datetime.now(UTC)
-    with one_line_errors():
-        result = run_suite(choice, json_file)
+    result = run_suite(choice, json_file)
     keep_run(
         data_dir,
         f"hide-and-seek --suite {choice.suite}",

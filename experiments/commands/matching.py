@@ -34,7 +34,7 @@ def matching(
     from experiments.matching.pictures import from_folder, rendered
     from experiments.work.results_file import ResultsFile
     from services.launcher.client.failure import ExperimentError
-    from services.launcher.terminal.tables import wide_console
+    from services.launcher.terminal.output import wide_console
 
     if quick and full:
         raise ExperimentError("--quick and --full exclude each other: choose one")

@@ -33,19 +33,17 @@ def recovery(
     import numpy as np
 
     from experiments.driving.recovery import carried, foreign, foreign_pictures, shut_door, summary
-    from services.launcher.client.failure import one_line_errors
     from services.launcher.client.maps import require_map
     from services.launcher.client.stack import StackChoice, open_stack
     from services.launcher.evaluation.rounds import Game
-    from services.launcher.terminal.output import write_json
-    from services.launcher.terminal.tables import print_rows
+    from services.launcher.terminal.output import print_rows, write_json
     from simulator.world.freespace import free_space
     from simulator.world.world_file import load_world
 
     if only and only not in KINDS:
         raise typer.BadParameter(f"--only must be one of {', '.join(KINDS)}, got {only!r}")
     rng, rows = np.random.default_rng(seed), list[dict[str, Any]]()
-    with one_line_errors(), open_stack(StackChoice(data_dir, world, seed, lockstep=True)) as stack:
+    with open_stack(StackChoice(data_dir, world, seed, lockstep=True)) as stack:
         require_map(stack, map_name)
         space = free_space(load_world(world))
         game = Game(stack, space, map_name, rng)

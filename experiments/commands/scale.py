@@ -30,8 +30,7 @@ def scale(
     from experiments.scale.drawing import draw_growth
     from experiments.scale.report import Choice, measure
     from services.launcher.client.failure import one_line_errors
-    from services.launcher.terminal.output import write_json
-    from services.launcher.terminal.tables import print_rows, wide_console
+    from services.launcher.terminal.output import print_rows, wide_console, write_json
 
     counts = [int(size) for size in sizes.split(",")] if sizes else list(QUICK_SIZES if quick else SIZES)
     fleets = [int(size) for size in robots.split(",")] if robots else list(QUICK_FLEETS if quick else FLEETS)

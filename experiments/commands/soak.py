@@ -31,14 +31,14 @@ def soak(
     from experiments.soak.journal import Journal
     from experiments.soak.network import enter_own_network
     from experiments.soak.session import Plan, judge_growth, soak
-    from services.launcher.client.failure import ExperimentError, one_line_errors
+    from services.launcher.client.failure import ExperimentError
     from services.launcher.client.maps import require_map
     from services.launcher.client.stack import StackChoice, open_stack
-    from services.launcher.terminal.tables import print_rows
+    from services.launcher.terminal.output import print_rows
 
     plan = Plan(world, map_name, seed, hours, most_mb, chaos, chaos and enter_own_network())
     journal = Journal(json_file, {"world": world, "map": map_name, "seed": seed, "chaos": chaos})
-    with one_line_errors(), open_stack(StackChoice(data_dir, world, seed, lockstep=False)) as stack:
+    with open_stack(StackChoice(data_dir, world, seed, lockstep=False)) as stack:
         require_map(stack, map_name)
         journal.start()
         soak(stack, plan, journal)

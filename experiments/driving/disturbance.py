@@ -9,16 +9,20 @@ import numpy as np
 from experiments.hide_and_seek.play import play_told
 from experiments.hide_and_seek.report import summary
 from experiments.rendered.disturbed import CLEAN, disturbances
+from experiments.work.page import line_style, new_figure
 from experiments.work.results_file import Row
 from services.launcher.client.maps import require_map
 from services.launcher.client.stack import StackChoice, open_stack
+from services.launcher.drawing.pictures import save_figure
 from services.launcher.evaluation.rounds import Game
-from services.launcher.terminal.tables import wide_console
+from services.launcher.terminal.output import wide_console
 from simulator.disturbances.levels import Disturbances
 from simulator.disturbances.rearranging import rearranged
 from simulator.world.changes import changed_world
 from simulator.world.freespace import free_space
 from simulator.world.world_file import WorldFile, load_world
+
+MEASURES = (("success_rate", "success rate"), ("spl_mean", "mean SPL"))
 
 
 @dataclass(frozen=True)
@@ -89,3 +93,29 @@ def level_row(disturbance: str, level: float, rounds: list[Row]) -> Row:
 def true_world(world: WorldFile, levels: Disturbances, seed: int) -> WorldFile:
     """The world as the simulator has it: hiders must not be put into furniture that was moved."""
     return changed_world(world, rearranged(world, levels.furniture, seed))
+
+
+def draw_curves(path: Path, results: list[Row]) -> None:
+    """Draw one curve per disturbance in both measures; the clean result is the start of all of them.
+
+    Args:
+        path: PNG to write.
+        results: entries with disturbance, level, success_rate and spl_mean.
+    """
+    figure = new_figure(10.0, 4.4)
+    start = [row for row in results if row["disturbance"] == CLEAN]
+    names = list(dict.fromkeys(row["disturbance"] for row in results if row["disturbance"] != CLEAN))
+    for axes, (key, title) in zip(figure.subplots(1, 2, sharey=True), MEASURES, strict=True):
+        for number, name in enumerate(names):
+            rows = sorted(
+                [*start, *(r for r in results if r["disturbance"] == name)], key=lambda row: row["level"]
+            )
+            levels = [row["level"] for row in rows]
+            axes.plot(levels, [row[key] for row in rows], label=name, **line_style(number))
+        if not names:
+            axes.plot([0.0] * len(start), [row[key] for row in start], "ko", label=CLEAN)
+        axes.axhline(0.9, color="0.7", linestyle=":") if key == "success_rate" else None
+        axes.set(xlabel="level", title=title, xlim=(-0.03, 1.03), ylim=(-0.03, 1.05))
+        axes.grid(alpha=0.3)
+    figure.axes[1].legend(loc="lower left", fontsize=8)
+    save_figure(figure, path)

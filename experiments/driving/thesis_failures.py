@@ -1,19 +1,27 @@
 """Failures of the thesis that show while driving: oscillation near furniture, stuck in a corner."""
 
+import math
+from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
-from experiments.driving.reversals import longest_stay, reversals
 from services.launcher.client.stack import StackChoice, open_stack
+from services.launcher.client.trail import collisions, driven_m
 from services.launcher.evaluation.exploration import explore, figures
 from services.launcher.evaluation.rounds import Game, Round
-from services.launcher.evaluation.trail import collisions, driven_m
 from services.launcher.terminal.output import rounded
+from shared.messages.simulation import Truth
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
+
+STEP_M = 0.05
+"""Moves are measured between spots at least this far apart: the noise of standing still is no turn."""
+
+BACK_RAD = math.radians(120.0)
+"""Sharper than any corner of a way round furniture; straight back is 180."""
 
 STAY_M = 0.6
 """The distance of neighbouring nodes: a robot that stays within it explores nothing."""
@@ -60,8 +68,39 @@ def corner(world: str, seed: int) -> Row:
     return {"failure": "exploration stuck in a corner", "world": world, "steps": EXPLORE_STEPS, **results}
 
 
+def reversals(truths: Sequence[Truth]) -> int:
+    """Times the direction of travel changed by more than 120 degrees from one move to the next."""
+    count, previous_rad = 0, None
+    if not truths:
+        return 0
+    anchor = truths[0].pose
+    for truth in truths[1:]:
+        dx, dy = truth.pose.x_m - anchor.x_m, truth.pose.y_m - anchor.y_m
+        if math.hypot(dx, dy) < STEP_M:
+            continue
+        heading_rad = math.atan2(dy, dx)
+        if previous_rad is not None and abs(math.remainder(heading_rad - previous_rad, math.tau)) > BACK_RAD:
+            count += 1
+        previous_rad, anchor = heading_rad, truth.pose
+    return count
+
+
+def longest_stay(truths: Sequence[Truth], radius_m: float) -> int:
+    """Most frames in a row within `radius_m` of where they began: a robot stuck in a corner."""
+    longest = start = 0
+    for end, truth in enumerate(truths):
+        while _apart_m(truths[start], truth) > radius_m:
+            start += 1
+        longest = max(longest, end - start + 1)
+    return longest
+
+
 def _play(choice: StackChoice, world: str, map_name: str, rounds: int, seed: int) -> list[Round]:
     with open_stack(choice) as stack:
         game = Game(stack, free_space(load_world(world)), map_name, np.random.default_rng(seed))
         game.begin(seed)
         return [game.play(seed + number, ROUND_STEPS) for number in range(1, rounds + 1)]
+
+
+def _apart_m(a: Truth, b: Truth) -> float:
+    return math.hypot(b.pose.x_m - a.pose.x_m, b.pose.y_m - a.pose.y_m)

@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
+from services.launcher.client.environments import environment_of
 from services.launcher.client.maps import require_map
 from services.launcher.client.stack import Stack
 from services.launcher.evaluation.drawings import draw_round
-from services.launcher.evaluation.environments import environment_of
 from services.launcher.evaluation.rounds import Game, Round, hiding_place
 from services.launcher.evaluation.truth_file import MapTruth
+from services.launcher.terminal.output import wide_console
 from services.launcher.terminal.progress import mission_progress
-from services.launcher.terminal.tables import wide_console
 from shared.messages.simulation import Pose
 from simulator.world.freespace import free_space
 from simulator.world.world_file import WorldFile

@@ -15,8 +15,7 @@ from experiments.hide_and_seek.jobs import make_map, play_run
 from experiments.hide_and_seek.plan import RunPlan
 from experiments.hide_and_seek.report import combined, run_row, suite_markdown
 from experiments.work.workers import workers
-from services.launcher.terminal.output import write_json
-from services.launcher.terminal.tables import print_rows, wide_console
+from services.launcher.terminal.output import print_rows, wide_console, write_json
 
 POLL_S = 1.0
 SHOWN = ("world", "profile", "found", "final_distance_median_m", "spl_mean", "collisions", "steps_per_s")

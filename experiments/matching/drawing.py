@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from experiments.work.figures import SERIES, line_style, new_figure
+from experiments.work.page import SERIES, line_style, new_figure
 from services.launcher.drawing.pictures import save_figure
 
 LINES = {"equirectangular": "-", "tangent": "--"}

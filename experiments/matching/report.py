@@ -9,7 +9,7 @@ from experiments.matching.placing import UNCHANGED, Change, Image
 from experiments.matching.plan import MATCHERS, REPRESENTATIONS
 from experiments.matching.study import pipeline_with_weights
 from experiments.work.page import write_page
-from services.launcher.terminal.tables import print_rows, wide_console
+from services.launcher.terminal.output import print_rows, wide_console
 
 SHOWN = (
     "descriptor",

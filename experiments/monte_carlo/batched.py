@@ -1,7 +1,7 @@
 """Methods 1 to 6 for a whole batch of runs at once, on any torch device. Radians, float64.
 
-The same formulas as services/planner/heading, which a test compares; here without a Python loop, because path
-tracking asks for hundreds of millions of headings.
+The same formulas as services/planner/heading, which a test compares; here without a Python loop, because the
+study asks for hundreds of millions of headings.
 """
 
 from collections.abc import Callable
@@ -14,9 +14,16 @@ TOLERANCE = 1e-12
 
 def batch_headings(method: str, current: Tensor, target: Tensor, gain_per_rad: float) -> Tensor:
     """Headings (B,) from longitudes and latitudes (B, N, 2); weights are exp(gain_per_rad * angle)."""
-    one = _methods()[method]
-    vector, _ = one(current, target, gain_per_rad)
+    vector, _ = _methods()[method](current, target, gain_per_rad)
     return torch.atan2(vector[:, 1], vector[:, 0])
+
+
+def all_headings(current: Tensor, target: Tensor, gain_per_rad: float) -> Tensor:
+    """Headings (6, B) of methods 1 to 6, which share their votes."""
+    one, two = _pairs(current, target, None), _pairs(current, target, gain_per_rad)
+    three, four = _singles(current, target, None), _singles(current, target, gain_per_rad)
+    votes = (one, two, three, four, _sum(one, four), _sum(two, four))
+    return torch.stack([torch.atan2(vector[:, 1], vector[:, 0]) for vector, _ in votes])
 
 
 Vote = tuple[Tensor, Tensor]

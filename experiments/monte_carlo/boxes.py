@@ -4,9 +4,8 @@ from pathlib import Path
 
 from matplotlib.axes import Axes
 
-from experiments.monte_carlo.ahae import METHODS
-from experiments.monte_carlo.statistics import Statistics
-from experiments.work.figures import line_style, new_figure
+from experiments.monte_carlo.ahae import METHODS, Statistics
+from experiments.work.page import line_style, new_figure
 from services.launcher.drawing.pictures import save_figure
 from shared.geometry.angles import FloatArray
 

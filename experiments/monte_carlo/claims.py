@@ -3,8 +3,8 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from experiments.monte_carlo.ahae import Statistics
 from experiments.monte_carlo.scene import Placement
-from experiments.monte_carlo.statistics import Statistics
 
 Figures = dict[Placement, Statistics]
 UNWEIGHTED, WEIGHTED = ("1", "3", "5"), ("2", "4", "6")

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 
-from experiments.monte_carlo.scene import MonteCarloScene, Placement, draw_scene, generator_of, lonlat_from
+from experiments.monte_carlo.scene import MonteCarloScene, ScenePlan, lonlat_from
 from experiments.monte_carlo.tracking import follow
-from experiments.monte_carlo.votes import draw_choices
 from services.planner.heading.methods import heading_estimate
 from shared.geometry.sphere import FloatArray, wrap_rad
 from shared.geometry.two_view import two_view
@@ -19,7 +18,7 @@ NO_ANSWER_DEG = 90.0
 
 
 @dataclass(frozen=True)
-class NoisePlan:
+class NoisePlan(ScenePlan):
     """Runs in one scene under one condition.
 
     Attributes:
@@ -27,10 +26,6 @@ class NoisePlan:
         outliers: share of the matches whose target bearing belongs to another keypoint.
     """
 
-    placement: Placement
-    scene: int
-    seed: int
-    runs: int
     count: int = 60
     noise_deg: float = 0.5
     outliers: float = 0.2
@@ -44,16 +39,12 @@ class NoisePlan:
 
 def noisy_errors(plan: NoisePlan) -> FloatArray:
     """Absolute heading errors (methods, runs), degrees."""
-    rng, scene = _begin(plan)
-    chosen = draw_choices(plan.runs, plan.count, len(scene.points), rng)
+    rng, scene, chosen = plan.draw(plan.count)
     errors = np.empty((len(ALL_METHODS), plan.runs))
     for run, indices in enumerate(chosen):
-        current = lonlat_from(scene.current, scene.points[indices])
-        target = lonlat_from(scene.target, scene.points[indices])
-        current, target = (
-            disturbed(current, plan, rng),
-            with_outliers(disturbed(target, plan, rng), plan, rng),
-        )
+        current = disturbed(lonlat_from(scene.current, scene.points[indices]), plan, rng)
+        target = disturbed(lonlat_from(scene.target, scene.points[indices]), plan, rng)
+        target = with_outliers(target, plan, rng)
         geometry = two_view(current, target, rng, plan.two_view)
         for row, name in enumerate(ALL_METHODS):
             two_view_rad = geometry.heading_rad if geometry.usable else None
@@ -69,17 +60,14 @@ def epipolar_paths(plan: NoisePlan) -> FloatArray:
 
     A step without an answer keeps the heading of the step before.
     """
-    rng, scene = _begin(plan)
-    chosen = draw_choices(plan.runs, plan.count, len(scene.points), rng)
-    return np.concatenate([_path(scene, row[None], plan, rng) for row in chosen])
+    rng, scene, chosen = plan.draw(plan.count)
+    return np.concatenate([_path(scene, scene.points[row], plan, rng) for row in chosen])
 
 
 def _path(
-    scene: MonteCarloScene, chosen: np.ndarray, plan: NoisePlan, rng: np.random.Generator
+    scene: MonteCarloScene, matches: FloatArray, plan: NoisePlan, rng: np.random.Generator
 ) -> FloatArray:
-    target = with_outliers(
-        disturbed(lonlat_from(scene.target, scene.points[chosen[0]]), plan, rng), plan, rng
-    )
+    target = with_outliers(disturbed(lonlat_from(scene.target, matches), plan, rng), plan, rng)
     last = [0.0]
 
     def steer(current: torch.Tensor, _target: torch.Tensor) -> torch.Tensor:
@@ -88,7 +76,7 @@ def _path(
             last[0] = result.heading_rad
         return torch.tensor(last, dtype=torch.float64)
 
-    return follow(scene, chosen, steer)
+    return follow(scene, matches[None], steer)
 
 
 def disturbed(lonlat: FloatArray, plan: NoisePlan, rng: np.random.Generator) -> FloatArray:
@@ -102,8 +90,3 @@ def with_outliers(target: FloatArray, plan: NoisePlan, rng: np.random.Generator)
     mixed = target.copy()
     mixed[wrong] = target[np.roll(wrong, 1)]
     return mixed
-
-
-def _begin(plan: NoisePlan) -> tuple[np.random.Generator, MonteCarloScene]:
-    rng = generator_of(plan.placement, plan.scene, plan.seed)
-    return rng, draw_scene(plan.placement, rng)

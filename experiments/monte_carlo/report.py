@@ -4,12 +4,12 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
-from experiments.monte_carlo import example_drawings, examples, study
+from experiments.monte_carlo import examples, study
 from experiments.monte_carlo.boxes import draw_boxes, draw_comparison
 from experiments.monte_carlo.claims import CLAIMS, Figures, judged
 from experiments.monte_carlo.scene import PLACEMENTS, Placement
 from experiments.work.page import write_page
-from services.launcher.terminal.tables import print_rows
+from services.launcher.terminal.output import print_rows
 
 UNITS = (("ahae", "deg"), ("dcpe", "pct"))
 TITLE = "Heading methods in random scenes"
@@ -87,13 +87,10 @@ def show(report: dict[str, Any]) -> None:
 
 def _draw_examples(folder: Path) -> None:
     (_, cloud), (_, latitude), *_ = EXAMPLES
-    example_drawings.draw_pair_cloud(folder / cloud, examples.pair_cloud("centre", 1))
-    example_drawings.draw_latitude_case(folder / latitude, examples.latitude_case("centre", 4))
+    examples.draw_pair_cloud(folder / cloud, "centre", 1)
+    examples.draw_latitude_case(folder / latitude, "centre", 4)
     for method, placement in FAILED:
-        failed = examples.failed_path(method, placement, 1)
-        if failed is not None:
-            title = f"method {method}, target in the {placement.replace('_', '-')}"
-            example_drawings.draw_failed_path(folder / f"failed-path-method-{method}.png", failed, title)
+        examples.draw_failed_path(folder / f"failed-path-method-{method}.png", method, placement, 1)
 
 
 def _wide(rows: list[dict[str, Any]], value: str) -> list[dict[str, object]]:

@@ -9,16 +9,17 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
+import numpy.typing as npt
 
 from shared.geometry.sphere import FloatArray
 
+IndexArray = npt.NDArray[np.intp]
 Placement = Literal["centre", "north", "north_east"]
 PLACEMENTS: tuple[Placement, ...] = get_args(Placement)
 
-KEYPOINTS = 1000
-SIDE_M = 20.0
-HEIGHT_M = 2.0
-"""Keypoints lie at most this far above or below the camera."""
+KEYPOINTS, SIDE_M, HEIGHT_M = 1000, 20.0, 2.0
+"""Keypoints, side of the square, and how far off the camera's height they lie: the thesis is silent (Q27)."""
+
 NEAREST_M = 1.0
 """The current place is at least this far from the target: nearer, no direction is worth asking for."""
 
@@ -57,9 +58,20 @@ class MonteCarloScene:
         return float(np.hypot(*(self.target - self.current)))
 
 
-def generator_of(placement: Placement, scene: int, seed: int) -> np.random.Generator:
-    """The draws of one scene alone, whoever works it out."""
-    return np.random.default_rng([seed, scene, len(placement)])
+@dataclass(frozen=True)
+class ScenePlan:
+    """Runs in one scene; its draws are the same whoever works it out."""
+
+    placement: Placement
+    scene: int
+    seed: int
+    runs: int
+
+    def draw(self, count: int) -> tuple[np.random.Generator, MonteCarloScene, IndexArray]:
+        """The scene and the `count` matches of each run, (runs, count) indices of its points."""
+        rng = np.random.default_rng([self.seed, self.scene, len(self.placement)])
+        scene = draw_scene(self.placement, rng)
+        return rng, scene, draw_choices(self.runs, count, len(scene.points), rng)
 
 
 def draw_scene(placement: Placement, rng: np.random.Generator, keypoints: int = KEYPOINTS) -> MonteCarloScene:
@@ -72,6 +84,11 @@ def draw_scene(placement: Placement, rng: np.random.Generator, keypoints: int = 
     while np.hypot(*(current - target)) < NEAREST_M:
         current = rng.uniform(-half, half, 2)
     return MonteCarloScene(points, current, target)
+
+
+def draw_choices(runs: int, most: int, of: int, rng: np.random.Generator) -> IndexArray:
+    """(runs, most) keypoints per run, in random order, none twice."""
+    return np.argsort(rng.random((runs, of)), axis=1)[:, :most]
 
 
 def lonlat_from(place: FloatArray, points: FloatArray) -> FloatArray:

@@ -6,14 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from experiments.monte_carlo.ahae import COUNTS, METHODS, AhaePlan, scene_errors
+from experiments.monte_carlo.ahae import COUNTS, METHODS, AhaePlan, Statistics, scene_errors
 from experiments.monte_carlo.noise import ALL_METHODS, NoisePlan, epipolar_paths, noisy_errors
 from experiments.monte_carlo.scene import PLACEMENTS, Placement
-from experiments.monte_carlo.statistics import Statistics
 from experiments.monte_carlo.sweep import FUNCTIONS, WEIGHTED, SweepPlan, scene_sweep
 from experiments.monte_carlo.tracking import DcpePlan, scene_paths
-from services.planner.heading.weights import WeightSettings
-from shared.geometry.sphere import FloatArray
+from shared.geometry.angles import FloatArray
 
 NOISES_DEG = (0.0, 0.25, 0.5, 1.0)
 """The grid of the study: from none to three pixels of a panorama 1024 wide (0.35 degrees each)."""
@@ -50,9 +48,8 @@ FULL = Size(100, 2000, 100, 2000, 100, 10, 40)
 
 def ahae(size: Size, seed: int, work: Worker, gain_per_rad: float) -> dict[Placement, Statistics]:
     """Absolute heading angle errors by placement, degrees."""
-    weight = WeightSettings(gain=gain_per_rad, unit="rad")
     plans = [
-        AhaePlan(p, s, seed, size.ahae_runs, size.counts, weight)
+        AhaePlan(p, s, seed, size.ahae_runs, size.counts, gain_per_rad)
         for p in PLACEMENTS
         for s in range(size.scenes)
     ]
@@ -65,7 +62,7 @@ def dcpe(
 ) -> dict[Placement, Statistics]:
     """Distance covered percent errors by placement, percent."""
     plans = [
-        DcpePlan(p, s, n, seed, size.dcpe_runs, gain_per_rad, device)
+        DcpePlan(p, s, seed, size.dcpe_runs, n, gain_per_rad, device)
         for p in PLACEMENTS
         for s in range(size.dcpe_scenes)
         for n in size.counts

@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from experiments.monte_carlo.scene import Placement, draw_scene, generator_of, lonlat_from
-from experiments.monte_carlo.votes import draw_choices
+from experiments.monte_carlo.scene import ScenePlan, lonlat_from
 from services.planner.heading.methods import heading_estimate
 from services.planner.heading.weights import WeightSettings
 from shared.geometry.sphere import FloatArray, wrap_rad
@@ -28,23 +27,18 @@ FUNCTIONS: dict[str, WeightSettings] = {
 
 
 @dataclass(frozen=True)
-class SweepPlan:
+class SweepPlan(ScenePlan):
     """All functions on the runs of one scene."""
 
-    placement: Placement
-    scene: int
-    seed: int
-    runs: int
     count: int = 60
 
 
 def scene_sweep(plan: SweepPlan) -> FloatArray:
     """Mean absolute heading error (functions, weighted methods), degrees."""
-    rng = generator_of(plan.placement, plan.scene, plan.seed)
-    scene = draw_scene(plan.placement, rng)
+    _, scene, choices = plan.draw(plan.count)
     current, target = lonlat_from(scene.current, scene.points), lonlat_from(scene.target, scene.points)
     errors = np.zeros((len(FUNCTIONS), len(WEIGHTED)))
-    for chosen in draw_choices(plan.runs, plan.count, len(scene.points), rng):
+    for chosen in choices:
         for row, weight in enumerate(FUNCTIONS.values()):
             for column, name in enumerate(WEIGHTED):
                 heading = heading_estimate(name, current[chosen], target[chosen], weight).heading_rad

@@ -12,57 +12,45 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from experiments.monte_carlo.ahae import METHODS
+from experiments.monte_carlo.ahae import DEG, METHODS, parts
 from experiments.monte_carlo.batched import batch_headings
-from experiments.monte_carlo.scene import MonteCarloScene, Placement, draw_scene, generator_of
-from experiments.monte_carlo.votes import IndexArray, draw_choices
-from shared.geometry.sphere import FloatArray
+from experiments.monte_carlo.scene import MonteCarloScene, ScenePlan
+from shared.geometry.angles import FloatArray
 
 STEP_M = 0.2
 """Speed times time step; also how near counts as reached. The thesis states neither (Q27)."""
-MOST_PAIRS = {"cpu": 100_000, "cuda": 50_000_000}
-"""Pairs of matches worked on at once: what fits the cache of a core, or keeps a GPU busy."""
-
-DEG = 180.0 / np.pi
 Steer = Callable[[Tensor, Tensor], Tensor]
 """Headings (B,) from what is seen here and at the target, (B, N, 2) longitude, latitude."""
 
 
 @dataclass(frozen=True)
-class DcpePlan:
+class DcpePlan(ScenePlan):
     """Paths of one scene and one number of matches."""
 
-    placement: Placement
-    scene: int
-    count: int
-    seed: int
-    runs: int
+    count: int = 34
     gain_per_rad: float = DEG
     device: str = "cpu"
 
 
 def scene_paths(plan: DcpePlan) -> FloatArray:
     """DCPE of all runs with each method, (methods, runs), percent, at most 100."""
-    rng = generator_of(plan.placement, plan.scene, plan.seed)
-    scene = draw_scene(plan.placement, rng)
-    chosen = draw_choices(plan.runs, plan.count, len(scene.points), rng)
-    size = max(1, MOST_PAIRS[plan.device] // plan.count**2)
-    parts = []
-    for start in range(0, plan.runs, size):
-        part = chosen[start : start + size]
-        steers = [partial(batch_headings, method, gain_per_rad=plan.gain_per_rad) for method in METHODS]
-        parts.append(np.stack([follow(scene, part, steer, plan.device) for steer in steers]))
-    return np.concatenate(parts, axis=1)
+    _, scene, chosen = plan.draw(plan.count)
+    steers = [partial(batch_headings, method, gain_per_rad=plan.gain_per_rad) for method in METHODS]
+    found = [
+        [follow(scene, scene.points[chosen[part]], steer, plan.device) for steer in steers]
+        for part in parts(plan.runs, plan.count, plan.device)
+    ]
+    return np.concatenate([np.stack(each) for each in found], axis=1)
 
 
-def follow(scene: MonteCarloScene, chosen: IndexArray, steer: Steer, device: str = "cpu") -> FloatArray:
+def follow(scene: MonteCarloScene, matches: FloatArray, steer: Steer, device: str = "cpu") -> FloatArray:
     """DCPE (runs,) of the paths that one way of steering makes; 100 where it took twice the straight way."""
-    points = torch.as_tensor(scene.points[chosen], dtype=torch.float64, device=device)
+    points = torch.as_tensor(matches, dtype=torch.float64, device=device)
     goal = torch.as_tensor(scene.target, dtype=torch.float64, device=device)
-    target = lonlat_of(goal.expand(len(chosen), 2), points)
-    place = torch.as_tensor(scene.current, dtype=torch.float64, device=device).repeat(len(chosen), 1)
-    covered = torch.full((len(chosen),), 2.0 * scene.distance_m, dtype=torch.float64, device=device)
-    going = torch.arange(len(chosen), device=device)
+    target = lonlat_of(goal.expand(len(points), 2), points)
+    place = torch.as_tensor(scene.current, dtype=torch.float64, device=device).repeat(len(points), 1)
+    covered = torch.full((len(points),), 2.0 * scene.distance_m, dtype=torch.float64, device=device)
+    going = torch.arange(len(points), device=device)
     travelled = 0.0
     while travelled < 2.0 * scene.distance_m and len(going):
         left = torch.linalg.vector_norm(goal - place, dim=1)

@@ -14,9 +14,9 @@ from experiments.rendered.pairs import APART_M, PosePair, draw_pair
 from services.features.matching.verification import feature_set
 from services.features.pipeline.named_pipelines import find_profile
 from services.features.pipeline.pipeline import Pipeline
+from services.launcher.client.environments import environment_of
 from services.launcher.client.maps import require_map
 from services.launcher.client.stack import StackChoice, open_stack
-from services.launcher.evaluation.environments import environment_of
 from services.launcher.evaluation.truth_file import load_truth, truth_path
 from services.launcher.terminal.output import rounded
 from services.planner.profiles import Profile

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from experiments.rendered.headings import PairResult
-from services.launcher.evaluation.environments import Spans
+from services.launcher.client.environments import Spans
 from services.launcher.terminal.output import rounded
 
 WRONG_RAD = math.radians(20.0)

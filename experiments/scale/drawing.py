@@ -5,7 +5,7 @@ from typing import Any
 
 from matplotlib.axes import Axes
 
-from experiments.work.figures import new_figure
+from experiments.work.page import new_figure
 from services.launcher.drawing.pictures import save_figure
 
 CURVES = (

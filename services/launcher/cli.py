@@ -73,7 +73,10 @@ def add_commands(to: typer.Typer, found: Iterable[EntryPoint]) -> None:
     for entry in found:
         names.add(entry.name)
         try:
-            to.add_typer(entry.load())
+            found_app = entry.load()
+            if not isinstance(found_app, typer.Typer):
+                raise TypeError(f"a Typer expected, got {type(found_app).__name__}")
+            to.add_typer(found_app)
         except Exception as error:  # noqa: BLE001 - whatever another distribution does wrong, the rest must work
             why = f"cannot be loaded from {entry.value}: {type(error).__name__}: {error}"
             _add_missing(to, entry.name, why, hidden=False)

@@ -33,7 +33,7 @@ def records(stream: IO[bytes], *, skip_magic: bool = False, chunks: bool = True)
 
     Raises:
         ChunkError: a chunk is damaged or would take more than MAX_CHUNK_BYTES.
-        Exception: what the MCAP library raises on damage, see `whole_part.DAMAGE`.
+        Exception: what the MCAP library raises on damage, see `reading.DAMAGE`.
     """
     reader = StreamReader(
         stream,

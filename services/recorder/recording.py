@@ -1,18 +1,11 @@
-"""A recording: the bus's messages as they came, one channel per key, in an MCAP file."""
+"""Writing recordings: the bus's messages as they came, one channel per key, in an MCAP file."""
 
-import os
 from collections import Counter
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Self
+from typing import Self
 
-from mcap.exceptions import McapError
-from mcap.reader import FOOTER_SIZE
-from mcap.records import Channel, Footer, Statistics
-from mcap.stream_reader import MAGIC_SIZE
 from mcap.writer import CompressionType, Writer
 
 from services.recorder.backlog import Sample
@@ -23,8 +16,7 @@ from services.recorder.channels import (
     json_schema,
     topic_of,
 )
-from services.recorder.chunks import records
-from services.recorder.whole_part import DAMAGE, samples
+from services.recorder.reading import WholePart
 
 CHUNK_BYTES = 1_000_000
 LIBRARY = "topnav recorder"
@@ -84,68 +76,32 @@ class RecordingWriter:
 
 
 @dataclass(frozen=True)
-class Contents:
-    """What a finished recording holds.
+class Recovered:
+    """What a recovery found.
 
     Attributes:
-        counts: messages by key.
-        duration_s: from the first message to the last.
+        messages: written to the new file.
+        whole: whether the old file was complete.
+        problem: where reading ended, empty for a whole file.
     """
 
-    counts: dict[str, int]
-    duration_s: float
+    messages: int
+    whole: bool
+    problem: str
 
 
-def contents(path: Path) -> Contents:
-    """The index at the end of a finished file.
+def recover(source: Path, target: Path) -> Recovered:
+    """Copy every message up to the first damage into a new, whole recording.
 
     Raises:
-        RecordingError: as for `read`.
+        RecordingError: `source` holds no message at all, or `target` exists.
     """
-    with _opened(path) as stream:
-        if not (start := _footer(stream).summary_start):
-            return Contents({}, 0.0)
-        stream.seek(start)
-        channels: dict[int, str] = {}
-        statistics: Statistics | None = None
-        for record in records(stream, skip_magic=True, chunks=False):
-            if isinstance(record, Channel):
-                channels[record.id] = record.topic
-            elif isinstance(record, Statistics):
-                statistics = record
-    if statistics is None:
-        return Contents({}, 0.0)
-    counts = {topic: statistics.channel_message_counts.get(number, 0) for number, topic in channels.items()}
-    return Contents(counts, (statistics.message_end_time - statistics.message_start_time) / 1e9)
-
-
-def read(path: Path) -> Iterator[Sample]:
-    """All messages of a finished file, in the order of arrival.
-
-    Raises:
-        RecordingError: no recording, one that was cut off, or one that unpacks to more than it may.
-    """
-    with _opened(path) as stream:
-        _footer(stream)  # before the first message is given away
-        stream.seek(0)
-        yield from samples(stream)
-
-
-def _footer(stream: IO[bytes]) -> Footer:
-    stream.seek(-(FOOTER_SIZE + MAGIC_SIZE), os.SEEK_END)
-    footer = next(records(stream, skip_magic=True, chunks=False), None)
-    if not isinstance(footer, Footer):
-        raise McapError(f"a footer expected at the end, got {type(footer).__name__}")
-    return footer
-
-
-@contextmanager
-def _opened(path: Path) -> Iterator[IO[bytes]]:
-    with path.open("rb") as stream:
-        try:
-            yield stream
-        except (*DAMAGE, OSError) as error:  # OSError: shorter than a footer
-            told = f"{type(error).__name__}: {str(error)[:200]}".rstrip(": ")
-            raise RecordingError(
-                f"{path} is no whole recording ({told}): 'topnav recover' saves what is in it"
-            ) from error
+    with RecordingWriter(target) as writer, source.open("rb") as stream:
+        whole = WholePart(stream)
+        for sample in whole:
+            writer.write(sample)
+        messages = sum(writer.counts.values())
+    if not messages:
+        target.unlink()
+        raise RecordingError(f"{source} holds no message of a recording ({whole.problem or 'it is empty'})")
+    return Recovered(messages, not whole.problem, whole.problem)

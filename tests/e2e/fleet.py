@@ -47,7 +47,10 @@ def taking_part(stack: Stack, name: str) -> Iterator[Robot]:
     """Take part as the experimenter of one robot."""
     with replace(stack, robot=name).session() as own:
         yield Robot(
-            own, MissionClient(own.bus, name), Experimenter(own.bus, name), own.bus.subscribe(EVENT, robot=name)
+            own,
+            MissionClient(own.bus, name),
+            Experimenter(own.bus, name),
+            own.bus.subscribe(EVENT, robot=name),
         )
 
 

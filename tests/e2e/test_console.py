@@ -13,8 +13,9 @@ from axe_playwright_python.sync_playwright import Axe
 from PIL import Image
 
 from services.recorder.player import Player, play
+from services.recorder.reading import read
 from services.recorder.recorder import record
-from services.recorder.recording import RecordingWriter, read
+from services.recorder.recording import RecordingWriter
 from shared.bus import open_bus, wait_until
 from shared.messages.sensors import Frame
 from shared.topics import FRAME

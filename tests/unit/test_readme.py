@@ -44,5 +44,5 @@ NAMED = {
 
 @pytest.mark.parametrize("variable", sorted(NAMED))
 def test_the_settings_named_exist(repository, variable):
-    places = [repository / "docker-compose.yml", *(repository / "services/launcher").glob("*.py")]
+    places = [repository / "docker-compose.yml", *(repository / "services/launcher").rglob("*.py")]
     assert any(variable in place.read_text(encoding="utf-8") for place in places)

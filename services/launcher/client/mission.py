@@ -1,11 +1,11 @@
 """One mission of one robot: started over the bus and followed to its end, with the true way beside it."""
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from services.launcher.client.failure import ExperimentError
-from services.launcher.evaluation.trail import Trail
+from services.launcher.client.trail import Trail
+from services.launcher.terminal.progress import Watch
 from shared.bus import Bus
 from shared.messages import ExtractRequest, Features, MissionRequest, MissionStatus, Truth
 from shared.messages.sensors import Frame
@@ -23,8 +23,6 @@ SILENCE_S = 60.0
 """Longer than a service that died needs to be back and to take its mission up again."""
 
 PERIOD_S = 0.2
-
-Watch = Callable[[MissionStatus], None]
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 from services.launcher.client.address import find_address
 from services.launcher.client.failure import ExperimentError
 from services.launcher.processes.supervisor import Launcher
-from services.launcher.terminal.tables import wide_console
+from services.launcher.terminal.output import wide_console
 from shared.bus import Bus, open_bus, wait_until
 from shared.topics import NAME
 

@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from services.launcher.terminal.tables import wide_console
+from services.launcher.terminal.output import wide_console
 from shared.runs import CommandRun
 
 MAX_NUMBER = 1000

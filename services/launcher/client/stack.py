@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from services.launcher.client.address import Address, find_address
-from services.launcher.client.failure import ExperimentError
-from services.launcher.evaluation.environments import environment_of
+from services.launcher.client.environments import environment_of
+from services.launcher.client.failure import ExperimentError, one_line_errors
 from services.launcher.processes.stack_settings import Ports
 from services.launcher.processes.state import StateFolder
 from services.launcher.processes.supervisor import Launcher
@@ -73,9 +73,16 @@ def open_stack(choice: StackChoice) -> Iterator[Stack]:
     """Join or start a stack and close what was opened.
 
     Raises:
-        ExperimentError: the running stack lacks a service or cannot be what was asked for.
+        ExperimentError: the running stack lacks a service or cannot be what was asked for; or what services
+            and HTTP reported while it was in use.
         LaunchError: the own one does not come up.
     """
+    with one_line_errors(), _opened(choice) as stack:
+        yield stack
+
+
+@contextmanager
+def _opened(choice: StackChoice) -> Iterator[Stack]:
     running = StateFolder(choice.data_dir.resolve()).read()
     address = find_address(choice.endpoint, choice.data_dir)
     if address is not None:

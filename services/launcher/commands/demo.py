@@ -22,12 +22,11 @@ def demo(
     ] = False,
 ) -> None:
     """Explore the apartment, then find a hidden robot from its picture; ends with the report's path."""
-    from services.launcher.client.failure import ExperimentError, one_line_errors
+    from services.launcher.client.failure import ExperimentError
     from services.launcher.client.stack import StackChoice, open_stack
     from services.launcher.evaluation.demo import Scene, explore_scene, report, seek_hidden_robot
     from services.launcher.processes.stack_settings import Ports
-    from services.launcher.terminal.output import new_run_folder
-    from services.launcher.terminal.tables import wide_console
+    from services.launcher.terminal.output import new_run_folder, wide_console
     from shared.lifecycle import stop_on_signals
     from simulator.world.freespace import free_space
     from simulator.world.world_file import load_world
@@ -39,7 +38,7 @@ def demo(
     ports = Ports.free() if usual.taken() else usual
     choice = StackChoice(scene.folder / "data", world, seed, lockstep=True, ports=ports)
     console.print(f"starting all services, logs in {choice.data_dir / 'launcher' / 'logs'}", highlight=False)
-    with one_line_errors(), open_stack(choice) as stack:
+    with open_stack(choice) as stack:
         console.print(f"all up; watch the robot on {stack.gateway_url}", highlight=False)
         explored = explore_scene(console, stack, scene, choice.data_dir, explore_steps)
         found = seek_hidden_robot(console, stack, scene, explored)

@@ -18,7 +18,7 @@ def doctor(data_dir: options.StackDir = options.DATA_DIR, as_json: options.AsJso
 
     from services.launcher.processes.machine import examine
     from services.launcher.processes.stack_settings import Ports
-    from services.launcher.terminal.tables import check_table
+    from services.launcher.terminal.services import check_table
 
     checks = examine(data_dir.resolve(), Ports.from_variables(os.environ))
     if as_json:

@@ -30,22 +30,21 @@ def explore(
     endpoint: options.Endpoint = None,
 ) -> None:
     """Explore a world and build a map of pictures."""
-    from services.launcher.client.failure import ExperimentError, one_line_errors
+    from services.launcher.client.failure import ExperimentError
     from services.launcher.client.run_record import keep_run
     from services.launcher.client.stack import StackChoice, open_stack
     from services.launcher.drawing.plans import draw_map
     from services.launcher.evaluation.exploration import explore, figures, make_room
     from services.launcher.evaluation.truth_file import save_truth, truth_path
-    from services.launcher.terminal.output import write_json
+    from services.launcher.terminal.output import print_figures, wide_console, write_json
     from services.launcher.terminal.progress import mission_progress
-    from services.launcher.terminal.tables import print_figures, wide_console
     from simulator.world.freespace import free_space
     from simulator.world.world_file import load_world
 
     started, space = datetime.now(UTC), free_space(load_world(world))
     choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
     path = truth_path(data_dir, map_name)
-    with one_line_errors(), open_stack(choice) as stack:
+    with open_stack(choice) as stack:
         before = make_room(stack, map_name, path, go_on=continue_, fresh=fresh)
         with mission_progress(wide_console(stderr=True), f"exploring {world}") as watch:
             result = explore(stack, world, map_name, seed, max_steps, before, watch)

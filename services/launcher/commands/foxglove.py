@@ -14,7 +14,7 @@ def foxglove(
     out: Annotated[Path, typer.Argument(help="MCAP file to write, for Foxglove.")],
 ) -> None:
     """Convert a recording for Foxglove: pictures, distances, arrows, decisions, and all numbers for plots."""
-    from services.launcher.terminal.tables import print_rows
+    from services.launcher.terminal.output import print_rows
     from services.recorder.foxglove.export import export, load_drawings
 
     load_drawings()  # says what to install before the next line fails

@@ -25,19 +25,18 @@ def goto(
     endpoint: options.Endpoint = None,
 ) -> None:
     """Drive to where a picture was taken."""
-    from services.launcher.client.failure import ExperimentError, one_line_errors
+    from services.launcher.client.failure import ExperimentError
     from services.launcher.client.maps import require_map
     from services.launcher.client.mission import MissionClient, goal_features
     from services.launcher.client.stack import StackChoice, open_stack
+    from services.launcher.client.trail import driven_m
     from services.launcher.drawing.pictures import frame_from_file
-    from services.launcher.evaluation.trail import driven_m
-    from services.launcher.terminal.output import rounded, write_json
+    from services.launcher.terminal.output import print_figures, rounded, wide_console, write_json
     from services.launcher.terminal.progress import mission_progress
-    from services.launcher.terminal.tables import print_figures, wide_console
     from shared.messages import MissionRequest
 
     choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
-    with one_line_errors(), open_stack(choice) as stack:
+    with open_stack(choice) as stack:
         require_map(stack, map_name)
         client = MissionClient(stack.bus, stack.robot)
         goal = goal_features(stack.bus, frame_from_file(image, stack.robot))

@@ -22,7 +22,7 @@ NewName = Annotated[str | None, typer.Option("--name", help="Import under this n
 def list_maps(data_dir: options.DataDir = options.DATA_DIR) -> None:
     """Show all maps."""
     from services.launcher.client.maps import open_store
-    from services.launcher.terminal.tables import print_rows
+    from services.launcher.terminal.output import print_rows
 
     with open_store(data_dir) as store:
         rows = store.get("/maps").raise_for_status().json()
@@ -83,7 +83,7 @@ def delete_map(name: Name, data_dir: options.DataDir = options.DATA_DIR) -> None
 def check_maps(name: AnyName = None, data_dir: options.DataDir = options.DATA_DIR) -> None:
     """List everything that is damaged; exit with 1 if something is."""
     from services.launcher.client.maps import open_store
-    from services.launcher.terminal.tables import print_rows
+    from services.launcher.terminal.output import print_rows
 
     with open_store(data_dir) as store:
         answer = store.get("/check" if name is None else f"/maps/{name}/check")

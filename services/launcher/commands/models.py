@@ -17,7 +17,7 @@ def list_models() -> None:
     """Every model: what needs it, its licence, its size, and whether it is here."""
     from services.features.networks.cache import place_of, state_of
     from services.features.networks.catalogue import MODELS
-    from services.launcher.terminal.tables import print_rows, wide_console
+    from services.launcher.terminal.output import print_rows, wide_console
 
     rows = [
         {
@@ -84,7 +84,7 @@ def _load(model: "TrainedModel") -> None:
 
 def _print_state(model: "TrainedModel") -> str:
     from services.features.networks.cache import place_of, state_of
-    from services.launcher.terminal.tables import wide_console
+    from services.launcher.terminal.output import wide_console
 
     state = state_of(model)
     wide_console().print(f"{model.name}: {state}, {path_of(model)}")

@@ -21,7 +21,7 @@ def record(
     """Write what the bus of a running stack says into an MCAP file, until Ctrl+C."""
     from services.launcher.client.address import find_address
     from services.launcher.client.failure import ExperimentError
-    from services.launcher.terminal.tables import print_rows, wide_console
+    from services.launcher.terminal.output import print_rows, wide_console
     from services.recorder.channels import topics_named
     from services.recorder.recorder import record
     from services.recorder.recording import RecordingWriter

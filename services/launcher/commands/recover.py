@@ -14,7 +14,7 @@ def recover(
     out: Annotated[Path, typer.Argument(help="The new, whole one.")],
 ) -> None:
     """Save what is in a broken recording: every message up to the first damage, in a new one."""
-    from services.recorder.recovering import recover
+    from services.recorder.recording import recover
 
     found = recover(file, out)
     state = "was whole" if found.whole else f"ends early ({found.problem})"

@@ -27,10 +27,10 @@ def replay(
     Maps are those of the data folder. A robot that lives is never mixed with a recorded one: --remap it.
     """
     from services.launcher.client.replay_bus import new_names, open_replay_bus
-    from services.launcher.terminal.tables import print_rows, wide_console
+    from services.launcher.terminal.output import print_rows, wide_console
     from services.recorder.channels import topic_of, topics_named
     from services.recorder.player import Player, play
-    from services.recorder.recording import contents, read
+    from services.recorder.reading import contents, read
     from shared.lifecycle import stop_on_signals
 
     names, left_out = new_names(remap or []), topics_named(without)

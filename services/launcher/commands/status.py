@@ -13,7 +13,7 @@ def status(data_dir: options.StackDir = options.DATA_DIR, as_json: options.AsJso
     from rich.console import Console
 
     from services.launcher.processes.state import StateFolder
-    from services.launcher.terminal.tables import status_table
+    from services.launcher.terminal.services import status_table
 
     state = StateFolder(data_dir.resolve()).read()
     if as_json:

@@ -45,7 +45,7 @@ def up(
     from services.launcher.compose.compose_file import COMPOSE_FILE
     from services.launcher.processes.running import run_foreground, start_detached
     from services.launcher.processes.stack_settings import StackSettings
-    from services.launcher.terminal.tables import Changes, status_table
+    from services.launcher.terminal.services import Changes, status_table
 
     choices: dict[str, Any] = {"world": world, "lockstep": lockstep, "seed": seed, "profile": profile}
     settings = StackSettings(data_dir.resolve(), **choices, secure=secure)

@@ -17,9 +17,8 @@ from services.launcher.evaluation.drawings import draw_round
 from services.launcher.evaluation.exploration import Exploration, explore, figures
 from services.launcher.evaluation.rounds import Game, Round
 from services.launcher.evaluation.truth_file import save_truth, truth_path
-from services.launcher.terminal.output import write_json
+from services.launcher.terminal.output import print_rows, write_json
 from services.launcher.terminal.progress import mission_progress
-from services.launcher.terminal.tables import print_rows
 from shared.messages import MissionStatus
 from simulator.world.freespace import FreeSpace
 from simulator.world.world_file import WorldFile

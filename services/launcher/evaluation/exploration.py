@@ -5,16 +5,17 @@ from pathlib import Path
 
 import numpy as np
 
+from services.launcher.client.environments import environment_of
 from services.launcher.client.experimenter import Experimenter
 from services.launcher.client.failure import ExperimentError
 from services.launcher.client.maps import delete_map, read_map, require_map
-from services.launcher.client.mission import MissionClient, MissionRun, Watch
+from services.launcher.client.mission import MissionClient, MissionRun
 from services.launcher.client.stack import Stack
-from services.launcher.evaluation.environments import environment_of
+from services.launcher.client.trail import collisions, driven_m, manual_moves
 from services.launcher.evaluation.map_quality import EdgeCheck, check_edges, components, coverage
-from services.launcher.evaluation.trail import collisions, driven_m, manual_moves
 from services.launcher.evaluation.truth_file import MapTruth, join_truth, load_truth
 from services.launcher.terminal.output import rounded
+from services.launcher.terminal.progress import Watch
 from shared.messages import MapReply, MissionRequest
 from shared.messages.simulation import Pose
 from simulator.world.freespace import FreeSpace

@@ -9,10 +9,11 @@ import numpy as np
 from services.launcher.client.experimenter import Experimenter
 from services.launcher.client.failure import ExperimentError
 from services.launcher.client.maps import read_map
-from services.launcher.client.mission import MissionClient, MissionRun, Watch, goal_features
+from services.launcher.client.mission import MissionClient, MissionRun, goal_features
 from services.launcher.client.stack import Stack
-from services.launcher.evaluation.trail import collisions, driven_m, manual_moves, spl
+from services.launcher.client.trail import collisions, driven_m, manual_moves, spl
 from services.launcher.terminal.output import rounded
+from services.launcher.terminal.progress import Watch
 from shared.messages import MissionRequest
 from shared.messages.sensors import Frame
 from shared.messages.simulation import Pose, Truth

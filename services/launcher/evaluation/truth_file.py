@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from services.launcher.client.failure import ExperimentError
-from services.launcher.evaluation.trail import Trail
+from services.launcher.client.trail import Trail
 from services.launcher.terminal.output import write_json
 from shared.messages.maps import Node
 from shared.messages.simulation import Pose

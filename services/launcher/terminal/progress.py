@@ -1,16 +1,18 @@
-"""What a person sees while a mission runs: steps, rate, places, similarity, reason of the last decision."""
+"""What a person sees while a mission runs: steps, rate, nodes, similarity, reason of the last decision."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from services.launcher.client.mission import Watch
 from shared.messages import MissionStatus
 
 LINE_PERIOD_S = 20.0
+"""Between two lines where nobody looks at a terminal: a log of an hour stays short."""
+
+Watch = Callable[[MissionStatus], None]
 
 
 @contextmanager
@@ -41,9 +43,9 @@ def _plain_lines(console: Console, title: str, start_s: float) -> Watch:
 def describe(status: MissionStatus, start_s: float) -> str:
     """One line about a running mission."""
     rate = status.step / max(time.monotonic() - start_s, 1e-9)
-    place = f", via {status.via_index + 1}/{len(status.via_points)}" if status.via_points else ""
+    waypoint = f", via {status.via_index + 1}/{len(status.via_points)}" if status.via_points else ""
     frontiers = f", {status.open_directions} open" if status.action == "explore" else ""
     return (
         f"step {status.step}, {rate:.1f} steps/s, {status.nodes} nodes, {status.edges} edges"
-        f"{frontiers}{place}, S {status.similarity}: {status.reason[:60]}"
+        f"{frontiers}{waypoint}, S {status.similarity}: {status.reason[:60]}"
     )

@@ -17,8 +17,8 @@ from mcap.writer import CompressionType, Writer
 from services.recorder.backlog import Sample
 from services.recorder.channels import SCHEMA_ENCODING, RecordingError, topic_of
 from services.recorder.foxglove.plain_json import plain_json, plain_schema
+from services.recorder.reading import WholePart
 from services.recorder.recording import CHUNK_BYTES
-from services.recorder.whole_part import WholePart
 from shared.messages.base import Message
 from shared.wire import WireError, decode
 

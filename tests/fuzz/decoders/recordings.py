@@ -5,8 +5,8 @@ from pathlib import Path
 
 from services.recorder.backlog import Sample
 from services.recorder.channels import RecordingError
-from services.recorder.recording import RecordingWriter, contents, read
-from services.recorder.whole_part import WholePart
+from services.recorder.reading import WholePart, contents, read
+from services.recorder.recording import RecordingWriter
 from shared.messages import Ranges
 from shared.wire import encode
 from tests.fuzz.decoder import Decoder

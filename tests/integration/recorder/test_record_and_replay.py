@@ -11,9 +11,9 @@ import pytest
 
 from services.recorder.channels import RecordingError
 from services.recorder.player import Player, play
+from services.recorder.reading import contents, read
 from services.recorder.recorder import record
-from services.recorder.recording import RecordingWriter, contents, read
-from services.recorder.recovering import recover
+from services.recorder.recording import RecordingWriter, recover
 from shared.bus import open_bus, wait_until
 from shared.messages import Frame, Ranges
 from shared.topics import FRAME, RANGES, TRUTH

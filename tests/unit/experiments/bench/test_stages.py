@@ -1,10 +1,10 @@
-"""Durations of stages from hand-made arrivals."""
+"""Durations of stages, and the latency from frame to command, from hand-made arrivals."""
 
 import numpy as np
 import pytest
 
-from experiments.bench.stages import Arrival, stage_durations_ms, table
-from shared.messages import Command, Event, Features, Heading, Truth
+from experiments.bench.stages import Arrival, latency, stage_durations_ms, table
+from shared.messages import Command, Event, Features, Frame, Heading, Truth
 from shared.messages.missions import EventValue
 from shared.messages.simulation import Pose
 
@@ -47,3 +47,35 @@ def test_a_cycle_that_lacks_a_message_is_left_out():
 
 def test_table_leaves_out_what_nobody_measured():
     assert table({"render": [1.0, 3.0], "match": []}) == {"render": {"p50_ms": 2.0, "p99_ms": 2.98}}
+
+
+def heard(frames, commands):
+    """Arrivals of frames and commands at these seconds, by number."""
+    picture = {"encoding": "bgr8", "width_px": 2, "height_px": 1, "data": bytes(6)}
+    messages = [("frame", s, Frame(seq=k, robot="r1", **picture)) for k, s in frames.items()]
+    messages += [("command", s, Command(seq=k, robot="r1")) for k, s in commands.items()]
+    return [Arrival(*message) for message in messages]
+
+
+def test_waits_are_those_of_frames_that_got_a_command():
+    frames = {k: 10.0 + 0.2 * k for k in range(6)}
+    commands = {1: frames[1] + 0.1, 2: frames[2] + 0.1, 4: frames[4] + 0.3}
+    found = latency(heard(frames, commands))
+    assert found["p50_ms"] == pytest.approx(100.0)
+    assert found["p99_ms"] == pytest.approx(296.0)
+    assert found["frames"] == 4  # 1 to 4: before and after them nothing drives
+    assert found["answered"] == pytest.approx(0.75)
+
+
+def test_of_a_repeated_frame_and_command_the_first_counts():
+    again = heard({1: 5.0}, {1: 6.0})
+    assert latency([*heard({1: 1.0}, {1: 1.1}), *again])["p50_ms"] == pytest.approx(100.0)
+
+
+@pytest.mark.parametrize(("frames", "count"), [({}, 0), ({1: 1.0}, 0)])
+def test_without_commands_there_is_no_figure(frames, count):
+    assert latency(heard(frames, {})) == {"frames": count}
+
+
+def test_commands_for_frames_nobody_saw_give_no_figure():
+    assert latency(heard({}, {3: 1.0})) == {"frames": 0}

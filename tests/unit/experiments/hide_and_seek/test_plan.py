@@ -2,7 +2,8 @@
 
 import pytest
 
-from experiments.hide_and_seek.plan import plan_suite, world_label
+from experiments.hide_and_seek.plan import plan_suite
+from services.launcher.client.run_record import world_label
 
 
 def test_the_thesis_suite_has_fourteen_rounds_in_four_worlds():

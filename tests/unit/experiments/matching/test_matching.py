@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from experiments.matching.measure import measure_pair, words_of
+from experiments.matching.measure import extracted, measure_pair
 from experiments.matching.placing import (
     UNCHANGED,
     Change,
@@ -75,11 +75,11 @@ def test_the_known_map_tells_where_a_pixel_went(picture, change):
 
 def test_the_same_place_matches_wholly_and_a_high_latitude_less(picture):
     pipeline = Pipeline(profile_of("sift", "equirectangular", "brute_force"))
-    first = words_of(picture, UNCHANGED, pipeline, CANVAS)
+    first = extracted(picture, UNCHANGED, pipeline, CANVAS)
     same = measure_pair(first, first, "euclidean", "brute_force")
     high = measure_pair(
         first,
-        words_of(picture, Change("latitude", 60.0, lat_deg=60.0), pipeline, CANVAS),
+        extracted(picture, Change("latitude", 60.0, lat_deg=60.0), pipeline, CANVAS),
         "euclidean",
         "brute_force",
     )
@@ -90,7 +90,7 @@ def test_the_same_place_matches_wholly_and_a_high_latitude_less(picture):
 
 def test_keypoints_of_the_picture_s_edge_are_left_out(picture):
     pipeline = Pipeline(profile_of("orb", "equirectangular", "brute_force"))
-    pixels = words_of(picture, Change("rotation", 45.0), pipeline, CANVAS).pixels
+    pixels = extracted(picture, Change("rotation", 45.0), pipeline, CANVAS).pixels
     assert len(pixels) > 20
     assert (np.abs(pixels - SIDE / 2.0) < SIDE / 2.0 - 5.0).all()
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from experiments.monte_carlo.ahae import Statistics
 from experiments.monte_carlo.claims import CLAIMS, judged
 from experiments.monte_carlo.noise import ALL_METHODS, NoisePlan, epipolar_paths, noisy_errors, with_outliers
-from experiments.monte_carlo.statistics import Statistics
 from experiments.monte_carlo.sweep import FUNCTIONS, WEIGHTED, SweepPlan, scene_sweep
-from experiments.monte_carlo.work import results_of
+from experiments.work.workers import results_of
 
 
 def test_the_epipolar_direction_stands_what_the_other_methods_do_not():

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from experiments.scale.maps import places_of, put_together
+from experiments.scale.maps import nodes_of, put_together
 from services.features.pipeline.interfaces import FeatureSet
 
 WORDS = 60
@@ -18,14 +18,14 @@ def seen(number: int) -> FeatureSet:
 
 def test_the_real_places_come_first_and_the_rest_is_made_of_four():
     real = [seen(n) for n in range(6)]
-    places = list(places_of(real, 9, np.random.default_rng(1)))
+    places = list(nodes_of(real, 9, np.random.default_rng(1)))
     assert len(places) == 9
     assert all(place is other for place, other in zip(places, real, strict=False))
     assert all(1 < len(np.unique(place.descriptors)) <= 4 for place in places[6:])
 
 
 def test_no_more_places_than_asked_for():
-    assert len(list(places_of([seen(n) for n in range(6)], 4, np.random.default_rng(1)))) == 4
+    assert len(list(nodes_of([seen(n) for n in range(6)], 4, np.random.default_rng(1)))) == 4
 
 
 def test_each_direction_shows_one_of_the_sources_and_the_strongest_words_come_first():

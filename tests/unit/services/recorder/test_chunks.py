@@ -12,8 +12,8 @@ from mcap.records import Chunk, DataEnd, Footer, Header
 from services.recorder import chunks
 from services.recorder.channels import RecordingError
 from services.recorder.chunks import MAX_CHUNK_BYTES
-from services.recorder.recording import contents, read
-from services.recorder.recovering import recover
+from services.recorder.reading import contents, read
+from services.recorder.recording import recover
 
 MAGIC = bytes((137, 77, 67, 65, 80, 48, 13, 10))
 BLOCK = 128 * 1024

@@ -19,8 +19,7 @@ from services.recorder.backlog import Sample
 from services.recorder.channels import RecordingError
 from services.recorder.foxglove.export import export
 from services.recorder.foxglove.plain_json import plain_json, plain_schema
-from services.recorder.recording import RecordingWriter
-from services.recorder.recovering import recover
+from services.recorder.recording import RecordingWriter, recover
 from shared.messages import Command, Event, Features, Frame, Heading, MapDelta, Message, MissionStatus, Ranges
 from shared.messages.maps import AddNode, Node, PutEdge
 from shared.messages.missions import EventValue

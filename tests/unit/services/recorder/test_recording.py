@@ -7,9 +7,8 @@ import pytest
 
 from services.recorder.backlog import Backlog, Sample
 from services.recorder.channels import RecordingError, topic_of, topics_named
-from services.recorder.recording import RecordingWriter, contents, read
-from services.recorder.recovering import recover
-from services.recorder.whole_part import WholePart
+from services.recorder.reading import WholePart, contents, read
+from services.recorder.recording import RecordingWriter, recover
 from shared.messages import Ranges
 from shared.topics import TOPICS
 from shared.wire import encode

@@ -3,7 +3,7 @@
 import pytest
 
 from services.launcher.client.failure import ExperimentError
-from services.launcher.evaluation.trail import Trail
+from services.launcher.client.trail import Trail
 from services.launcher.evaluation.truth_file import MapTruth, join_truth, load_truth, save_truth
 from shared.messages.maps import Node
 from shared.messages.simulation import Pose, Truth

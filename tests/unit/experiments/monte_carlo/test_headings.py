@@ -1,26 +1,23 @@
-"""The tables and batches of the Monte Carlo study give the headings of the planner's own methods."""
+"""The batches of the Monte Carlo study give the headings of the planner's own methods."""
 
 import numpy as np
 import pytest
 import torch
 
-from experiments.monte_carlo.ahae import METHODS, AhaePlan, scene_errors
-from experiments.monte_carlo.batched import batch_headings
+from experiments.monte_carlo.ahae import DEG, METHODS, AhaePlan, scene_errors
+from experiments.monte_carlo.batched import all_headings, batch_headings
 from experiments.monte_carlo.scene import (
     HEIGHT_M,
     PLACEMENTS,
     SIDE_M,
     MonteCarloScene,
+    draw_choices,
     draw_scene,
     lonlat_from,
 )
-from experiments.monte_carlo.tracking import DEG, DcpePlan, follow, scene_paths
-from experiments.monte_carlo.votes import draw_choices, headings, vote_table
+from experiments.monte_carlo.tracking import DcpePlan, follow, scene_paths
 from services.planner.heading.methods import heading_estimate
-from services.planner.heading.weights import WeightSettings
-from shared.geometry.sphere import wrap_rad
-
-COUNTS = (5, 21, 40)
+from shared.geometry.angles import wrap_rad
 
 
 def expected(scene, chosen, method):
@@ -30,26 +27,17 @@ def expected(scene, chosen, method):
 
 
 @pytest.mark.parametrize("placement", PLACEMENTS)
-def test_sums_over_the_table_are_the_methods_of_the_planner(placement):
-    rng = np.random.default_rng(3)
-    scene = draw_scene(placement, rng, keypoints=80)
-    chosen = draw_choices(6, max(COUNTS), 80, rng)
-    found = headings(vote_table(scene, WeightSettings()), chosen, COUNTS)
-    for k, count in enumerate(COUNTS):
-        for m, method in enumerate(METHODS):
-            error = wrap_rad(found[m, k] - expected(scene, chosen[:, :count], method))
-            assert np.abs(error).max() < 1e-9
-
-
-@pytest.mark.parametrize("placement", PLACEMENTS)
 @pytest.mark.parametrize("method", METHODS)
 def test_batches_are_the_methods_of_the_planner(placement, method):
     rng = np.random.default_rng(4)
     scene = draw_scene(placement, rng, keypoints=60)
     chosen = draw_choices(8, 34, 60, rng)
     current, target = lonlat_from(scene.current, scene.points), lonlat_from(scene.target, scene.points)
-    found = batch_headings(method, torch.as_tensor(current[chosen]), torch.as_tensor(target[chosen]), DEG)
-    assert np.abs(wrap_rad(found.numpy() - expected(scene, chosen, method))).max() < 1e-9
+    seen = torch.as_tensor(current[chosen]), torch.as_tensor(target[chosen])
+    wanted = expected(scene, chosen, method)
+    together = all_headings(*seen, DEG)[METHODS.index(method)]
+    for found in (batch_headings(method, *seen, DEG), together):
+        assert np.abs(wrap_rad(found.numpy() - wanted)).max() < 1e-9
 
 
 @pytest.mark.parametrize(
@@ -75,17 +63,13 @@ def test_errors_fall_with_the_number_of_matches_and_depend_on_the_seed_alone():
 
 def test_a_perfect_guide_covers_the_straight_way_and_a_lost_one_twice_it():
     scene = MonteCarloScene(np.ones((4, 3)), np.array([0.0, 0.0]), np.array([5.0, 0.0]))
-    chosen = np.array([[0, 1, 2, 3]])
-    assert follow(scene, chosen, lambda c, _: torch.zeros(len(c), dtype=torch.float64))[0] == pytest.approx(
-        0.0, abs=1e-9
-    )
-    assert follow(scene, chosen, lambda c, _: torch.full((len(c),), np.pi, dtype=torch.float64))[
-        0
-    ] == pytest.approx(100.0)
+    for heading_rad, covered in ((0.0, 0.0), (np.pi, 100.0)):
+        found = follow(scene, scene.points[None], lambda c, _, to=heading_rad: torch.full((len(c),), to))
+        assert found[0] == pytest.approx(covered, abs=1e-5)
 
 
 def test_paths_in_the_middle_of_many_keypoints_are_nearly_straight():
-    covered = scene_paths(DcpePlan("centre", 1, 60, 1, runs=3))
+    covered = scene_paths(DcpePlan("centre", 1, 1, runs=3, count=60))
     assert covered.shape == (6, 3)
     assert (covered >= 0.0).all()
     assert (covered <= 100.0).all()

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from experiments.scale.poses import NEAR, place_poses, query_poses
+from experiments.scale.frames import NEAR, node_poses, query_poses
 from shared.messages.simulation import Pose
 from simulator.world.freespace import FreeSpace, free_space
 from simulator.world.world_file import load_world
@@ -23,14 +23,14 @@ def apart_m(one: Pose, other: Pose) -> float:
 
 
 def test_places_keep_their_distance_and_leave_no_gap(space):
-    places = place_poses(space, SPACING_M, np.random.default_rng(1))
+    places = node_poses(space, SPACING_M, np.random.default_rng(1))
     assert min(apart_m(a, b) for k, a in enumerate(places) for b in places[:k]) >= SPACING_M
     for x_m, y_m in space.centres_m()[::17].tolist():
         assert min(math.dist((x_m, y_m), (place.x_m, place.y_m)) for place in places) < SPACING_M
 
 
 def test_pictures_are_taken_in_free_sight_of_a_place_near_it(space):
-    places = place_poses(space, SPACING_M, np.random.default_rng(1))
+    places = node_poses(space, SPACING_M, np.random.default_rng(1))
     queries = query_poses(space, places, SPACING_M, 30, np.random.default_rng(2))
     assert len(queries) == 30
     for query in queries:
@@ -43,5 +43,5 @@ def test_pictures_are_taken_in_free_sight_of_a_place_near_it(space):
 
 
 def test_the_same_seed_gives_the_same_poses(space):
-    first, second = (place_poses(space, SPACING_M, np.random.default_rng(5)) for _ in range(2))
+    first, second = (node_poses(space, SPACING_M, np.random.default_rng(5)) for _ in range(2))
     assert first == second

@@ -2,7 +2,7 @@
 
 from PIL import Image
 
-from experiments.plots.scale import draw_growth
+from experiments.scale.drawing import draw_growth
 
 POINTS = [
     {"nodes": n, "exhaustive_ms": e, "localise_p99_ms": 40.0, "localise_p50_ms": 12.0, "track_p50_ms": 8.0}

@@ -1,16 +1,12 @@
-"""Figures, services and checks as tables for the shell."""
+"""Services of a stack and checks of a machine as tables for the shell."""
 
 from collections.abc import Mapping, Sequence
 
-from rich.console import Console
 from rich.table import Table
 
 from services.launcher.processes.machine import Check
 from services.launcher.processes.runner import State
 from services.launcher.processes.state import ServiceStatus
-
-PIPE_WIDTH = 160
-"""Columns where there is no terminal to ask, for example in a log file."""
 
 COLOURS = {
     State.HEALTHY: "green",
@@ -19,30 +15,6 @@ COLOURS = {
     State.SILENT: "red",
     State.RESTARTING: "yellow",
 }
-
-
-def print_figures(title: str, figures: Mapping[str, object]) -> None:
-    """One row per plain figure; lists and nested figures stay in the JSON."""
-    table = Table(title=title, show_header=False)
-    for name, value in figures.items():
-        if isinstance(value, str | int | float) or value is None:
-            table.add_row(name, f"{value:g}" if isinstance(value, float) else str(value))
-    wide_console().print(table)
-
-
-def print_rows(title: str, rows: Sequence[Mapping[str, object]], columns: Sequence[str] = ()) -> None:
-    """One column per key of the first row, or those of `columns` alone."""
-    table = Table(*(columns or (rows[0] if rows else ())), title=title)
-    for row in rows:
-        values = [row[name] for name in columns] if columns else list(row.values())
-        table.add_row(*(f"{v:.3g}" if isinstance(v, float) else str(v) for v in values))
-    wide_console().print(table)
-
-
-def wide_console(*, stderr: bool = False) -> Console:
-    """A console that does not break lines where nobody looks at a terminal."""
-    console = Console(stderr=stderr)
-    return console if console.is_terminal else Console(stderr=stderr, width=PIPE_WIDTH)
 
 
 def status_table(services: Mapping[str, ServiceStatus]) -> Table:

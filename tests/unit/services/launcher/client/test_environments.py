@@ -2,7 +2,7 @@
 
 from services.drive.settings import DriveSettings
 from services.features.pipeline.named_pipelines import find_profile
-from services.launcher.evaluation.environments import INDOOR, OUTDOOR, environment_of
+from services.launcher.client.environments import INDOOR, OUTDOOR, environment_of
 from services.planner.profiles import profile_named
 
 

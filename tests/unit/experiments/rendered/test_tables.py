@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from experiments.studies.pair_headings import METHODS, PairResult
-from experiments.studies.pair_tables import distance_table, method_table, status_counts
+from experiments.rendered.headings import METHODS, PairResult
+from experiments.rendered.tables import distance_table, method_table, status_counts
 
 
 def result(distance_m, error_deg, verified=30):

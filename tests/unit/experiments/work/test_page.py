@@ -1,6 +1,6 @@
 """A study's page: tables, figures that are there, nothing that is not."""
 
-from experiments.studies.page import write_page
+from experiments.work.page import write_page
 
 
 def test_a_page_holds_its_tables_and_the_figures_that_exist(tmp_path):

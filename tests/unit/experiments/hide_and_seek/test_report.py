@@ -1,7 +1,13 @@
 """What rounds come to, and how a suite tells it."""
 
-from experiments.hide_and_seek.markdown import suite_markdown
-from services.launcher.evaluation.report import combined, report, summary
+from experiments.hide_and_seek.report import (
+    combined,
+    report,
+    rounds_figures,
+    suite_figures,
+    suite_markdown,
+    summary,
+)
 
 
 def one(success=True, **changes):
@@ -54,3 +60,18 @@ def test_the_markdown_names_what_was_not_found():
     assert "25%" in text
     assert "- attic, default, round 2: lost: no place (4.00 m left)" in text
     assert "| attic | 10 | 20 | 0.97 | 1 | 0 | 0 | 0 | 500 | 10 | 90 |" in text
+
+
+def test_figures_of_rounds() -> None:
+    assert rounds_figures([one(), one(success=False), one()]) == {
+        "rounds": 3, "found": 2, "final_distance_median_m": 0.1, "spl_mean": 0.5333, "collisions": 0,
+        "outcome": "succeeded",
+    }  # fmt: skip
+    assert rounds_figures([one(success=False)])["outcome"] == "failed"
+
+
+def test_figures_of_a_suite_name_the_profile_only_where_there_are_several() -> None:
+    runs = [{"profile": "default", "rounds": [one()]}, {"profile": "default", "rounds": [one(), one()]}]
+    assert suite_figures(runs)["rounds"] == 3
+    told = suite_figures([*runs, {"profile": "rules/strict.json", "rounds": [one(success=False)]}])
+    assert (told["default: found"], told["strict: found"], told["strict: rounds"]) == (3, 0, 1)

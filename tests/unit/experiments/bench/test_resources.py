@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from experiments.bench.processor_time import ServiceTimes, processor_s, processors_s
+from experiments.bench.resources import ServiceTimes, processor_s, processors_s
 from shared.bus import wait_until
 
 BUSY = "while True: pass"

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from experiments.studies.pairs import APART_M, PosePair, draw_pairs
+from experiments.rendered.pairs import APART_M, PosePair, draw_pairs
 from shared.messages.simulation import Pose
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from services.launcher.evaluation.trail import Trail, collisions, driven_m, manual_moves
+from services.launcher.client.trail import Trail, collisions, driven_m, manual_moves, spl
 from shared.messages.simulation import Pose, Truth
 
 SECOND_NS = 1_000_000_000
@@ -59,3 +59,16 @@ def test_a_capture_time_outside_the_trail_or_in_a_gap_has_no_pose():
     trail.add([truth(1, 0.0), truth(9, 0.2)])
     for stamp_s in (0.1, 1.0, 3.0):
         assert trail.pose_at(int(stamp_s * SECOND_NS)) is None
+
+
+@pytest.mark.parametrize(
+    ("success", "shortest_m", "driven_m", "expected"),
+    [(True, 2.0, 4.0, 0.5), (True, 2.0, 2.0, 1.0), (True, 2.0, 1.8, 1.0), (False, 2.0, 2.0, 0.0)],
+)
+def test_spl_of_one_round(success, shortest_m, driven_m, expected):
+    assert spl(success, shortest_m, driven_m) == expected
+
+
+def test_a_shortest_way_of_no_length_is_an_error():
+    with pytest.raises(ValueError, match="shortest_m must be positive, got 0"):
+        spl(True, 0.0, 1.0)

@@ -2,7 +2,7 @@
 
 import math
 
-from services.launcher.evaluation.reversals import longest_stay, reversals
+from experiments.driving.thesis_failures import longest_stay, reversals
 from shared.messages.simulation import Pose, Truth
 
 
@@ -23,7 +23,7 @@ def test_noise_of_standing_still_is_no_turn():
     assert reversals(way(*[(0.01 * (-1) ** k, 0.0) for k in range(50)])) == 0
 
 
-def test_longest_stay_counts_frames_in_one_place():
+def test_longest_stay_counts_frames_on_one_spot():
     still = [(1.0, 0.01 * (k % 3)) for k in range(30)]
     moving = [(1.0 + 0.3 * k, 0.0) for k in range(1, 20)]
     assert longest_stay(way(*still, *moving), 0.5) in (31, 32)
