@@ -10,7 +10,7 @@ FUZZ_ARGS ?= --seconds 60 --json runs/fuzz/report.json
 
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
-INPUTS := pyproject.toml constraints.txt deploy/packaging/opencv-shim/pyproject.toml
+INPUTS := pyproject.toml experiments/pyproject.toml constraints.txt deploy/packaging/opencv-shim/pyproject.toml
 SOURCES := services shared simulator experiments tests
 
 .PHONY: setup demo test faults check lint types bench fuzz sbom audit screenshots clean
@@ -22,7 +22,7 @@ $(STAMP): $(INPUTS)
 	@bash deploy/setup/venv.sh "$(PYTHON)" "$(VENV)"
 	@# --no-compile: a run imports a small part of torch and sympy; compiling all of it doubles the time.
 	$(BIN)/python -m pip install --quiet --no-compile --constraint constraints.txt \
-		./deploy/packaging/opencv-shim --editable '.[dev]'
+		./deploy/packaging/opencv-shim --editable '.[dev]' --editable ./experiments
 	$(BIN)/python -m pip check
 	@touch $@
 

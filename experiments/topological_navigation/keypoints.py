@@ -39,7 +39,11 @@ Details = tuple[torch.Tensor, torch.Tensor]
 
 
 class SelectKeypointDescriptor:
-    """Detects and describes keypoints of one picture with a chosen descriptor and representation."""
+    """Detects and describes keypoints of one picture with a chosen descriptor and representation.
+
+    Attributes:
+        img_info: the picture as it was given; another may be set.
+    """
 
     def __init__(
         self,
@@ -75,7 +79,7 @@ class SelectKeypointDescriptor:
         Raises:
             ValueError: a name that is not known, or plugins that do not work together.
         """
-        self._img_info: Any = img_info
+        self.img_info: Any = img_info
         self._kp_descriptor, self._representation = kp_descriptor, representation
         self.draw_keypoints = draw_keypoints
         self.drawing: Image | None = None
@@ -86,15 +90,6 @@ class SelectKeypointDescriptor:
         self.ignore_border_kp = ignore_border_kp
         self._pipeline: Pipeline | None = None
         self._profile()
-
-    @property
-    def img_info(self) -> Any:
-        """The picture as it was given."""
-        return self._img_info
-
-    @img_info.setter
-    def img_info(self, new_img_info: Any) -> None:
-        self._img_info = new_img_info
 
     @property
     def kp_descriptor(self) -> str:
@@ -130,7 +125,7 @@ class SelectKeypointDescriptor:
 
     def try_descriptor(self) -> Details:
         """Keypoints and descriptors of `img_info` with the chosen descriptor and representation."""
-        return self._details(self._img_info)
+        return self._details(self.img_info)
 
     def compute_cv2_keypoints(self, img: Image) -> Details:
         """Keypoints (M, 4) and SIFT, BEBLID or ORB descriptors (M, 128 | 64 | 32) of a picture."""

@@ -258,22 +258,9 @@ class TopologicalNavigation(SelectKeypointDescriptor):
             raise ValueError(f"the matches give no heading: {choice.reason}")
         return math.degrees(angle), math.cos(angle), math.sin(angle)
 
-    @staticmethod
-    def get_unit_heading_wrt_latitude(
-        u_c: FloatArray, v_c: FloatArray, v_t: FloatArray, v_h: FloatArray
-    ) -> FloatArray:
-        """See vectors.latitude_headings."""
-        return latitude_headings(u_c, v_c, v_t, v_h)
-
-    @staticmethod
-    def get_unit_heading(u_c: list[FloatArray], u_t: list[FloatArray]) -> FloatArray:
-        """See vectors.pair_headings."""
-        return pair_headings(u_c, u_t)
-
-    @staticmethod
-    def get_keypoint_unitvector(keypoints_ang: FloatArray) -> FloatArray:
-        """See vectors.keypoint_unit_vectors."""
-        return keypoint_unit_vectors(keypoints_ang)
+    get_unit_heading_wrt_latitude = staticmethod(latitude_headings)
+    get_unit_heading = staticmethod(pair_headings)
+    get_keypoint_unitvector = staticmethod(keypoint_unit_vectors)
 
     def compute_similarity(
         self, node1_details: Features, node2_details: Features
@@ -303,17 +290,14 @@ class TopologicalNavigation(SelectKeypointDescriptor):
             ValueError: the map is empty.
         """
         del current_frame_name, current_frame_number
-        scored = []
-        for node_id in sorted(self._map.features):
-            scored.append(
-                (self.compute_similarity(current_frame_details, self._map.features[node_id]), node_id)
-            )
-        if not scored:
+        nodes = self._map.features
+        if not nodes:
             raise ValueError("the map is empty: load_map or map something first")
-        scored.sort(key=lambda entry: (-entry[0][0], entry[1]))
-        first, closest = scored[0]
-        second = scored[1][0] if len(scored) > 1 else (0.0, np.zeros((0, 2)), np.zeros((0, 2)))
-        return closest, first[0], second[0], first[1], first[2], second[1], second[2]
+        found = {n: self.compute_similarity(current_frame_details, nodes[n]) for n in sorted(nodes)}
+        closest, *rest = sorted(found, key=lambda n: (-found[n][0], n))
+        first = found[closest]
+        second = found[rest[0]] if rest else (0.0, np.zeros((0, 2)), np.zeros((0, 2)))
+        return closest, first[0], second[0], *first[1:], *second[1:]
 
     def _new_mission(self) -> Mission:
         if self.mapping_stage:
