@@ -4,7 +4,6 @@ import threading
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from types import TracebackType
 from typing import Any, Self
 
 from experiments.bench.stages import Arrival
@@ -44,9 +43,7 @@ class Background(ABC):
             raise TimeoutError(f"{self._thread.name}: expected it to be ready within {READY_S:.0f} s")
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """Stop, and wait for the end."""
         self._stop.set()
         self._thread.join()

@@ -10,6 +10,7 @@ from services.launcher.terminal import options
 
 if TYPE_CHECKING:
     from experiments.hide_and_seek.suite import SuiteChoice
+    from services.launcher.client.stack import StackChoice
 
 app = typer.Typer()
 
@@ -53,39 +54,57 @@ def hide_and_seek(
 ) -> None:
     """Find robots that hide at random places, from the pictures they send: the thesis's evaluation."""
     from experiments.hide_and_seek.plan import plan_suite
+    from experiments.hide_and_seek.suite import SuiteChoice
+    from services.launcher.client.stack import StackChoice
+    from services.launcher.terminal.output import new_run_folder
+
+    if suite is None:
+        choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
+        folder = (drawings or new_run_folder(options.RUNS_DIR)) if draw else None
+        _play_rounds(choice, world, seed, map_name, rounds or ROUNDS, max_steps, folder, json_file)
+        return
+    plans = plan_suite(
+        suite,
+        seed,
+        rounds=rounds or SUITE_ROUNDS,
+        worlds=[name.strip() for name in worlds.split(",") if name.strip()],
+        profiles=[profile or "default", *([compare] if compare else [])],
+        max_steps=max_steps,
+        draw=draw,
+    )
+    _play_suite(SuiteChoice(suite, plans, data_dir / "suites", jobs, cluster), data_dir, json_file)
+
+
+def _play_rounds(
+    choice: "StackChoice",
+    world: str,
+    seed: int,
+    map_name: str,
+    rounds: int,
+    max_steps: int,
+    folder: Path | None,
+    json_file: Path | None,
+) -> None:
     from experiments.hide_and_seek.play import Scene, play_rounds
     from experiments.hide_and_seek.report import report, rounds_figures
-    from experiments.hide_and_seek.suite import SuiteChoice
     from services.launcher.client.failure import ExperimentError
     from services.launcher.client.run_record import keep_run
-    from services.launcher.client.stack import StackChoice, open_stack
+    from services.launcher.client.stack import open_stack
     from services.launcher.evaluation.truth_file import load_truth, truth_path
-    from services.launcher.terminal.output import new_run_folder, print_rows, write_json
+    from services.launcher.terminal.output import print_rows, write_json
     from simulator.world.world_file import load_world
 
-    if suite is not None:
-        plans = plan_suite(
-            suite,
-            seed,
-            rounds=rounds or SUITE_ROUNDS,
-            worlds=[name.strip() for name in worlds.split(",") if name.strip()],
-            profiles=[profile or "default", *([compare] if compare else [])],
-            max_steps=max_steps,
-            draw=draw,
-        )
-        _play_suite(SuiteChoice(suite, plans, data_dir / "suites", jobs, cluster), data_dir, json_file)
-        return
     started = datetime.now(UTC)
-    choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
-    scene = Scene(load_world(world), map_name, load_truth(truth_path(data_dir, map_name)))
-    folder = (drawings or new_run_folder(options.RUNS_DIR)) if draw else None
+    scene = Scene(load_world(world), map_name, load_truth(truth_path(choice.data_dir, map_name)))
     played: list[dict[str, Any]] = []
+    told: dict[str, Any] = {}
     with open_stack(choice) as stack:
-        for one in play_rounds(stack, scene, rounds or ROUNDS, seed, max_steps, folder):
+        for one in play_rounds(stack, scene, rounds, seed, max_steps, folder):
             played.append(one)
-            write_json(json_file, report(world, profile or "default", seed, played))
+            told = report(world, choice.profile or "default", seed, played)
+            write_json(json_file, told)
     keep_run(
-        data_dir,
+        choice.data_dir,
         "hide-and-seek",
         started,
         rounds_figures(played),
@@ -95,7 +114,7 @@ def hide_and_seek(
         json_file=json_file,
     )
     print_rows(f"hide and seek in {world}, seed {seed}", played, SHOWN)
-    print_rows("summary", [report(world, profile or "default", seed, played)["summary"]])
+    print_rows("summary", [told["summary"]])
     if not any(r["success"] for r in played):
         raise ExperimentError("no round succeeded")
 

@@ -12,35 +12,6 @@ from services.launcher.terminal.output import rounded
 
 Figures = Mapping[str, Any]
 
-ROUND_COLUMNS = {
-    "world": "world",
-    "profile": "profile",
-    "found": "found",
-    "final_distance_median_m": "median left (m)",
-    "spl_mean": "SPL",
-    "path_ratio_median": "way / shortest",
-    "steps_mean": "steps",
-    "collisions": "collisions",
-    "manual_moves": "moved by hand",
-    "edges_suspended": "edges suspended",
-    "steps_per_s": "steps/s",
-    "render_share": "rendering",
-    "memory_mb": "memory (MB)",
-}
-MAP_COLUMNS = {
-    "world": "world",
-    "nodes": "nodes",
-    "edges": "edges",
-    "coverage": "coverage",
-    "components": "parts",
-    "false_edges": "false edges",
-    "collisions": "collisions",
-    "manual_moves": "moved by hand",
-    "steps": "steps",
-    "s_per_node": "s per node",
-    "kb_per_node": "kB per node",
-}
-
 
 def report(world: str, profile: str, seed: int, rounds: Sequence[Figures]) -> dict[str, Any]:
     """The object of `topnav hide-and-seek --json`; the keys of the summary up to steps_per_s are fixed."""
@@ -98,14 +69,9 @@ def suite_figures(runs: Sequence[Figures]) -> dict[str, Any]:
 
 def suite_markdown(suite: str, maps: Sequence[Figures], runs: Sequence[Figures]) -> str:
     """Tables of maps, runs, and rounds that failed."""
-    lines = [
-        f"# Suite {suite}",
-        "",
-        "## Rounds",
-        "",
-        *markdown_table(ROUND_COLUMNS, [run_row(run) for run in runs]),
-    ]
-    lines += ["", "## Maps", "", *markdown_table(MAP_COLUMNS, [map_row(one) for one in maps])]
+    rounds, explored = [run_row(run) for run in runs], [map_row(one) for one in maps]
+    lines = [f"# Suite {suite}", "", "## Rounds", "", *markdown_table(rounds)]
+    lines += ["", "## Maps", "", *markdown_table(explored)]
     failed = [
         f"- {world_label(run['world'])}, {run['profile']}, round {number}: {one['reason']} "
         f"({one['final_distance_m']:.2f} m left)"
@@ -117,26 +83,41 @@ def suite_markdown(suite: str, maps: Sequence[Figures], runs: Sequence[Figures])
 
 
 def run_row(run: Figures) -> dict[str, Any]:
-    """One run as a row."""
-    summary, stages = run["summary"], run.get("stages", {})
+    """One run as a row for people."""
+    total, stages = run["summary"], run.get("stages", {})
     total_ms = sum(stage["p50_ms"] for stage in stages.values())
     rendering = stages.get("render", {}).get("p50_ms", 0.0) / total_ms if total_ms else None
-    found = sum(bool(one["success"]) for one in run["rounds"])
     return {
-        **summary,
         "world": world_label(run["world"]),
         "profile": run["profile"],
-        "found": f"{found}/{summary['rounds']}",
-        "render_share": f"{rendering:.0%}" if rendering is not None else "",
-        "memory_mb": round(sum(run.get("memory_mb", {}).values())) or "",
+        "found": f"{sum(bool(one['success']) for one in run['rounds'])}/{total['rounds']}",
+        "median left (m)": total["final_distance_median_m"],
+        "SPL": total["spl_mean"],
+        "way / shortest": total["path_ratio_median"],
+        "steps": total["steps_mean"],
+        "collisions": total["collisions"],
+        "moved by hand": total["manual_moves"],
+        "edges suspended": total["edges_suspended"],
+        "steps/s": total["steps_per_s"],
+        "rendering": f"{rendering:.0%}" if rendering is not None else "",
+        "memory (MB)": round(sum(run.get("memory_mb", {}).values())) or "",
     }
 
 
 def map_row(one: Figures) -> dict[str, Any]:
-    """One exploration as a row."""
-    nodes = max(1, one["nodes"])
-    figures = {"s_per_node": one["wall_s"] / nodes, "kb_per_node": one["bytes_per_node"] / 1000}
-    return {**one, **figures, "world": world_label(one["world"])}
+    """One exploration as a row for people."""
+    same = {name: one[name] for name in ("nodes", "edges", "coverage")}
+    return {
+        "world": world_label(one["world"]),
+        **same,
+        "parts": one["components"],
+        "false edges": one["false_edges"],
+        "collisions": one["collisions"],
+        "moved by hand": one["manual_moves"],
+        "steps": one["steps"],
+        "s per node": one["wall_s"] / max(1, one["nodes"]),
+        "kB per node": one["bytes_per_node"] / 1000,
+    }
 
 
 def _by_profile(runs: Sequence[Figures]) -> dict[str, list[Figures]]:

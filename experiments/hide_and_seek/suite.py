@@ -18,7 +18,7 @@ from experiments.work.workers import workers
 from services.launcher.terminal.output import print_rows, wide_console, write_json
 
 POLL_S = 1.0
-SHOWN = ("world", "profile", "found", "final_distance_median_m", "spl_mean", "collisions", "steps_per_s")
+SHOWN = ("world", "profile", "found", "median left (m)", "SPL", "collisions", "steps/s")
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,7 @@ class Chaos:
             self._do(fault, service)
             healthy = self._healthy(stop, service, pid if fault in ("kill", "end") else None)
             after_s = rounded(time.monotonic() - started_s, 2) if healthy else None
-            self._journal.event(at_s=at_s, harm=fault, service=service, healthy_after_s=after_s)
+            self._journal.add("events", at_s=at_s, harm=fault, service=service, healthy_after_s=after_s)
             if not healthy and not stop.is_set():
                 states = {name: s.state.value for name, s in self._launcher.status().items()}
                 self._journal.violation("every service returns", f"not healthy in {BACK_S} s: {states}")

@@ -43,22 +43,16 @@ class Journal:
         """How often an invariant did not hold."""
         return len(self._file.tables["violations"])
 
-    def mission(self, **row: Any) -> None:
-        """Keep one mission that ended."""
-        self._add("results", row)
-
-    def event(self, **row: Any) -> None:
-        """Keep one thing that was done to the stack."""
-        self._add("events", row)
-
     def violation(self, invariant: str, why: str) -> None:
         """An invariant did not hold."""
-        self._add("violations", {"invariant": invariant, "why": why[:400], "after": self._last_event()})
+        self.add("violations", invariant=invariant, why=why[:400], after=self._last_event())
 
-    def memory(self, samples: list[Sample]) -> None:
-        """Keep samples of all services."""
-        for sample in samples:
-            self._add("memory", asdict(sample))
+    def add(self, table: str, **row: Any) -> None:
+        """Keep a mission ("results"), what was done to the stack ("events"), or a sample ("memory")."""
+        with self._lock:
+            self._file.tables[table].append({"at_s": round(self.elapsed_s, 1), **row})
+            if time.monotonic() - self._written_s > WRITE_PERIOD_S or table == "violations":
+                self._write()
 
     def writes(self, acknowledged: int) -> None:
         """How many writes this session had acknowledged so far."""
@@ -92,12 +86,6 @@ class Journal:
     def _last_event(self) -> str:
         events = self._file.tables["events"]
         return f"{events[-1]['harm']} {events[-1]['service']} at {events[-1]['at_s']} s" if events else ""
-
-    def _add(self, table: str, row: dict[str, Any]) -> None:
-        with self._lock:
-            self._file.tables[table].append({"at_s": round(self.elapsed_s, 1), **row})
-            if time.monotonic() - self._written_s > WRITE_PERIOD_S or table == "violations":
-                self._write()
 
     def _write(self) -> None:
         self._written_s = time.monotonic()

@@ -79,7 +79,8 @@ class Missions:
             return
         final = self._patiently(lambda: self._experimenter.truth().pose, stop)
         left_m = float(np.hypot(final.x_m - place.x_m, final.y_m - place.y_m))
-        self._journal.mission(
+        self._journal.add(
+            "results",
             state="unknown" if status.state == "idle" else status.state,
             failure=status.failure,
             steps=status.step,

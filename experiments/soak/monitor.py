@@ -2,6 +2,7 @@
 
 import threading
 import time
+from dataclasses import asdict
 
 from experiments.bench.resources import RESIDENT, memory_mb
 from experiments.soak.growth import Sample
@@ -44,12 +45,12 @@ class Monitor:
         self._last = truth
 
     def _sample(self) -> None:
-        at_s, samples = self._journal.elapsed_s, list[Sample]()
+        at_s = round(self._journal.elapsed_s, 1)
         for name, status in self._launcher.status().items():
             mb = memory_mb(status.pid, RESIDENT) if status.pid is not None else None
-            if mb is not None and status.pid is not None:
-                samples.append(Sample(name, status.pid, round(at_s, 1), mb))
-                if mb > self._most_mb and name not in self._too_large:
-                    self._too_large.add(name)
-                    self._journal.violation("memory is bounded", f"{name} holds {mb} MB")
-        self._journal.memory(samples)
+            if mb is None or status.pid is None:
+                continue
+            self._journal.add("memory", **asdict(Sample(name, status.pid, at_s, mb)))
+            if mb > self._most_mb and name not in self._too_large:
+                self._too_large.add(name)
+                self._journal.violation("memory is bounded", f"{name} holds {mb} MB")

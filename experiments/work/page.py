@@ -47,7 +47,7 @@ def write_page(
     lines = [f"# {title}", "", f"Made by `{command}`.", ""]
     for headline, rows in tables:
         if rows:
-            lines += [f"## {headline}", "", *markdown_table({key: key for key in rows[0]}, rows), ""]
+            lines += [f"## {headline}", "", *markdown_table(rows), ""]
     for caption, file in figures:
         if (folder / file).exists():
             lines += [f"![{caption}]({file})", "", f"*{caption}*", ""]
@@ -57,14 +57,10 @@ def write_page(
     return page
 
 
-def markdown_table(columns: Mapping[str, str], rows: Sequence[Mapping[str, object]]) -> list[str]:
-    """Lines of a table.
-
-    Args:
-        columns: key of a row -> headline.
-        rows: figures; a key that a row lacks leaves its cell empty.
-    """
-    head = ["| " + " | ".join(columns.values()) + " |", "|" + "---|" * len(columns)]
+def markdown_table(rows: Sequence[Mapping[str, object]]) -> list[str]:
+    """Lines of a table; columns are the keys of the first row, and what another lacks stays empty."""
+    columns = list(rows[0])
+    head = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
     return head + ["| " + " | ".join(_cell(row.get(key)) for key in columns) + " |" for row in rows]
 
 

@@ -7,6 +7,7 @@ Zenoh peers that are started meanwhile: one of them may take the port while the 
 import random
 import socket
 from contextlib import ExitStack
+from itertools import islice
 from pathlib import Path
 
 HOST = "127.0.0.1"
@@ -14,6 +15,7 @@ EPHEMERAL_RANGE = Path("/proc/sys/net/ipv4/ip_local_port_range")
 USUAL_EPHEMERAL_FIRST = 32_768
 FIRST = 10_240  # browsers refuse some ports below
 TRIES = 200
+"""Ports looked at before the kernel is asked: more than any machine has taken of so few drawn."""
 
 
 def free_ports(count: int, ephemeral_range: Path = EPHEMERAL_RANGE) -> list[int]:
@@ -26,11 +28,12 @@ def free_ports(count: int, ephemeral_range: Path = EPHEMERAL_RANGE) -> list[int]
     below = range(FIRST, _ephemeral_first(ephemeral_range))
     # Stacks of one seed run side by side: drawn from the system's entropy they do not try the same ports.
     candidates = random.SystemRandom().sample(below, min(TRIES, len(below)))
-    with ExitStack() as held:
-        ports: list[int] = []
-        for candidate in candidates + [0] * count:
-            if len(ports) < count and (port := _bind(held, candidate)) is not None:
-                ports.append(port)
+    ports = list(islice(filter(is_free, candidates), count))
+    with ExitStack() as held:  # the kernel gives no port twice while it is held
+        while len(ports) < count:
+            probe = held.enter_context(socket.socket())
+            probe.bind((HOST, 0))
+            ports.append(int(probe.getsockname()[1]))
     return ports
 
 
@@ -47,13 +50,3 @@ def is_free(port: int) -> bool:
 
 def _ephemeral_first(path: Path) -> int:
     return int(path.read_text(encoding="ascii").split()[0]) if path.exists() else USUAL_EPHEMERAL_FIRST
-
-
-def _bind(held: ExitStack, port: int) -> int | None:
-    """Hold a port until `held` closes; None when it is taken. Port 0 leaves the choice to the kernel."""
-    probe = held.enter_context(socket.socket())
-    try:
-        probe.bind((HOST, port))
-    except OSError:
-        return None
-    return int(probe.getsockname()[1])

@@ -5,24 +5,17 @@ import subprocess
 import threading
 import time
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Protocol
 
 from shared.bus import UnreachableError, open_bus
 
 log = logging.getLogger(__name__)
 
 
-class Health(Protocol):
-    """Readiness of the processes of one service."""
-
-    def instances(self) -> frozenset[str]:
-        """Name what is ready now; a restarted process brings a new name."""
-
-    def close(self) -> None:
-        """Leave nothing running."""
+Health = Callable[[], frozenset[str]]
+"""Names what is ready of one service now; a restarted process brings a new name."""
 
 
 class Liveliness:
@@ -50,10 +43,6 @@ class Liveliness:
             self._joining.join()
         self._stack.close()
 
-    def of(self, service: str) -> "TokenHealth":
-        """Return the readiness of one service."""
-        return TokenHealth(self, service)
-
     def alive(self, service: str) -> frozenset[str]:
         """Return the instances of `service` that are alive."""
         with self._lock:
@@ -77,20 +66,6 @@ class Liveliness:
             (self._alive[service].add if alive else self._alive[service].discard)(instance)
 
 
-class TokenHealth:
-    """Ready while a process of that service has its token on the bus."""
-
-    def __init__(self, liveliness: Liveliness, service: str) -> None:
-        self._liveliness, self._service = liveliness, service
-
-    def instances(self) -> frozenset[str]:
-        """Return the living instances."""
-        return self._liveliness.alive(self._service)
-
-    def close(self) -> None:
-        """Do nothing: the session is closed by its owner."""
-
-
 class CommandHealth:
     """Ready while the last run of a command ended with 0. Never blocks: it runs in the background."""
 
@@ -104,7 +79,7 @@ class CommandHealth:
         self._ready = False
         self._count = 0
 
-    def instances(self) -> frozenset[str]:
+    def __call__(self) -> frozenset[str]:
         """Collect the last result and start the next run when it is due."""
         if self._run is not None and self._run.poll() is not None:
             self._ready = self._run.returncode == 0
@@ -130,12 +105,6 @@ class CommandHealth:
             self._run.wait()
 
 
-class AlwaysReady:
-    """For services without a health check: ready once started."""
-
-    def instances(self) -> frozenset[str]:
-        """Return one instance whose name never clashes with that of an earlier process."""
-        return frozenset({str(time.monotonic_ns())})
-
-    def close(self) -> None:
-        """Do nothing."""
+def always_ready() -> frozenset[str]:
+    """Of a service without a health check: ready once started, under a name no earlier process had."""
+    return frozenset({str(time.monotonic_ns())})

@@ -90,7 +90,7 @@ class ServiceRunner:
 
     def _start(self, now_s: float) -> None:
         self._started_s = now_s
-        self._stale = self._health.instances()
+        self._stale = self._health()
         self.child = self._spawn(self.spec)
         if self.state is not State.DEGRADED:
             self._become(State.STARTING)
@@ -111,7 +111,7 @@ class ServiceRunner:
 
     def _look(self, now_s: float, watch_hung: bool) -> None:
         young = now_s - self._started_s < self.spec.ready_after_s
-        if self._health.instances() - self._stale and not young:
+        if self._health() - self._stale and not young:
             self._silent_since_s = now_s
             # In a crash storm a process that just became ready proves little: it has to last.
             settled = now_s - self._started_s >= self._policy.settle_s

@@ -13,14 +13,14 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Collection, Mapping
+from functools import partial
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 from services.launcher.compose.compose_file import COMPOSE_FILE, load_compose
 from services.launcher.compose.local import LocalMachine, ProcessSpec, certificate_folder, local_process
 from services.launcher.compose.plan import active_services, start_stages
-from services.launcher.processes.health import AlwaysReady, CommandHealth, Health, Liveliness
+from services.launcher.processes.health import CommandHealth, Health, Liveliness, always_ready
 from services.launcher.processes.loop import SupervisorLoop
 from services.launcher.processes.preparing import OPERATOR, prepare
 from services.launcher.processes.process import ChildProcess
@@ -74,16 +74,13 @@ class Launcher:
             folder, world, lockstep, seed, profile, ports or Ports.free(), dict(environment or {}), secure
         )
         self._root, self._timeout_s, self._watch = compose_file.resolve().parent, timeout_s, watch
-        self._policy = policy or RestartPolicy()
         self._state = StateFolder(folder)
         self._started = ""
         self._liveliness = Liveliness()
         specs = self._specs(compose_file, variables, only)
-        self._healths = [self._health(spec) for spec in specs]
-        runners = {
-            spec.name: ServiceRunner(spec, health, self._spawn, self._policy)
-            for spec, health in zip(specs, self._healths, strict=True)
-        }
+        self._checks: list[CommandHealth] = []
+        policy = policy or RestartPolicy()
+        runners = {spec.name: ServiceRunner(spec, self._health(spec), self._spawn, policy) for spec in specs}
         self._uses_bus = any(spec.alive_as for spec in specs)
         self._loop = SupervisorLoop(runners, self._stages, self._changed)
 
@@ -140,8 +137,8 @@ class Launcher:
         """Stop all services in the reverse of the start order."""
         self._loop.stop()
         self._liveliness.close()
-        for health in self._healths:
-            health.close()
+        for check in self._checks:
+            check.close()
         self._state.release()
 
     def __enter__(self) -> Self:
@@ -149,9 +146,7 @@ class Launcher:
         self.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """Stop."""
         self.stop()
 
@@ -205,10 +200,12 @@ class Launcher:
 
     def _health(self, spec: ProcessSpec) -> Health:
         if spec.alive_as:
-            return self._liveliness.of(spec.alive_as)
-        if spec.check:
-            return CommandHealth(spec.check, self._environment(spec), self._root, spec.check_interval_s)
-        return AlwaysReady()
+            return partial(self._liveliness.alive, spec.alive_as)
+        if not spec.check:
+            return always_ready
+        check = CommandHealth(spec.check, self._environment(spec), self._root, spec.check_interval_s)
+        self._checks.append(check)
+        return check
 
     def _environment(self, spec: ProcessSpec) -> dict[str, str]:
         return {**os.environ, **spec.environment, **self.settings.environment, "PYTHONPATH": str(self._root)}

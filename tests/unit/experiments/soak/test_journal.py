@@ -1,6 +1,7 @@
 """What a soak keeps: goes on where it was cut off, counts, and says what was done before a violation."""
 
 import json
+from dataclasses import asdict
 
 import pytest
 
@@ -13,10 +14,10 @@ SETUP = {"world": "apartment", "seed": 1}
 
 def filled(path):
     journal = Journal(path, SETUP)
-    journal.event(at_s=1.0, harm="kill", service="drive", healthy_after_s=2.5)
-    journal.mission(state="succeeded", failure="", steps=3)
-    journal.mission(state="failed", failure="lost", steps=3)
-    journal.memory([Sample("drive", 7, 2.0, 60.0)])
+    journal.add("events", at_s=1.0, harm="kill", service="drive", healthy_after_s=2.5)
+    journal.add("results", state="succeeded", failure="", steps=3)
+    journal.add("results", state="failed", failure="lost", steps=3)
+    journal.add("memory", **asdict(Sample("drive", 7, 2.0, 60.0)))
     journal.violation("no collision", "1 at (0, 0)")
     journal.writes(5)
     journal.write()

@@ -26,7 +26,7 @@ class FakeHealth:
     def __init__(self):
         self.alive = frozenset()
 
-    def instances(self):
+    def __call__(self):
         return self.alive
 
 
