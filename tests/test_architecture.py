@@ -82,8 +82,8 @@ JOINS = {
     "drawing/true_pose.py": {"recorder"},
     "drawing/world.py": {"simulator"},
     "evaluation/demo.py": {"simulator"},
-    "evaluation/drawings.py": {"simulator"},
     "evaluation/exploration.py": {"simulator"},
+    "evaluation/outcome.py": {"simulator"},
     "evaluation/rounds.py": {"simulator"},
 }
 """All that the launcher imports of other processes, by file."""

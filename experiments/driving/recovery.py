@@ -10,7 +10,8 @@ from services.launcher.client.failure import ExperimentError
 from services.launcher.client.mission import MissionRun, goal_features
 from services.launcher.client.stack import Stack
 from services.launcher.client.trail import collisions
-from services.launcher.evaluation.rounds import MARGIN_M, Game, Round
+from services.launcher.evaluation.outcome import Round
+from services.launcher.evaluation.rounds import MARGIN_M, Game
 from services.launcher.terminal.output import rounded
 from shared.messages import MissionRequest, MissionStatus
 from shared.messages.sensors import Frame

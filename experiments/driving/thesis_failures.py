@@ -11,7 +11,8 @@ import numpy as np
 from services.launcher.client.stack import StackChoice, open_stack
 from services.launcher.client.trail import collisions, driven_m
 from services.launcher.evaluation.exploration import explore, figures
-from services.launcher.evaluation.rounds import Game, Round
+from services.launcher.evaluation.outcome import Round
+from services.launcher.evaluation.rounds import Game
 from services.launcher.terminal.output import rounded
 from shared.messages.simulation import Truth
 from simulator.world.freespace import free_space

@@ -11,8 +11,8 @@ from rich.console import Console
 from services.launcher.client.environments import environment_of
 from services.launcher.client.maps import require_map
 from services.launcher.client.stack import Stack
-from services.launcher.evaluation.drawings import draw_round
-from services.launcher.evaluation.rounds import Game, Round, hiding_place
+from services.launcher.evaluation.outcome import Round, draw_round
+from services.launcher.evaluation.rounds import Game, hiding_place
 from services.launcher.evaluation.truth_file import MapTruth
 from services.launcher.terminal.output import wide_console
 from services.launcher.terminal.progress import mission_progress
@@ -74,7 +74,8 @@ def play_rounds(
         )
         if folder is not None:
             edges = require_map(stack, scene.map_name).edges
-            draw_round(folder / f"round-{number:02d}", scene.world, played, poses, edges, game)
+            views = game.final_views(played.hider)
+            draw_round(folder / f"round-{number:02d}", scene.world, played, poses, edges, views)
         yield played.figures()
 
 

@@ -30,28 +30,23 @@ def explore(
     endpoint: options.Endpoint = None,
 ) -> None:
     """Explore a world and build a map of pictures."""
-    from services.launcher.client.failure import ExperimentError
-    from services.launcher.client.run_record import keep_run
-    from services.launcher.client.stack import StackChoice, open_stack
-    from services.launcher.drawing.plans import draw_map
-    from services.launcher.evaluation.exploration import explore, figures, make_room
-    from services.launcher.evaluation.truth_file import save_truth, truth_path
-    from services.launcher.terminal.output import print_figures, wide_console, write_json
-    from services.launcher.terminal.progress import mission_progress
-    from simulator.world.freespace import free_space
-    from simulator.world.world_file import load_world
+    from services.launcher.client import failure, run_record, stack
+    from services.launcher.drawing import plans
+    from services.launcher.evaluation import exploration, truth_file
+    from services.launcher.terminal import output, progress
+    from simulator.world import freespace, world_file
 
-    started, space = datetime.now(UTC), free_space(load_world(world))
-    choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
-    path = truth_path(data_dir, map_name)
-    with open_stack(choice) as stack:
-        before = make_room(stack, map_name, path, go_on=continue_, fresh=fresh)
-        with mission_progress(wide_console(stderr=True), f"exploring {world}") as watch:
-            result = explore(stack, world, map_name, seed, max_steps, before, watch)
-    save_truth(path, map_name, result.truth)
-    report = figures(result, space, map_name, seed)
-    write_json(json_file, report)
-    keep_run(
+    started, file = datetime.now(UTC), world_file.load_world(world)
+    space, path = freespace.free_space(file), truth_file.truth_path(data_dir, map_name)
+    choice = stack.StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
+    with stack.open_stack(choice) as opened:
+        before = exploration.make_room(opened, map_name, path, go_on=continue_, fresh=fresh)
+        with progress.mission_progress(output.wide_console(stderr=True), f"exploring {world}") as watch:
+            result = exploration.explore(opened, world, map_name, seed, max_steps, before, watch)
+    truth_file.save_truth(path, map_name, result.truth)
+    report = exploration.figures(result, space, map_name, seed)
+    output.write_json(json_file, report)
+    run_record.keep_run(
         data_dir,
         "explore",
         started,
@@ -62,7 +57,8 @@ def explore(
         json_file=json_file,
     )
     if drawing is not None:
-        draw_map(drawing, load_world(world), result.truth.poses, result.graph.edges)
-    print_figures(f"map {map_name}", report)
+        plans.draw_map(drawing, file, result.truth.poses, result.graph.edges)
+    output.print_figures(f"map {map_name}", report)
     if not result.run.succeeded:
-        raise ExperimentError(f"exploration ended as {result.run.status.state}: {result.run.status.reason}")
+        status = result.run.status
+        raise failure.ExperimentError(f"exploration ended as {status.state}: {status.reason}")

@@ -25,21 +25,17 @@ def goto(
     endpoint: options.Endpoint = None,
 ) -> None:
     """Drive to where a picture was taken."""
-    from services.launcher.client.failure import ExperimentError
-    from services.launcher.client.maps import require_map
-    from services.launcher.client.mission import MissionClient, goal_features
-    from services.launcher.client.stack import StackChoice, open_stack
-    from services.launcher.client.trail import driven_m
+    from services.launcher.client import failure, maps, mission, stack, trail
     from services.launcher.drawing.pictures import frame_from_file
     from services.launcher.terminal.output import print_figures, rounded, wide_console, write_json
     from services.launcher.terminal.progress import mission_progress
     from shared.messages import MissionRequest
 
-    choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
-    with open_stack(choice) as stack:
-        require_map(stack, map_name)
-        client = MissionClient(stack.bus, stack.robot)
-        goal = goal_features(stack.bus, frame_from_file(image, stack.robot))
+    choice = stack.StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
+    with stack.open_stack(choice) as opened:
+        maps.require_map(opened, map_name)
+        client = mission.MissionClient(opened.bus, opened.robot)
+        goal = mission.goal_features(opened.bus, frame_from_file(image, opened.robot))
         request = MissionRequest(action="goto", map=map_name, goal=goal, seed=seed, max_steps=max_steps)
         with mission_progress(wide_console(stderr=True), f"going to {image.name}") as watch:
             run = client.run(request, watch)
@@ -50,13 +46,12 @@ def goto(
         "failure": run.status.failure,
         "reason": run.status.reason,
         "steps": run.status.step,
-        "driven_m": rounded(driven_m(run.truths), 3),
+        "driven_m": rounded(trail.driven_m(run.truths), 3),
         "wall_s": rounded(run.wall_s, 2),
         "steps_per_s": rounded(run.steps_per_s, 2),
     }
     write_json(json_file, report)
     print_figures(f"goto {image.name}", report)
     if not run.succeeded:
-        raise ExperimentError(
-            f"did not arrive, {run.status.failure or run.status.state}: {run.status.reason}"
-        )
+        why = run.status.failure or run.status.state
+        raise failure.ExperimentError(f"did not arrive, {why}: {run.status.reason}")

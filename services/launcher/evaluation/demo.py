@@ -13,9 +13,9 @@ from services.launcher.client.maps import token_header
 from services.launcher.client.stack import Stack
 from services.launcher.drawing.pictures import png_bytes
 from services.launcher.drawing.plans import draw_map
-from services.launcher.evaluation.drawings import draw_round
 from services.launcher.evaluation.exploration import Exploration, explore, figures
-from services.launcher.evaluation.rounds import Game, Round
+from services.launcher.evaluation.outcome import Round, draw_round
+from services.launcher.evaluation.rounds import Game
 from services.launcher.evaluation.truth_file import save_truth, truth_path
 from services.launcher.terminal.output import print_rows, write_json
 from services.launcher.terminal.progress import mission_progress
@@ -86,7 +86,8 @@ def seek_hidden_robot(console: Console, stack: Stack, scene: Scene, explored: Ex
             found = game.seek_by(
                 start, hider, lambda picture: game.client.follow(_upload(stack, png_bytes(picture)), watch)
             )
-        draw_round(scene.folder, scene.world, found, explored.truth.poses, explored.graph.edges, game)
+        views = game.final_views(hider)
+        draw_round(scene.folder, scene.world, found, explored.truth.poses, explored.graph.edges, views)
     return found
 
 

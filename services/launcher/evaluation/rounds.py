@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,17 +11,13 @@ from services.launcher.client.failure import ExperimentError
 from services.launcher.client.maps import read_map
 from services.launcher.client.mission import MissionClient, MissionRun, goal_features
 from services.launcher.client.stack import Stack
-from services.launcher.client.trail import collisions, driven_m, manual_moves, spl
-from services.launcher.terminal.output import rounded
+from services.launcher.evaluation.outcome import ARRIVED_M, Round
 from services.launcher.terminal.progress import Watch
 from shared.messages import MissionRequest
 from shared.messages.sensors import Frame
 from shared.messages.simulation import Pose, Truth
 from shared.topics import FRAME
 from simulator.world.freespace import FreeSpace
-
-ARRIVED_M = 0.5
-"""Two robots of 0.25 m radius touch: seeker and hider stand on the same spot."""
 
 MIN_APART_M = 1.5
 """Three times ARRIVED_M of way: nobody is found without driving."""
@@ -34,69 +30,6 @@ MAX_DRAWS = 1000
 
 FRAME_TIMEOUT_S = 10.0
 """Frames come every 0.5 s at most; a simulator that restarts needs seconds."""
-
-
-@dataclass(frozen=True)
-class Round:
-    """A finished round.
-
-    Attributes:
-        start, hider: where the two robots stood when it began.
-        final: where the seeker really ended.
-        goal: the picture it was given.
-        shortest_m: length of the shortest collision-free way.
-        experimenter_moves: times the experiment itself moved the seeker during it.
-        arrived_m: how near the hider counts as found.
-        edges_suspended: edges of the map that experience of this round put aside.
-    """
-
-    start: Pose
-    hider: Pose
-    final: Pose
-    goal: Frame
-    run: MissionRun
-    shortest_m: float
-    experimenter_moves: int
-    arrived_m: float = ARRIVED_M
-    edges_suspended: int = 0
-
-    @property
-    def distance_m(self) -> float:
-        """True distance left at the end."""
-        return math.hypot(self.final.x_m - self.hider.x_m, self.final.y_m - self.hider.y_m)
-
-    @property
-    def success(self) -> bool:
-        """The planner says that it arrived, and it is right."""
-        return self.run.succeeded and self.distance_m <= self.arrived_m
-
-    @property
-    def spl(self) -> float:
-        """Success weighted by path length."""
-        return spl(self.success, self.shortest_m, driven_m(self.run.truths))
-
-    def figures(self) -> dict[str, object]:
-        """One entry of "rounds"; the keys up to reason are fixed."""
-        status = self.run.status
-        failure = status.failure or ("" if self.success else "wrong_place")
-        return {
-            "success": self.success,
-            "final_distance_m": rounded(self.distance_m),
-            "spl": rounded(self.spl),
-            "steps": status.step,
-            "collisions": collisions(self.run.truths),
-            "reason": f"{failure}: {status.reason}" if failure else status.reason,
-            "failure": failure,
-            "manual_moves": max(self.experimenter_moves, manual_moves(self.run.truths)),
-            "shortest_m": rounded(self.shortest_m, 3),
-            "driven_m": rounded(driven_m(self.run.truths), 3),
-            "path_ratio": rounded(driven_m(self.run.truths) / self.shortest_m, 3),
-            "edges_suspended": self.edges_suspended,
-            "wall_s": rounded(self.run.wall_s, 2),
-            "start": _plain(self.start),
-            "hider": _plain(self.hider),
-            "final": _plain(self.final),
-        }
 
 
 def hiding_place(space: FreeSpace, seeker: Pose, rng: np.random.Generator) -> Pose:
@@ -178,13 +111,13 @@ class Game:
         played = self.finish(start, hider, picture, run, self.experimenter.moves - moved)
         return replace(played, edges_suspended=max(0, usable - self._usable_edges()))
 
-    def view(self) -> Frame:
-        """What the seeker sees now."""
+    def final_views(self, hider: Pose) -> tuple[Frame, Frame]:
+        """What the seeker sees now, and what the hider saw."""
         with self._stack.session() as own:
             frame = own.bus.subscribe(FRAME, robot=own.robot).wait(FRAME_TIMEOUT_S)
         if frame is None:
             raise ExperimentError(f"no frame of {self._stack.robot} within {FRAME_TIMEOUT_S:.0f} s")
-        return frame
+        return frame, self.experimenter.look(hider)
 
     def finish(self, start: Pose, hider: Pose, goal: Frame, run: MissionRun, moves: int) -> Round:
         """Read where the seeker stands now."""
@@ -196,7 +129,3 @@ class Game:
     def _usable_edges(self) -> int:
         found = read_map(self._stack, self._map)
         return sum(not edge.suspended for edge in found.edges) if found is not None else 0
-
-
-def _plain(pose: Pose) -> dict[str, float]:
-    return {name: rounded(value) for name, value in pose.model_dump().items()}
