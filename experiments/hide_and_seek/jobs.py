@@ -42,11 +42,11 @@ def make_map(world: str, folder: str) -> MapBundle:
     Raises:
         ExperimentError: the exploration did not end by itself.
     """
-    place = Path(folder) / world_label(world)
-    found = load_bundle(place)
+    own = Path(folder) / world_label(world)
+    found = load_bundle(own)
     if found is not None:
         return found
-    data_dir = place / "stack"
+    data_dir = own / "stack"
     shutil.rmtree(data_dir, ignore_errors=True)
     with open_stack(StackChoice(data_dir, world, MAP_SEED, lockstep=True)) as stack:
         result = explore(stack, world, MAP, MAP_SEED, EXPLORE_STEPS)
@@ -59,7 +59,7 @@ def make_map(world: str, folder: str) -> MapBundle:
     per_node = {"bytes_per_node": round(len(archive) / max(1, len(result.graph.nodes))), "memory_mb": memory}
     truth = truth_path(data_dir, MAP).read_text(encoding="utf-8")
     bundle = MapBundle(archive, truth, told | per_node)
-    save_bundle(place, bundle)
+    save_bundle(own, bundle)
     return bundle
 
 
@@ -74,10 +74,10 @@ def play_run(plan: RunPlan, bundle: MapBundle, folder: str) -> dict[str, Any]:
     Returns:
         The object of `topnav hide-and-seek --json`, with stages and memory.
     """
-    place = Path(folder) / plan.name
-    record = place / "rounds.json"
+    own = Path(folder) / plan.name
+    record = own / "rounds.json"
     rounds: list[dict[str, Any]] = json.loads(record.read_text())["rounds"] if record.exists() else []
-    data_dir = place / "stack"
+    data_dir = own / "stack"
     fresh = not rounds
     if fresh:
         shutil.rmtree(data_dir, ignore_errors=True)
@@ -92,7 +92,7 @@ def play_run(plan: RunPlan, bundle: MapBundle, folder: str) -> dict[str, Any]:
             if fresh:
                 import_map(stack, MAP, bundle.archive)
             with Listener(stack.address, stack.robot, most=TIMED_MESSAGES) as listener:
-                drawings = place if plan.draw else None
+                drawings = own if plan.draw else None
                 played = play_rounds(
                     stack, scene, plan.rounds, plan.seed, plan.max_steps, drawings, rounds, quiet=True
                 )

@@ -78,8 +78,8 @@ def _runs(
 ) -> list[dict[str, Any]]:
     jobs = [pool.submit(play_run, plan, maps[plan.world], str(folder)) for plan in choice.plans]
     total = sum(plan.rounds for plan in choice.plans)
-    places = [folder / plan.name / "rounds.json" for plan in choice.plans]
-    _follow(console, "rounds played", jobs, total, lambda: sum(_on_record(place) for place in places))
+    records = [folder / plan.name / "rounds.json" for plan in choice.plans]
+    _follow(console, "rounds played", jobs, total, lambda: sum(_on_record(record) for record in records))
     return [job.result() for job in jobs]
 
 

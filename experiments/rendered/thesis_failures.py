@@ -81,7 +81,7 @@ def long_edges(data_dir: Path, map_name: str, profile: Profile, longest_m: float
     ]
     ours = [(edge.a, edge.b) for edge in graph.edges]
     return {
-        "failure": "long edges between look-alike places",
+        "failure": "long edges between look-alike nodes",
         "map": map_name,
         "places": len(nodes),
         "thesis": {"edges": len(raw), "long": sum(_apart_m(poses, e) > longest_m for e in raw)},

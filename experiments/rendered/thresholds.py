@@ -42,9 +42,9 @@ def propose(results: Sequence[PairResult], spans: Spans) -> dict[str, float]:
     return {
         "s_via_min": s_via_min,
         "s_edge_min": math.ceil(SAFETY * s_via_min),
-        "s_node_max": _median(results, *spans.place_m),
+        "s_node_max": _median(results, *spans.node_m),
         "s_via_max": _median(results, 0.0, spans.near_m),
-        "disparity_rad_per_m": _disparity_rad_per_m(results, *spans.place_m),
+        "disparity_rad_per_m": _disparity_rad_per_m(results, *spans.node_m),
     }
 
 

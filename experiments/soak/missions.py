@@ -1,4 +1,4 @@
-"""One mission after the other to random places, from pictures, while everything around breaks."""
+"""One mission after the other to random spots, from pictures, while everything around breaks."""
 
 import threading
 import time
@@ -38,7 +38,7 @@ class _StoppedError(Exception):
 
 
 class Missions:
-    """Chooses a place, gets its picture, goes there, and keeps how it ended."""
+    """Chooses a spot, gets its picture, goes there, and keeps how it ended."""
 
     def __init__(self, stack: Stack, space: FreeSpace, map_name: str, seed: int, journal: Journal) -> None:
         self._stack, self._space, self._map, self._journal = stack, space, map_name, journal

@@ -11,16 +11,16 @@ from simulator.world.world_file import WorldFile, load_world
 
 @dataclass(frozen=True)
 class Spans:
-    """Distances between places that calibration asks about, metres.
+    """Distances between nodes that calibration asks about, metres.
 
     Attributes:
         pair_m: of the pairs of frames measured.
-        place_m: how far apart places should be.
+        node_m: how far apart nodes should be.
         near_m: nearer than this a via point is reached.
     """
 
     pair_m: tuple[float, float] = (0.3, 3.0)
-    place_m: tuple[float, float] = (0.5, 0.9)
+    node_m: tuple[float, float] = (0.5, 0.9)
     near_m: float = 0.5
 
 
@@ -33,8 +33,8 @@ class Environment:
         pipeline: feature pipeline unless a command names one.
         variables: of the services, where they differ from the Compose file.
         arrived_m: a round succeeds within this distance of the hider.
-        covered_m: a place covers the floor within this distance.
-        blind_m: an edge may be this long between places with something in between.
+        covered_m: a node covers the floor within this distance.
+        blind_m: an edge may be this long between nodes with something in between.
         spans: distances that calibration measures.
     """
 
@@ -59,7 +59,7 @@ OUTDOOR = Environment(
     arrived_m=1.0,
     covered_m=4.0,
     blind_m=12.0,
-    spans=Spans(pair_m=(0.5, 12.0), place_m=(2.5, 4.5), near_m=2.0),
+    spans=Spans(pair_m=(0.5, 12.0), node_m=(2.5, 4.5), near_m=2.0),
 )
 ENVIRONMENTS = {"indoor": INDOOR, "outdoor": OUTDOOR}
 

@@ -34,7 +34,7 @@ class Trail:
                 self.truths.append(truth)
 
     def mark(self) -> int:
-        """A place in the trail, for `since`."""
+        """How long the trail is by now, for `since`."""
         return len(self.truths)
 
     def since(self, mark: int) -> list[Truth]:

@@ -36,8 +36,8 @@ def certs(
     The key of the authority is in FOLDER/authority: keep it apart.
     """
     from shared.certificates.checking import check
-    from shared.certificates.issuing import make, renew
     from shared.certificates.holders import AUTHORITY
+    from shared.certificates.issuing import make, renew
 
     now, hosts = dt.datetime.now(dt.UTC), tuple(host or ())
     if look:

@@ -80,8 +80,7 @@ def _change(file: Path, change: "Callable[[tuple[Token, ...]], tuple[Token, ...]
 def _token(name: str, role: str, secret: str) -> "Token":
     from pydantic import TypeAdapter, ValidationError
 
-    from shared.access.tokens import ROLES
-    from shared.access.tokens import Token, TokenName, digest_of
+    from shared.access.tokens import ROLES, Token, TokenName, digest_of
 
     try:
         TypeAdapter(TokenName).validate_python(name)

@@ -93,9 +93,8 @@ def draw_round(
     """Write path.png (the way on the plan), goal.png, seeker_final.png and hider_final.png into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     points = tuple((t.pose.x_m, t.pose.y_m) for t in played.run.truths)
-    draw_way(
-        folder / "path.png", world, poses, edges, Way(points, played.start, played.hider, played.run.via)
-    )
+    way = Way(points, played.start, played.hider, played.run.via)
+    draw_way(folder / "path.png", world, poses, edges, way)
     for name, frame in zip(("goal", "seeker_final", "hider_final"), (played.goal, *final_views), strict=True):
         save_picture(folder / f"{name}.png", frame)
 

@@ -43,7 +43,7 @@ def hiding_place(space: FreeSpace, seeker: Pose, rng: np.random.Generator) -> Po
         way_m = space.shortest_path_m((seeker.x_m, seeker.y_m), (x_m, y_m))
         if MIN_APART_M <= way_m < math.inf:
             return Pose(x_m=x_m, y_m=y_m, yaw_rad=yaw_rad)
-    raise ValueError(f"no free place at least {MIN_APART_M} m away from the seeker in {MAX_DRAWS} draws")
+    raise ValueError(f"no free spot at least {MIN_APART_M} m away from the seeker in {MAX_DRAWS} draws")
 
 
 class Game:

@@ -1,4 +1,4 @@
-"""Where the places of a map truly are: kept beside the maps, read by evaluations and drawings only."""
+"""Where the nodes of a map truly are: kept beside the maps, read by evaluations and drawings only."""
 
 import json
 from collections.abc import Iterable

@@ -27,7 +27,7 @@ def test_the_worst_wrong_bearing_sets_the_floor_and_the_safety_factor_follows():
 
 def test_outdoors_nodes_are_further_apart():
     pairs = [pair(1.0, 140), pair(3.0, 50), pair(4.0, 40), pair(0.7, 300)]
-    proposal = propose(pairs, Spans(pair_m=(0.5, 12.0), place_m=(2.5, 4.5), near_m=2.0))
+    proposal = propose(pairs, Spans(pair_m=(0.5, 12.0), node_m=(2.5, 4.5), near_m=2.0))
     assert (proposal["s_node_max"], proposal["s_via_max"]) == (45, 220)
 
 

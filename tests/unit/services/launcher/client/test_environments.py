@@ -16,7 +16,8 @@ def test_names_of_profiles_exist_in_planner_and_drive():
     for asked in (None, "default", "thesis"):
         name = OUTDOOR.profile(asked)
         assert name is not None
-        assert profile_named(name).disparity_rad_per_m < profile_named("default").disparity_rad_per_m
+        outside, inside = (profile_named(each).sensing.disparity_rad_per_m for each in (name, "default"))
+        assert outside < inside
         assert DriveSettings(profile=name).limits().wheels.max_radps == 10.0
     assert OUTDOOR.pipeline is not None
     assert find_profile(OUTDOOR.pipeline).keypoints == 500
