@@ -28,16 +28,16 @@ def scale(
 ) -> int:
     """Growth of the time to find a node, of memory and of loading; others on the same pictures; robots."""
     from experiments.scale.drawing import draw_growth
-    from experiments.scale.report import Choice, measure
+    from experiments.scale.report import measure
     from services.launcher.client.failure import one_line_errors
     from services.launcher.terminal.output import print_rows, wide_console, write_json
 
     counts = [int(size) for size in sizes.split(",")] if sizes else list(QUICK_SIZES if quick else SIZES)
     fleets = [int(size) for size in robots.split(",")] if robots else list(QUICK_FLEETS if quick else FLEETS)
-    choice = Choice(counts, fleets, pipeline or "sift", seed, data_dir / "cache", quick)
+    cache = data_dir / "cache"
     report: dict[str, Any] = {}
     with wide_console(stderr=True).status("") as status, one_line_errors():
-        for report in measure(choice, status.update):
+        for report in measure(counts, fleets, pipeline or "sift", seed, cache, quick, status.update):
             write_json(json_file, report)
     if plot is not None:
         draw_growth(plot, report["points"], report["robots"])

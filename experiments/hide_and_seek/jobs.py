@@ -1,6 +1,7 @@
 """The two kinds of work of a suite: explore a world, play its rounds. Each starts a stack of its own.
 
-Both are plain functions of values, so that a process pool or a cluster can run them.
+Both are plain functions of values, so that a process pool or a cluster can run them. A map travels from one
+to the other as the bytes of its files.
 """
 
 import json
@@ -8,16 +9,18 @@ import shutil
 from pathlib import Path
 from typing import Any
 
+import httpx
+
 from experiments.bench.listener import Listener
 from experiments.bench.resources import peak_memory_mb
 from experiments.bench.stages import stage_durations_ms, table
-from experiments.hide_and_seek.bundle import MapBundle, export_map, import_map, load_bundle, save_bundle
 from experiments.hide_and_seek.plan import MAP_SEED, RunPlan
 from experiments.hide_and_seek.play import Scene, play_rounds
 from experiments.hide_and_seek.report import report
 from services.launcher.client.failure import ExperimentError
+from services.launcher.client.maps import post_archive, store_client
 from services.launcher.client.run_record import world_label
-from services.launcher.client.stack import StackChoice, open_stack
+from services.launcher.client.stack import Stack, StackChoice, open_stack
 from services.launcher.evaluation.exploration import explore, figures
 from services.launcher.evaluation.truth_file import load_truth, save_truth, truth_path
 from services.launcher.terminal.output import write_json
@@ -31,66 +34,71 @@ EXPLORE_STEPS = 30_000
 TIMED_MESSAGES = 1500
 """About 300 cycles of five messages: enough for a 99th percentile, and no round more of memory."""
 
+ARCHIVE, TRUTH, FIGURES = "map.zip", "truth.json", "explore.json"
+MapFiles = dict[str, bytes]
+"""By name: what `topnav map export` writes, the truth file, and what `topnav explore --json` has."""
 
-def make_map(world: str, folder: str) -> MapBundle:
-    """Explore a world once; a bundle that is there already is taken.
+
+def make_map(world: str, folder: str) -> MapFiles:
+    """Explore a world once; a map that is there already is taken.
 
     Args:
         world: name or path of the world.
-        folder: where bundles are kept, and the stack's files while it runs.
+        folder: where maps are kept, and the stack's files while it runs.
 
     Raises:
         ExperimentError: the exploration did not end by itself.
     """
     own = Path(folder) / world_label(world)
-    found = load_bundle(own)
-    if found is not None:
-        return found
+    if not (own / FIGURES).exists():
+        _explore(world, own)
+    return {name: (own / name).read_bytes() for name in (ARCHIVE, TRUTH, FIGURES)}
+
+
+def _explore(world: str, own: Path) -> None:
+    """Write the files of a map into a folder; the figures come last and mark it as whole."""
     data_dir = own / "stack"
     shutil.rmtree(data_dir, ignore_errors=True)
     with open_stack(StackChoice(data_dir, world, MAP_SEED, lockstep=True)) as stack:
         result = explore(stack, world, MAP, MAP_SEED, EXPLORE_STEPS)
         if not result.run.succeeded:
             raise ExperimentError(f"exploring {world}: {result.run.status.state}: {result.run.status.reason}")
-        archive = export_map(stack, MAP)
+        with _store(stack) as store:
+            archive = store.get(f"/maps/{MAP}/export").raise_for_status().content
         memory = peak_memory_mb(stack.launcher)
-    save_truth(truth_path(data_dir, MAP), MAP, result.truth)
+    (own / ARCHIVE).write_bytes(archive)
+    save_truth(own / TRUTH, MAP, result.truth)
     told = figures(result, free_space(load_world(world)), MAP, MAP_SEED)
-    per_node = {"bytes_per_node": round(len(archive) / max(1, len(result.graph.nodes))), "memory_mb": memory}
-    truth = truth_path(data_dir, MAP).read_text(encoding="utf-8")
-    bundle = MapBundle(archive, truth, told | per_node)
-    save_bundle(own, bundle)
-    return bundle
+    per_node = round(len(archive) / max(1, len(result.graph.nodes)))
+    write_json(own / FIGURES, {**told, "bytes_per_node": per_node, "memory_mb": memory})
 
 
-def play_run(plan: RunPlan, bundle: MapBundle, folder: str) -> dict[str, Any]:
+def play_run(plan: RunPlan, files: MapFiles, folder: str) -> dict[str, Any]:
     """Play the rounds of a run; those that an earlier try finished are kept.
 
     Args:
         plan: what to play.
-        bundle: the map to play on.
+        files: of the map to play on.
         folder: of the suite; the run gets its own folder there.
 
     Returns:
         The object of `topnav hide-and-seek --json`, with stages and memory.
     """
     own = Path(folder) / plan.name
-    record = own / "rounds.json"
+    record, data_dir = own / "rounds.json", own / "stack"
     rounds: list[dict[str, Any]] = json.loads(record.read_text())["rounds"] if record.exists() else []
-    data_dir = own / "stack"
-    fresh = not rounds
+    path, fresh = truth_path(data_dir, MAP), not rounds
     if fresh:
         shutil.rmtree(data_dir, ignore_errors=True)
-        path = truth_path(data_dir, MAP)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(bundle.truth, encoding="utf-8")
-    extra: dict[str, Any] = {}
+        data_dir.mkdir(parents=True)
+        path.write_bytes(files[TRUTH])
     if len(rounds) < plan.rounds:
         choice = StackChoice(data_dir, plan.world, plan.seed, lockstep=True, profile=plan.profile)
-        scene = Scene(load_world(plan.world), MAP, load_truth(truth_path(data_dir, MAP)))
+        scene = Scene(load_world(plan.world), MAP, load_truth(path))
         with open_stack(choice) as stack:
             if fresh:
-                import_map(stack, MAP, bundle.archive)
+                with _store(stack) as store:
+                    post_archive(store, files[ARCHIVE], MAP)
             with Listener(stack.address, stack.robot, most=TIMED_MESSAGES) as listener:
                 drawings = own if plan.draw else None
                 played = play_rounds(
@@ -99,10 +107,14 @@ def play_run(plan: RunPlan, bundle: MapBundle, folder: str) -> dict[str, Any]:
                 for one in played:
                     rounds.append(one)
                     write_json(record, report(plan.world, plan.profile, plan.seed, rounds))
-            extra = {
-                "stages": table(stage_durations_ms(listener.arrivals)),
-                "memory_mb": peak_memory_mb(stack.launcher),
-            }
-        write_json(record, report(plan.world, plan.profile, plan.seed, rounds) | extra)
+            stages, memory = table(stage_durations_ms(listener.arrivals)), peak_memory_mb(stack.launcher)
+        told = report(plan.world, plan.profile, plan.seed, rounds)
+        write_json(record, {**told, "stages": stages, "memory_mb": memory})
     whole: dict[str, Any] = json.loads(record.read_text())
     return whole
+
+
+def _store(stack: Stack) -> httpx.Client:
+    if stack.launcher is None:
+        raise ExperimentError("suites start stacks of their own: stop the one in this folder first")
+    return store_client(stack.launcher.map_store_url, stack.launcher.certs)

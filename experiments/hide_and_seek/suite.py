@@ -1,5 +1,6 @@
 """`topnav hide-and-seek --suite`: explore what is not yet mapped, play all runs, tell the result."""
 
+import json
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future, wait
@@ -10,8 +11,7 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from experiments.hide_and_seek.bundle import MapBundle
-from experiments.hide_and_seek.jobs import make_map, play_run
+from experiments.hide_and_seek.jobs import FIGURES, MapFiles, make_map, play_run
 from experiments.hide_and_seek.plan import RunPlan
 from experiments.hide_and_seek.report import combined, run_row, suite_markdown
 from experiments.work.workers import workers
@@ -53,7 +53,7 @@ def run_suite(choice: SuiteChoice, json_file: Path | None) -> dict[str, Any]:
     with workers(choice.jobs, choice.cluster) as pool:
         maps = _maps(console, pool, choice, folder / "maps")
         runs = _runs(console, pool, choice, maps, folder / choice.suite)
-    explored = [bundle.figures for bundle in maps.values()]
+    explored = [json.loads(files[FIGURES]) for files in maps.values()]
     result = {"suite": choice.suite, "runs": runs, "summary": combined(runs), "maps": explored}
     seed = choice.plans[0].seed
     write_json(folder / f"{choice.suite}-{seed}.json", result)
@@ -64,7 +64,7 @@ def run_suite(choice: SuiteChoice, json_file: Path | None) -> dict[str, Any]:
     return result
 
 
-def _maps(console: Console, pool: Executor, choice: SuiteChoice, folder: Path) -> dict[str, MapBundle]:
+def _maps(console: Console, pool: Executor, choice: SuiteChoice, folder: Path) -> dict[str, MapFiles]:
     worlds = list(dict.fromkeys(plan.world for plan in choice.plans))
     jobs = {world: pool.submit(make_map, world, str(folder)) for world in worlds}
     _follow(
@@ -74,7 +74,7 @@ def _maps(console: Console, pool: Executor, choice: SuiteChoice, folder: Path) -
 
 
 def _runs(
-    console: Console, pool: Executor, choice: SuiteChoice, maps: dict[str, MapBundle], folder: Path
+    console: Console, pool: Executor, choice: SuiteChoice, maps: dict[str, MapFiles], folder: Path
 ) -> list[dict[str, Any]]:
     jobs = [pool.submit(play_run, plan, maps[plan.world], str(folder)) for plan in choice.plans]
     total = sum(plan.rounds for plan in choice.plans)

@@ -2,7 +2,6 @@
 
 import tempfile
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -33,38 +32,37 @@ LOAD_S, QUICK_LOAD_S = 15.0, 3.0
 Report = dict[str, Any]
 
 
-@dataclass(frozen=True)
-class Choice:
-    """What is asked for.
+def measure(
+    counts: Sequence[int],
+    fleets: Sequence[int],
+    pipeline_name: str,
+    seed: int,
+    cache: Path,
+    quick: bool,
+    tick: Tick,
+) -> Iterator[Report]:
+    """The report as it grows.
 
-    Attributes:
+    Args:
         counts: nodes of the maps.
         fleets: robots that ask at once.
+        pipeline_name: of the features.
+        seed: of all draws.
         cache: folder of rendered features.
         quick: a glimpse.
+        tick: hears how far it is.
     """
-
-    counts: Sequence[int]
-    fleets: Sequence[int]
-    pipeline: str
-    seed: int
-    cache: Path
-    quick: bool
-
-
-def measure(choice: Choice, tick: Tick) -> Iterator[Report]:
-    """The report as it grows; `tick` hears how far it is."""
-    pipeline = Pipeline(find_profile(choice.pipeline))
-    report: Report = {"machine": machine(), "seed": choice.seed, "points": [], "peers": [], "refusal": {}}
+    pipeline = Pipeline(find_profile(pipeline_name))
+    report: Report = {"machine": machine(), "seed": seed, "points": [], "peers": [], "refusal": {}}
     report |= {"packing": [], "robots": []}
 
     def rendered(worlds: dict[str, int]) -> list[WorldFrames]:
-        return [frames_of(name, pipeline, n, choice.seed, choice.cache, tick) for name, n in worlds.items()]
+        return [frames_of(name, pipeline, n, seed, cache, tick) for name, n in worlds.items()]
 
     frames, foreign = rendered(MAPPED), rendered(FOREIGN)
-    study = ScaleStudy(pipeline, frames, [seen for each in foreign for seen in each.queries], choice.seed)
-    largest = max(choice.counts)
-    for count in choice.counts:
+    study = ScaleStudy(pipeline, frames, [seen for each in foreign for seen in each.queries], seed)
+    largest = max(counts)
+    for count in counts:
         tick(f"a map of {count} nodes")
         row, places = study.point(count)
         report["points"].append(row)
@@ -75,12 +73,12 @@ def measure(choice: Choice, tick: Tick) -> Iterator[Report]:
     tick("others on the same pictures")
     report["peers"] = study.peers(min(PEER_NODES, largest), PEER_PICTURES)
     yield report
-    pictures = QUICK_PACKED_PICTURES if choice.quick else PACKED_PICTURES
-    report["packing"] = list(packing_losses(load_world(PACKED_WORLD), pictures, choice.seed, tick))
+    pictures = QUICK_PACKED_PICTURES if quick else PACKED_PICTURES
+    report["packing"] = list(packing_losses(load_world(PACKED_WORLD), pictures, seed, tick))
     yield report
-    loads = [Load(n, k, rate) for rate in RATES_HZ for k in SERVICES for n in choice.fleets if n >= k]
+    loads = [Load(n, k, rate) for rate in RATES_HZ for k in SERVICES for n in fleets if n >= k]
     with tempfile.TemporaryDirectory(prefix="topnav-scale-") as folder:
-        during_s = QUICK_LOAD_S if choice.quick else LOAD_S
-        for row in measure_loads(loads, Work(frames[0], choice.pipeline, Path(folder), during_s), tick):
+        during_s = QUICK_LOAD_S if quick else LOAD_S
+        for row in measure_loads(loads, Work(frames[0], pipeline_name, Path(folder), during_s), tick):
             report["robots"].append(row)
             yield report

@@ -7,7 +7,7 @@ from contextlib import suppress
 
 import pytest
 
-from services.launcher.processes.supervisor import LaunchError
+from services.launcher.processes.wait import LaunchError
 from shared.bus import wait_until
 from shared.messages import ExtractRequest, MissionRequest
 from shared.topics import EXTRACT

@@ -28,7 +28,7 @@ def find_address(endpoint: str | None, data_dir: Path) -> Address | None:
     """
     running = StateFolder(data_dir.resolve()).read()
     if running is not None and endpoint in (None, running.endpoint):
-        return Address(running.endpoint, running.operator_certs)
+        return Address(running.endpoint, running.certs)
     if endpoint is None:
         return None
     own = os.environ.get("TOPNAV_CERTS")

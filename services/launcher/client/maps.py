@@ -68,7 +68,7 @@ def open_store(data_dir: Path) -> Iterator[httpx.Client]:
     running = StateFolder(data_dir.resolve()).read()
     with one_line_errors():
         if running is not None:
-            with store_client(running.map_store_url, running.operator_certs) as client:
+            with store_client(running.map_store_url, running.certs) as client:
                 yield client
             return
         with Launcher(data_dir, only=[SERVICE]) as launcher, store_client(launcher.map_store_url) as client:

@@ -122,6 +122,3 @@ def located(world: str | None) -> str | None:
     if world is None or Path(world).suffix not in {".yaml", ".yml"}:
         return world
     return str(Path(world).absolute())
-
-
-__all__ = ["HOST", "Ports", "StackSettings", "located"]

@@ -26,7 +26,7 @@ class ServiceStatus(BaseModel):
 
 
 class StackState(BaseModel):
-    """One running stack."""
+    """One running stack; `certs` is the certificate of the shell, None on an open one."""
 
     model_config = ConfigDict(frozen=True, extra="ignore")
     launcher_pid: int
@@ -35,13 +35,8 @@ class StackState(BaseModel):
     gateway_url: str
     map_store_url: str
     logs: str
-    certs: str | None = None
+    certs: Path | None = None
     services: dict[str, ServiceStatus]
-
-    @property
-    def operator_certs(self) -> Path | None:
-        """Certificate of the shell on a secured stack, None on an open one."""
-        return Path(self.certs) if self.certs else None
 
     @property
     def healthy(self) -> bool:

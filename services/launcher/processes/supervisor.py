@@ -20,13 +20,14 @@ from typing import Self
 from services.launcher.compose.compose_file import COMPOSE_FILE, load_compose
 from services.launcher.compose.local import LocalMachine, ProcessSpec, certificate_folder, local_process
 from services.launcher.compose.plan import active_services, start_stages
+from services.launcher.processes.free_ports import HOST
 from services.launcher.processes.health import CommandHealth, Health, Liveliness, always_ready
 from services.launcher.processes.loop import SupervisorLoop
 from services.launcher.processes.preparing import OPERATOR, prepare
 from services.launcher.processes.process import ChildProcess
 from services.launcher.processes.restart import RestartPolicy
-from services.launcher.processes.runner import ServiceRunner, State
-from services.launcher.processes.stack_settings import HOST, Ports, StackSettings
+from services.launcher.processes.runner import ServiceRunner
+from services.launcher.processes.stack_settings import Ports, StackSettings
 from services.launcher.processes.state import ServiceStatus, StackState, StateFolder
 from services.launcher.processes.wait import LaunchError, require_healthy
 from shared.access.credentials import secured_url
@@ -226,12 +227,9 @@ class Launcher:
                 gateway_url=self.gateway_url,
                 map_store_url=self.map_store_url,
                 logs=str(self.logs),
-                certs=str(self.certs) if self.certs else None,
+                certs=self.certs,
                 services=dict(services),
             )
         )
         if self._watch:
             self._watch(services)
-
-
-__all__ = ["LaunchError", "Launcher", "Ports", "State"]

@@ -12,7 +12,8 @@ import pytest
 from services.launcher.processes.restart import RestartPolicy
 from services.launcher.processes.runner import State
 from services.launcher.processes.state import AlreadyRunningError, StateFolder
-from services.launcher.processes.supervisor import Launcher, LaunchError
+from services.launcher.processes.supervisor import Launcher
+from services.launcher.processes.wait import LaunchError
 from shared.bus import wait_until
 from tests.integration.launcher.returning import kills_until_it_is_back_in_time
 
