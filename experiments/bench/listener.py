@@ -21,7 +21,7 @@ ENDS = {"frame": FRAME, "command": COMMAND}
 READY_S = 60.0
 """A session opens within seconds, also on a loaded machine."""
 
-PERIOD_S = 0.2
+PERIOD_S = 0.2  # wakes at once when something comes; so soon it ends
 
 
 class Background(ABC):

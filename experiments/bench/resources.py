@@ -13,7 +13,7 @@ TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 USER, SYSTEM = 11, 12
 """Of the fields of /proc/PID/stat after the name, which may hold blanks and brackets."""
 
-KB_PER_MB = 1024.0
+KB_PER_MB = 1024.0  # /proc counts in KiB
 PEAK, RESIDENT = "VmHWM", "VmRSS"
 
 

@@ -11,7 +11,7 @@ app = typer.Typer()
 
 Pairs = Annotated[int, typer.Option(min=1, help="How many pairs of frames.")]
 Quick = Annotated[bool, typer.Option("--quick", help="60 pairs only.")]
-QUICK_PAIRS = 60
+QUICK_PAIRS = 60  # a minute of rendering
 
 
 @app.command("heading-frames")

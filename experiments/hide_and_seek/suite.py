@@ -17,7 +17,7 @@ from experiments.hide_and_seek.report import combined, run_row, suite_markdown
 from experiments.work.workers import workers
 from services.launcher.terminal.output import print_rows, wide_console, write_json
 
-POLL_S = 1.0
+POLL_S = 1.0  # a round takes 20 s and more
 SHOWN = ("world", "profile", "found", "median left (m)", "SPL", "collisions", "steps/s")
 
 

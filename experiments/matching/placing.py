@@ -11,7 +11,7 @@ from shared.geometry.perspective import PerspectiveView, pixel_centres
 from shared.geometry.sphere import EquirectGrid, FloatArray, bearings_from_lonlat
 
 Image = npt.NDArray[np.uint8]
-FOV_RAD = math.pi / 2
+FOV_RAD = math.pi / 2  # of the thesis's pictures (3.1)
 
 
 @dataclass(frozen=True)

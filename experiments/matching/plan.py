@@ -12,6 +12,8 @@ LONGITUDES_DEG = (45.0, 90.0, 135.0, 180.0)
 BLURS_PX = (1.0, 2.0, 4.0)
 ROTATIONS_DEG = (15.0, 45.0, 90.0, 180.0)
 SCALES = (0.5, 0.7, 1.4, 2.0)
+"""Levels of what the thesis compares over (3.1); it states none of them (Q27)."""
+
 DISTURBED_LATITUDES_DEG = (0.0, 45.0)
 """Where blurred, turned and scaled pictures are placed; the figure is the mean of both."""
 
@@ -36,7 +38,7 @@ KEYPOINTS = 500
 """Of each picture, the most: nearly twice what the default pipeline takes of a whole panorama (300)."""
 
 TIMED_PX = 2048
-"""Width of the panorama whose extraction is timed, as in the thesis's table 3.1."""
+"""Width of the panorama whose extraction is timed: twice the running camera's."""
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from shared.geometry.sphere import FloatArray
 
-THRESHOLDS = 25
+THRESHOLDS = 25  # unstated in the thesis (Q27)
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,7 +23,7 @@ FROZEN_S, CUT_S = (0.5, 6.0), (0.3, 5.0)
 BACK_S = 90.0
 """Six times what a hung service takes to be killed (15 s); all are healthy again within seconds as a rule."""
 
-POLL_S = 0.1
+POLL_S = 0.1  # recoveries take seconds
 NOTICED_S = 0.5
 """So soon the launcher knows what became of a process."""
 SERVICES = ("planner", "features", "drive", "map-store", "gateway", "router", "simulator")

@@ -13,9 +13,9 @@ from shared.queries import QueryError
 from shared.topics import MAP
 from shared.wire import WireError
 
-PERIOD_S = 1.0
-CHECK_PERIOD_S = 60.0
-ANSWER_S = 10.0
+PERIOD_S = 1.0  # thousands of writes an hour
+CHECK_PERIOD_S = 60.0  # a loss is told within a minute
+ANSWER_S = 10.0  # a write takes 3 ms; a store that restarts, seconds
 PATIENCE_S = 120.0
 """As long as the launcher may take to bring everything up."""
 

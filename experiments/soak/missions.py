@@ -20,15 +20,15 @@ from shared.topics import MISSION
 from shared.wire import WireError
 from simulator.world.freespace import FreeSpace
 
-MAX_STEPS = 600
+MAX_STEPS = 600  # six times a usual round of the apartment
 LONGEST_S = 900.0
 """MAX_STEPS at a frame a second, and half as long again for services that restart."""
 
 PATIENCE_S = 120.0
 """As long as the launcher may take to bring everything up."""
 
-ANSWER_S = 10.0
-PERIOD_S = 1.0
+ANSWER_S = 10.0  # as in services/launcher/client/mission.py
+PERIOD_S = 1.0  # missions take minutes
 
 T = TypeVar("T")
 

@@ -12,8 +12,8 @@ from shared.bus import open_bus
 from shared.messages import Truth
 from shared.topics import TRUTH
 
-PERIOD_S = 0.5
-MEMORY_PERIOD_S = 30.0
+PERIOD_S = 0.5  # every truth is kept until then
+MEMORY_PERIOD_S = 30.0  # 120 samples an hour for a slope
 
 
 class Monitor:

@@ -11,8 +11,8 @@ import time
 
 OWN_NETWORK = "TOPNAV_OWN_NETWORK"
 """Set in the process that runs inside the network it may cut."""
-SIOCSIFFLAGS = 0x8914
-IFF_UP = 1
+SIOCSIFFLAGS = 0x8914  # linux/sockios.h
+IFF_UP = 1  # linux/if.h
 
 
 def enter_own_network() -> bool:

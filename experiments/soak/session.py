@@ -17,7 +17,7 @@ from services.launcher.client.stack import Stack
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
 
-TOLD_PERIOD_S = 60.0
+TOLD_PERIOD_S = 60.0  # a log of hours stays short
 SLOPE_NEEDS_S = 1800.0
 """A slope of a shorter time is told, not judged: caches fill for minutes."""
 

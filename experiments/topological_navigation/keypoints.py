@@ -33,7 +33,7 @@ MATCHERS = {
     "superglue": "superglue",
     "lightglue": "lightglue",
 }
-BORDER_PX = 4
+BORDER_PX = 4  # detectors fire within a few pixels of a black edge
 Details = tuple[torch.Tensor, torch.Tensor]
 """Keypoints (M, 4): column, row in the resized picture, longitude, latitude (rad); descriptors (M, D)."""
 

@@ -12,7 +12,7 @@ from shared.mapgraph.graph import MapGraph
 from shared.messages.features import Features
 from shared.messages.maps import AddNode, Operation, PutEdge
 
-MAX_BYTES = 2_000_000_000
+MAX_BYTES = 2_000_000_000  # unpacked: 80,000 nodes of 23 kB
 
 
 class MemoryMap:

@@ -30,8 +30,8 @@ from shared.messages.sensors import Ranges
 
 log = logging.getLogger(__name__)
 
-SENSORS = 12
-FAR_M = 4.0
+SENSORS = 12  # of the thesis's robot
+FAR_M = 4.0  # reach of the simulated sensors
 OBSTACLE_M = 0.5
 """Nearer than this counts as an obstacle (Q19)."""
 

@@ -5,7 +5,7 @@ import time
 from collections import Counter, deque
 from dataclasses import dataclass
 
-MAX_BYTES = 256_000_000
+MAX_BYTES = 256_000_000  # four of the longest messages; seconds of everything that a robot says
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from services.recorder.recording import RecordingWriter
 from shared.bus import Bus
 from shared.topics import TOPICS
 
-FLUSH_PERIOD_S = 1.0
+FLUSH_PERIOD_S = 1.0  # what a killed recorder loses at most
 
 
 def record(

@@ -17,7 +17,7 @@ from services.recorder.channels import (
 )
 from services.recorder.reading import WholePart
 
-CHUNK_BYTES = 1_000_000
+CHUNK_BYTES = 1_000_000  # MCAP's usual size: packs well, and is read as a whole
 LIBRARY = "topnav recorder"
 
 

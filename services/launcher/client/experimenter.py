@@ -11,11 +11,11 @@ from shared.messages.simulation import Pose
 from shared.queries import AbsentError
 from shared.topics import SIMULATION
 
-TIMEOUT_S = 30.0
-ABSENT_S = 20.0
-STILL_M = 0.001
-STILL_POLLS = 2
-POLL_S = 0.1
+TIMEOUT_S = 30.0  # moving furniture builds the world and its light anew: seconds
+ABSENT_S = 20.0  # a simulator that died is back within seconds; loading a world takes most of them
+STILL_M = 0.001  # a tenth of what a robot at 0.1 m/s covers between two polls
+STILL_POLLS = 2  # in a row: one may fall between two steps of the physics
+POLL_S = 0.1  # a third of a control period in lockstep (0.3 s)
 
 
 class Experimenter:

@@ -16,8 +16,8 @@ from shared.messages import MissionRequest
 from shared.topics import MISSION
 
 ROBOT = "r1"
-JOIN_TIMEOUT_S = 15.0
-ASK_TIMEOUT_S = 10.0
+JOIN_TIMEOUT_S = 15.0  # liveliness tokens arrive within a second; a loaded machine needs more
+ASK_TIMEOUT_S = 10.0  # as in client/mission.py
 NEEDED = frozenset({"planner", "drive", "features", "map_store", "simulator"})
 
 

@@ -17,7 +17,7 @@ app = typer.Typer(name="world", no_args_is_help=True, help="Check a world file b
 World = Annotated[str, typer.Argument(help="A .yaml file, or the name of a world that comes with topnav.")]
 Plan = Annotated[Path | None, typer.Option(help="Draw the floor plan to this PNG file.")]
 Panorama = Annotated[Path | None, typer.Option(help="Render what the robot sees at the start to this file.")]
-PANORAMA_PX = 2048
+PANORAMA_PX = 2048  # twice the running camera's: for people to look at
 
 
 @app.command()

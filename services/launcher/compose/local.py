@@ -9,7 +9,7 @@ from services.launcher.compose.compose_file import Service
 
 CERTIFICATE_VARIABLE = "TOPNAV_CERTS"
 LIVELINESS_TEST = ("CMD", "python", "-m", "shared.health")
-UNCHECKED_READY_AFTER_S = 0.5
+UNCHECKED_READY_AFTER_S = 0.5  # a command that cannot run ends sooner
 
 
 @dataclass(frozen=True)

@@ -23,8 +23,8 @@ START = "#1a9a3c"
 VIA = "#8a2be2"
 TARGET = "#d62020"
 PATH = "#ff8c00"
-SIZE_IN = (7.5, 8.5)
-LABELLED = 150
+SIZE_IN = (7.5, 8.5)  # a page's width, with room for the legend above
+LABELLED = 150  # nodes: with more, their numbers cover one another
 
 
 @dataclass(frozen=True)

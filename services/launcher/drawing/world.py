@@ -15,8 +15,8 @@ from simulator.world.world_file import WorldFile
 BORDER = "#f2c500"
 OBJECT = "#4a4a4a"
 GRID_M, WIDE_GRID_M, WIDE_M = 0.5, 5.0, 30.0  # the thesis's 5 m outdoors
-MARGIN_M = 0.25
-CAMERA_TOP_M = 1.0
+MARGIN_M = 0.25  # the robot's radius
+CAMERA_TOP_M = 1.0  # higher things neither block nor fill the view
 
 
 def draw_world(axes: Axes, world: WorldFile) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 HOST = "127.0.0.1"
 EPHEMERAL_RANGE = Path("/proc/sys/net/ipv4/ip_local_port_range")
-USUAL_EPHEMERAL_FIRST = 32_768
+USUAL_EPHEMERAL_FIRST = 32_768  # Linux's default
 FIRST = 10_240  # browsers refuse some ports below
 TRIES = 200
 """Ports looked at before the kernel is asked: more than any machine has taken of so few drawn."""

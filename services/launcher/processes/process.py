@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 CHILD = Path(__file__).with_name("child.py")
-LOG_BYTES = 10_000_000
-REAP_S = 5.0
+LOG_BYTES = 10_000_000  # with the old one beside it 20 MB a service
+REAP_S = 5.0  # SIGKILL acts at once but for a process in the kernel
 
 
 class ChildProcess:

@@ -8,7 +8,7 @@ from pathlib import Path
 from services.launcher.processes.runner import State
 from services.launcher.processes.state import ServiceStatus
 
-PERIOD_S = 0.02
+PERIOD_S = 0.02  # less than the supervisor's own
 
 
 class LaunchError(RuntimeError):

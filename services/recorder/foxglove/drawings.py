@@ -27,13 +27,13 @@ from PIL import Image
 
 from shared.messages import Command, Event, Frame, Heading, Message, Ranges
 
-JPEG_QUALITY = 85
-STEP_TOLERANCE_RAD = 1e-3
+JPEG_QUALITY = 85  # for people to look at
+STEP_TOLERANCE_RAD = 1e-3  # 0.06 degrees: float32 angles round less
 MAX_STAMP_NS = 2**32 * 10**9 - 1
 """Foxglove counts seconds in 32 bits."""
 
-HEADING_LENGTH_M = 1.0
-COMMAND_M_PER_RADPS = 0.1
+HEADING_LENGTH_M = 1.0  # seen beside the robot of 0.5 m
+COMMAND_M_PER_RADPS = 0.1  # full speed indoors (5 rad/s) is half a metre long
 HEADING_COLOR = Color(r=0.2, g=0.4, b=1.0, a=1.0)
 COMMAND_COLOR = Color(r=0.1, g=0.7, b=0.3, a=1.0)
 AVOIDING_COLOR = Color(r=1.0, g=0.5, b=0.0, a=1.0)
