@@ -22,6 +22,9 @@ PURE = (
     "services/**/core/**/*.py",
     "services/**/graph.py",
     "services/**/comparison.py",
+    "services/features/matching/*.py",
+    "services/features/pipeline/*.py",
+    "services/features/retrieval/*.py",
     "services/launcher/compose/**/*.py",
     "services/launcher/processes/restart.py",
 )

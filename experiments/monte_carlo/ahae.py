@@ -11,7 +11,7 @@ import torch
 
 from experiments.monte_carlo.batched import all_headings
 from experiments.monte_carlo.scene import ScenePlan, lonlat_from
-from shared.geometry.angles import FloatArray, wrap_rad
+from shared.geometry.sphere import FloatArray, wrap_rad
 
 METHODS = ("1", "2", "3", "4", "5", "6")
 COUNTS = (5, 8, 13, 21, 34, 60, 100, 150)

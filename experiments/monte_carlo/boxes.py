@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from experiments.monte_carlo.ahae import METHODS, Statistics
 from experiments.work.page import line_style, new_figure
 from services.launcher.drawing.pictures import save_figure
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 
 
 def draw_boxes(path: Path, title: str, unit: str, figures: Statistics) -> None:

@@ -11,7 +11,7 @@ from experiments.monte_carlo.noise import ALL_METHODS, NoisePlan, epipolar_paths
 from experiments.monte_carlo.scene import PLACEMENTS, Placement
 from experiments.monte_carlo.sweep import FUNCTIONS, WEIGHTED, SweepPlan, scene_sweep
 from experiments.monte_carlo.tracking import DcpePlan, scene_paths
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 
 NOISES_DEG = (0.0, 0.25, 0.5, 1.0)
 """The grid of the study: from none to three pixels of a panorama 1024 wide (0.35 degrees each)."""

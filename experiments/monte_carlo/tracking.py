@@ -15,7 +15,7 @@ from torch import Tensor
 from experiments.monte_carlo.ahae import DEG, METHODS, parts
 from experiments.monte_carlo.batched import batch_headings
 from experiments.monte_carlo.scene import MonteCarloScene, ScenePlan
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 
 STEP_M = 0.2
 """Speed times time step; also how near counts as reached. The thesis states neither (Q27)."""

@@ -10,11 +10,11 @@ import numpy as np
 from experiments.bench.stages import percentiles
 from experiments.rendered.features import as_message
 from experiments.scale.frames import Seen
-from services.features.matching.matching_requests import pair, verify_paired
+from services.features.map_features.map_features import MapFeatures
+from services.features.matching.requests import match_candidates, verify_candidates
 from services.features.matching.verification import Candidate, verify
 from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.pipeline import Pipeline
-from services.features.places.places import Places
 from shared.messages.matching import MatchRequest, NodeMatch
 
 TRACKED = 4
@@ -30,43 +30,43 @@ class Found:
     ms: float
 
 
-def load(nodes: Iterable[FeatureSet], pipeline: Pipeline) -> tuple[Places, float]:
+def load(nodes: Iterable[FeatureSet], pipeline: Pipeline) -> tuple[MapFeatures, float]:
     """Nodes of a map, numbered from zero, and the seconds it took to take them over."""
     messages = (as_message(each, pipeline.identity) for each in nodes)
-    places = Places.of(pipeline)
+    kept = MapFeatures.of(pipeline)
     took_s = 0.0
     for node_id, message in enumerate(messages):
         start_s = time.perf_counter()
-        places.put(node_id, message)
+        kept.put(node_id, message)
         took_s += time.perf_counter() - start_s
     start_s = time.perf_counter()
-    places.prepare()
-    return places, took_s + time.perf_counter() - start_s
+    kept.prepare()
+    return kept, took_s + time.perf_counter() - start_s
 
 
-def localise(queries: Sequence[Seen], places: Places, pipeline: Pipeline) -> list[Found]:
+def localise(queries: Sequence[Seen], kept: MapFeatures, pipeline: Pipeline) -> list[Found]:
     """The most similar node of each picture as the running service finds it, verified."""
     return [
-        _ask(query, MatchRequest(seq=n, map="scale", best_k=1), places, pipeline)
+        _ask(query, MatchRequest(seq=n, map="scale", best_k=1), kept, pipeline)
         for n, query in enumerate(queries)
     ]
 
 
 def track(
-    queries: Sequence[Seen], near: Sequence[Sequence[int]], places: MapFeatures, pipeline: Pipeline
+    queries: Sequence[Seen], near: Sequence[Sequence[int]], kept: MapFeatures, pipeline: Pipeline
 ) -> list[Found]:
     """Each picture compared with the few nodes given for it, verified."""
     return [
-        _ask(query, MatchRequest(seq=n, map="scale", node_ids=tuple(ids)), places, pipeline)
+        _ask(query, MatchRequest(seq=n, map="scale", node_ids=tuple(ids)), kept, pipeline)
         for n, (query, ids) in enumerate(zip(queries, near, strict=True))
     ]
 
 
-def _ask(query: Seen, request: MatchRequest, places: Places, pipeline: Pipeline) -> Found:
+def _ask(query: Seen, request: MatchRequest, kept: MapFeatures, pipeline: Pipeline) -> Found:
     message = as_message(query.features, pipeline.identity)
     start_s = time.perf_counter()
     answers: tuple[NodeMatch, ...] = verify_candidates(
-        pipeline, request, match_candidates(pipeline, request, message, places)
+        pipeline, request, match_candidates(pipeline, request, message, kept)
     )
     took_ms = (time.perf_counter() - start_s) * 1e3
     best = answers[0] if answers else None

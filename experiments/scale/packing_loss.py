@@ -9,6 +9,7 @@ import numpy as np
 from experiments.matching.study import pipeline_with_weights
 from experiments.rendered.features import features_seen
 from experiments.scale.frames import SPACING_M, node_poses, query_poses
+from services.features.map_features.packing import Packing
 from services.features.matching.verification import Candidate, verify
 from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.pipeline import Pipeline

@@ -64,11 +64,11 @@ def measure(
     largest = max(counts)
     for count in counts:
         tick(f"a map of {count} nodes")
-        row, places = study.point(count)
+        row, kept = study.point(count)
         report["points"].append(row)
         if count == largest:
             tick(f"pictures that are not in the map of {count} nodes")
-            report["refusal"] = study.refusal(places, count)
+            report["refusal"] = study.refusal(kept, count)
         yield report
     tick("others on the same pictures")
     report["peers"] = study.peers(min(PEER_NODES, largest), PEER_PICTURES)

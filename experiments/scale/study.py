@@ -40,16 +40,16 @@ class ScaleStudy:
         self._nodes = _shuffled([seen for each in frames for seen in each.nodes], rng)
         self._queries = _shuffled([seen for each in frames for seen in each.queries], rng)
 
-    def point(self, count: int) -> tuple[Row, Places]:
+    def point(self, count: int) -> tuple[Row, MapFeatures]:
         """Figures of a map of `count` nodes, and the map."""
         rng = np.random.default_rng([self._seed, count])
         real = [seen.features for seen in self._nodes]
-        places, load_s = load(nodes_of(real, count, rng), self._pipeline)
+        kept, load_s = load(nodes_of(real, count, rng), self._pipeline)
         queries = self._near(count)
-        found = localise(queries, places, self._pipeline)
+        found = localise(queries, kept, self._pipeline)
         near = [_neighbours(answer.node_id, count) for answer in found]
-        followed = track(queries, near, places, self._pipeline)
-        truth = self._exhaustive(places, queries, count)
+        followed = track(queries, near, kept, self._pipeline)
+        truth = self._exhaustive(kept, queries, count)
         row = {
             "nodes": count,
             **times(found, "localise"),
@@ -57,16 +57,16 @@ class ScaleStudy:
             "right_place": rounded(
                 np.mean([self._is_right(f, q) for f, q in zip(found, queries, strict=True)])
             ),
-            "bytes_per_node": rounded(places.size_bytes / count, 0),
+            "bytes_per_node": rounded(kept.size_bytes / count, 0),
             "load_s": rounded(load_s, 2),
             **_against(truth, found),
         }
-        return row, places
+        return row, kept
 
-    def refusal(self, places: MapFeatures, count: int) -> Row:
+    def refusal(self, kept: MapFeatures, count: int) -> Row:
         """Errors of "not in this map" in a map."""
-        own = [each.inliers for each in localise(self._near(count), places, self._pipeline)]
-        foreign = [each.inliers for each in localise(self._foreign, places, self._pipeline)]
+        own = [each.inliers for each in localise(self._near(count), kept, self._pipeline)]
+        foreign = [each.inliers for each in localise(self._foreign, kept, self._pipeline)]
         curve = refusal_curve(own, foreign)
         return {"nodes": count, **asdict(calibrated(curve)), "curve": [asdict(each) for each in curve]}
 
@@ -75,8 +75,8 @@ class ScaleStudy:
         nodes = [seen.features for seen in self._nodes[:count]]
         queries = self._near(count)[:asked]
         best = [exhaustive(query, nodes, self._pipeline) for query in queries]
-        places, _ = load(nodes, self._pipeline)
-        found = localise(queries, places, self._pipeline)
+        kept, _ = load(nodes, self._pipeline)
+        found = localise(queries, kept, self._pipeline)
         every_ms, ours_ms = ([ms for _, ms in best], [each.ms for each in found])
         rows = [
             ("exhaustive, verified", [int(s.argmax()) for s, _ in best], float(np.median(every_ms))),
@@ -106,10 +106,10 @@ class ScaleStudy:
         return real and _is_near(query, self._nodes[found.node_id])
 
     def _exhaustive(
-        self, places: MapFeatures, queries: Sequence[Seen], count: int
+        self, kept: MapFeatures, queries: Sequence[Seen], count: int
     ) -> list[tuple[np.ndarray, float]]:
         asked = next((n for most, n in EXHAUSTIVE_PICTURES.items() if count <= most), 0)
-        nodes: list[FeatureSet] = [places.words(node_id) for node_id in range(count)] if asked else []
+        nodes: list[FeatureSet] = [kept.features(node_id) for node_id in range(count)] if asked else []
         return [exhaustive(query, nodes, self._pipeline) for query in queries[:asked]]
 
 

@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from services.launcher.client.failure import ExperimentError
-from shared.geometry.angles import FloatArray
+from shared.geometry.sphere import FloatArray
 
 
 @contextmanager

@@ -15,7 +15,7 @@ Names = Annotated[list[str] | None, typer.Argument(help="Models; none: all that 
 @app.command("list")
 def list_models() -> None:
     """Every model: what needs it, its licence, its size, and whether it is here."""
-    from services.features.networks.cache import place_of, state_of
+    from services.features.networks.cache import path_of, state_of
     from services.features.networks.catalogue import MODELS
     from services.launcher.terminal.output import print_rows, wide_console
 
@@ -70,8 +70,7 @@ def verify(names: Names = None) -> None:
 
 def _load(model: "TrainedModel") -> None:
     from services.features.networks.loaders import load
-    from services.features.networks.non_commercial import VARIABLE
-    from services.features.networks.runtime import WeightsError
+    from services.features.networks.runtime import NON_COMMERCIAL, WeightsError
     from services.launcher.client.failure import ExperimentError
 
     if not model.commercial:
@@ -83,7 +82,7 @@ def _load(model: "TrainedModel") -> None:
 
 
 def _print_state(model: "TrainedModel") -> str:
-    from services.features.networks.cache import place_of, state_of
+    from services.features.networks.cache import path_of, state_of
     from services.launcher.terminal.output import wide_console
 
     state = state_of(model)

@@ -16,8 +16,8 @@ from services.launcher.processes.stack_settings import Ports, StackSettings, loc
 from services.launcher.processes.state import AlreadyRunningError, ServiceStatus, StackState, StateFolder
 from services.launcher.processes.supervisor import Launcher
 from services.launcher.processes.wait import LaunchError
+from shared.inbox import wait_until
 from shared.lifecycle import JsonFormatter, stop_on_signals
-from shared.waiting import wait_until
 
 STOP_S = 30.0
 """What a launcher that came up too late may take to stop: longer than the grace of any service."""

@@ -17,7 +17,7 @@ from experiments.monte_carlo.scene import (
 )
 from experiments.monte_carlo.tracking import DcpePlan, follow, scene_paths
 from services.planner.heading.methods import heading_estimate
-from shared.geometry.angles import wrap_rad
+from shared.geometry.sphere import wrap_rad
 
 
 def expected(scene, chosen, method):

@@ -1,4 +1,4 @@
-"""Places cover the free floor at their spacing; pictures are taken beside them."""
+"""MapFeatures cover the free floor at their spacing; pictures are taken beside them."""
 
 import math
 
