@@ -43,23 +43,9 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (
-    demo,
-    explore,
-    goto,
-    estop,
-    world,
-    models,
-    record,
-    replay,
-    recover,
-    foxglove,
-    map,
-    certs,
-    token,
-):
+for command in (demo, explore, goto, estop, world, models, record, replay, recover, foxglove):
     app.add_typer(command.app)
-for command in (up, down, status, doctor):
+for command in (map, certs, token, up, down, status, doctor):
     app.add_typer(command.app)
 
 
@@ -81,7 +67,7 @@ def add_commands(to: typer.Typer, found: Iterable[EntryPoint]) -> None:
             why = f"cannot be loaded from {entry.value}: {type(error).__name__}: {error}"
             _add_missing(to, entry.name, why, hidden=False)
     for name in set(STUDIES) - names:
-        why = "is a study: install topnav-studies ('pip install ./experiments' in a clone of topnav)"
+        why = "belongs to topnav-studies: install that ('pip install ./experiments' in a clone of topnav)"
         _add_missing(to, name, why, hidden=True)
 
 

@@ -75,7 +75,7 @@ def test_a_missing_command_is_one_line_and_a_failure(monkeypatch, capsys):
         cli.main()
     assert caught.value.code == 1
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("topnav: topnav study is a study")
+    assert line.startswith("topnav: topnav study belongs to topnav-studies")
 
 
 def test_the_list_of_commands_loads_nothing_heavy():
