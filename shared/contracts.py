@@ -9,8 +9,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from shared.messages import ALL, Message
-from shared.messages.base import SECTORS
+from shared.messages import all_messages
+from shared.messages.base import SECTORS, Message
 from shared.queries import CODED, REASONS
 from shared.topics import NAME, QUERIES, TOPICS, Query, Topic
 
@@ -44,7 +44,7 @@ def index() -> dict[str, Any]:
 
 def files() -> dict[str, str]:
     """File name -> content of the whole contract."""
-    contents = {f"{message.SCHEMA}.json": schema(message) for message in ALL}
+    contents = {f"{message.SCHEMA}.json": schema(message) for message in all_messages()}
     contents["index.json"] = index()
     return {name: json.dumps(content, indent=2) + "\n" for name, content in contents.items()}
 

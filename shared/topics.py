@@ -3,34 +3,10 @@
 import re
 from dataclasses import dataclass
 from enum import Enum
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
-from shared.messages import (
-    Command,
-    EStopRequest,
-    EStopState,
-    Event,
-    ExtractRequest,
-    Features,
-    Frame,
-    Heading,
-    MapDelta,
-    MapReply,
-    MapRequest,
-    MatchReply,
-    MatchRequest,
-    Message,
-    MissionKinds,
-    MissionKindsRequest,
-    MissionRecord,
-    MissionRecordRequest,
-    MissionRequest,
-    MissionStatus,
-    Ranges,
-    SimulationReply,
-    SimulationRequest,
-    Truth,
-)
+from shared.messages import drive, estop, features, maps, matching, missions, sensors, simulation
+from shared.messages.base import Message
 
 M = TypeVar("M", bound=Message)
 Q = TypeVar("Q", bound=Message)
@@ -91,52 +67,40 @@ def fill(template: str, names: dict[str, str]) -> str:
     return template.format(**names)
 
 
-FRAME = Topic("topnav/{robot}/frame", Frame, Delivery.DATA, 64 * MB)
-RANGES = Topic("topnav/{robot}/ranges", Ranges, Delivery.DATA, 10_000)
-FEATURES = Topic("topnav/{robot}/features", Features, Delivery.DATA, 8 * MB)
-HEADING = Topic("topnav/{robot}/heading", Heading, Delivery.COMMAND, 10_000)
-COMMAND = Topic("topnav/{robot}/command", Command, Delivery.COMMAND, 10_000)
-ESTOP_STATE = Topic("topnav/{robot}/stopped", EStopState, Delivery.COMMAND, 10_000)
-ROBOT_ESTOP_STATE = Topic("topnav/{robot}/standing", EStopState, Delivery.COMMAND, 10_000)
-STATUS = Topic("topnav/{robot}/status", MissionStatus, Delivery.LOG, 1 * MB)
-EVENT = Topic("topnav/{robot}/event", Event, Delivery.LOG, 100_000)
-TRUTH = Topic("topnav/{robot}/truth", Truth, Delivery.LOG, 10_000)
-MAP_DELTA = Topic("topnav/maps/{map}/delta", MapDelta, Delivery.RECOVERED, 64 * MB)
+FRAME = Topic("topnav/{robot}/frame", sensors.Frame, Delivery.DATA, 64 * MB)
+RANGES = Topic("topnav/{robot}/ranges", sensors.Ranges, Delivery.DATA, 10_000)
+FEATURES = Topic("topnav/{robot}/features", features.Features, Delivery.DATA, 8 * MB)
+HEADING = Topic("topnav/{robot}/heading", drive.Heading, Delivery.COMMAND, 10_000)
+COMMAND = Topic("topnav/{robot}/command", drive.Command, Delivery.COMMAND, 10_000)
+ESTOP_STATE = Topic("topnav/{robot}/stopped", estop.EStopState, Delivery.COMMAND, 10_000)
+ROBOT_ESTOP_STATE = Topic("topnav/{robot}/standing", estop.EStopState, Delivery.COMMAND, 10_000)
+STATUS = Topic("topnav/{robot}/status", missions.MissionStatus, Delivery.LOG, 1 * MB)
+EVENT = Topic("topnav/{robot}/event", missions.Event, Delivery.LOG, 100_000)
+TRUTH = Topic("topnav/{robot}/truth", simulation.Truth, Delivery.LOG, 10_000)
+MAP_DELTA = Topic("topnav/maps/{map}/delta", maps.MapDelta, Delivery.RECOVERED, 64 * MB)
 
-MATCH = Query("topnav/{robot}/match", MatchRequest, MatchReply, 32 * MB, anyone=True)
-EXTRACT = Query("topnav/features/extract", ExtractRequest, Features, 64 * MB, anyone=True)
-MISSION = Query("topnav/{robot}/mission", MissionRequest, MissionStatus, 8 * MB)
-MISSION_KINDS = Query("topnav/{robot}/mission/kinds", MissionKindsRequest, MissionKinds, 1 * MB)
-ESTOP = Query("topnav/{robot}/estop", EStopRequest, EStopState, 10_000)
-MAP = Query("topnav/maps/{map}/graph", MapRequest, MapReply, 512 * MB, anyone=True)
-MAP_READ = Query("topnav/maps/{map}/read", MapRequest, MapReply, 512 * MB, anyone=True)
-MISSION_RECORD = Query("topnav/missions/{robot}", MissionRecordRequest, MissionRecord, 8 * MB, anyone=True)
-SIMULATION = Query("topnav/{robot}/simulation", SimulationRequest, SimulationReply, 64 * MB)
+MATCH = Query("topnav/{robot}/match", matching.MatchRequest, matching.MatchReply, 32 * MB, anyone=True)
+EXTRACT = Query("topnav/features/extract", features.ExtractRequest, features.Features, 64 * MB, anyone=True)
+MISSION = Query("topnav/{robot}/mission", missions.MissionRequest, missions.MissionStatus, 8 * MB)
+MISSION_KINDS = Query(
+    "topnav/{robot}/mission/kinds", missions.MissionKindsRequest, missions.MissionKinds, 1 * MB
+)
+ESTOP = Query("topnav/{robot}/estop", estop.EStopRequest, estop.EStopState, 10_000)
+MAP = Query("topnav/maps/{map}/graph", maps.MapRequest, maps.MapReply, 512 * MB, anyone=True)
+MAP_READ = Query("topnav/maps/{map}/read", maps.MapRequest, maps.MapReply, 512 * MB, anyone=True)
+MISSION_RECORD = Query(
+    "topnav/missions/{robot}", maps.MissionRecordRequest, maps.MissionRecord, 8 * MB, anyone=True
+)
+SIMULATION = Query(
+    "topnav/{robot}/simulation", simulation.SimulationRequest, simulation.SimulationReply, 64 * MB
+)
 
-TOPICS: tuple[Topic[Message], ...] = (
-    FRAME,
-    RANGES,
-    FEATURES,
-    HEADING,
-    COMMAND,
-    ESTOP_STATE,
-    ROBOT_ESTOP_STATE,
-    STATUS,
-    EVENT,
-    TRUTH,
-    MAP_DELTA,
-)  # type: ignore[assignment]
-QUERIES: tuple[Query[Message, Message], ...] = (
-    MATCH,
-    EXTRACT,
-    MISSION,
-    MISSION_KINDS,
-    ESTOP,
-    MAP,
-    MAP_READ,
-    MISSION_RECORD,
-    SIMULATION,
-)  # type: ignore[assignment]
+TOPICS: tuple[Topic[Any], ...] = tuple(
+    entry for entry in list(globals().values()) if isinstance(entry, Topic)
+)
+QUERIES: tuple[Query[Any, Any], ...] = tuple(
+    entry for entry in list(globals().values()) if isinstance(entry, Query)
+)
 
 
 def alive_key(service: str, instance: str) -> str:

@@ -1,6 +1,7 @@
 """Answers the experimenter's requests: reset, placing robots and furniture, pictures from anywhere."""
 
-from shared.messages import Frame, SimulationReply, SimulationRequest
+from shared.messages.sensors import Frame
+from shared.messages.simulation import SimulationReply, SimulationRequest
 from simulator.outbox import MessageMaker
 from simulator.scene.parts import Pose2
 from simulator.simulation import Simulation

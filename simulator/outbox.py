@@ -5,8 +5,8 @@ import time
 import cv2
 import numpy as np
 
-from shared.messages import Frame, Ranges, Truth
-from shared.messages.simulation import Pose
+from shared.messages.sensors import Frame, Ranges
+from shared.messages.simulation import Pose, Truth
 from simulator.service_settings import SimulatorSettings
 from simulator.simulation import Image, Simulation
 

@@ -8,7 +8,9 @@ from pathlib import Path
 
 from shared.bus import Bus
 from shared.estop.sides import RobotEStop
-from shared.messages import Command, Frame, Ranges, Truth
+from shared.messages.drive import Command
+from shared.messages.sensors import Frame, Ranges
+from shared.messages.simulation import Truth
 from shared.sole_robot import SoleRobot
 from shared.topics import COMMAND, FRAME, RANGES, SIMULATION, TRUTH
 from simulator.experimenter import Experimenter, RequestError

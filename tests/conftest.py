@@ -17,6 +17,19 @@ from tests.postgres import PostgresServer, missing
 REPOSITORY = Path(__file__).resolve().parents[1]
 
 
+STACK = "explored"
+"""Fixture of the stack that end-to-end tests share."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Keep tests of one file on one worker, and all of the shared stack on one, which begins."""
+    for item in items:
+        shared = STACK in getattr(item, "fixturenames", ())
+        group = STACK if shared else item.path.relative_to(REPOSITORY).as_posix()
+        item.add_marker(pytest.mark.xdist_group(group))
+    items.sort(key=lambda item: STACK not in getattr(item, "fixturenames", ()))
+
+
 @pytest.fixture(scope="session")
 def repository() -> Path:
     """Folder of the whole project."""

@@ -14,9 +14,11 @@ from services.drive.core import DriveLimits, compute_command
 from services.drive.passing import Passing
 from services.planner.ports import Decision, Mission, Observation
 from shared.mapgraph.graph import MapGraph
-from shared.messages import Features, Heading, Ranges
+from shared.messages.drive import Heading
+from shared.messages.features import Features
 from shared.messages.maps import AddNode, Operation
 from shared.messages.matching import NodeMatch
+from shared.messages.sensors import Ranges
 from simulator.scene.parts import Material, Part
 from simulator.scene.shapes import post
 from simulator.world.footprints import Footprints, cast_rays, clearance_m, footprints

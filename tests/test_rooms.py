@@ -12,6 +12,7 @@ MODULES_MAX = 15
 FUNCTION_MAX = 60
 LINES_MIN = 25
 PLUGINS = {
+    "experiments/commands",
     "services/features/extractors",
     "services/features/matchers",
     "services/features/representations",

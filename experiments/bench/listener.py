@@ -9,7 +9,8 @@ from typing import Any, Self
 from experiments.bench.stages import Arrival
 from services.launcher.client.address import Address
 from shared.bus import Bus
-from shared.messages import Frame, Message
+from shared.messages.base import Message
+from shared.messages.sensors import Frame
 from shared.topics import COMMAND, EVENT, FEATURES, FRAME, HEADING, TRUTH
 
 LOOP = {"truth": TRUTH, "features": FEATURES, "heading": HEADING, "command": COMMAND, "event": EVENT}

@@ -16,7 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from services.launcher.terminal.output import rounded
-from shared.messages import Event, Features, Heading, Message, Truth
+from shared.messages.base import Message
+from shared.messages.drive import Heading
+from shared.messages.features import Features
+from shared.messages.missions import Event
+from shared.messages.simulation import Truth
 
 STAGES = ("render", "transport", "extract", "match", "verify", "plan", "drive", "simulate")
 

@@ -13,7 +13,7 @@ from services.launcher.client.trail import collisions
 from services.launcher.evaluation.outcome import Round
 from services.launcher.evaluation.rounds import MARGIN_M, Game
 from services.launcher.terminal.output import rounded
-from shared.messages import MissionRequest, MissionStatus
+from shared.messages.missions import MissionRequest, MissionStatus
 from shared.messages.sensors import Frame
 from shared.messages.simulation import Pose
 from simulator.world.freespace import FreeSpace, free_space

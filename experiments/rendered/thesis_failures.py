@@ -20,7 +20,7 @@ from services.launcher.client.stack import StackChoice, open_stack
 from services.launcher.evaluation.truth_file import load_truth, truth_path
 from services.launcher.terminal.output import rounded
 from services.planner.profiles import Profile
-from shared.messages import MapRequest
+from shared.messages.maps import MapRequest
 from shared.messages.simulation import Pose
 from shared.topics import MAP
 from simulator.world.freespace import FreeSpace, free_space

@@ -10,7 +10,8 @@ from experiments.rendered.frames import camera
 from experiments.scale.frames import Seen, WorldFrames
 from experiments.scale.measure import TRACKED
 from shared.bus import Bus
-from shared.messages import Frame, MatchRequest
+from shared.messages.matching import MatchRequest
+from shared.messages.sensors import Frame
 from shared.topics import FEATURES, FRAME, MATCH
 from simulator.world.world_file import load_world
 

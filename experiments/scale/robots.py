@@ -26,8 +26,7 @@ from services.launcher.processes.process import ChildProcess, stop_all
 from services.launcher.processes.supervisor import Launcher
 from services.launcher.terminal.output import rounded
 from shared.bus import Bus, open_bus, wait_until
-from shared.messages import MapRequest
-from shared.messages.maps import AddNode, Node
+from shared.messages.maps import AddNode, MapRequest, Node
 from shared.topics import MAP
 
 START_S, GRACE_S = 120.0, 5.0

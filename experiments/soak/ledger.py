@@ -7,8 +7,8 @@ import numpy as np
 
 from experiments.soak.journal import Journal
 from shared.bus import Bus, open_bus
-from shared.messages import Features, MapRequest
-from shared.messages.maps import AddNode, Node
+from shared.messages.features import Features
+from shared.messages.maps import AddNode, MapRequest, Node
 from shared.queries import QueryError
 from shared.topics import MAP
 from shared.wire import WireError

@@ -14,7 +14,7 @@ from services.launcher.client.mission import TERMINAL, goal_features
 from services.launcher.client.stack import Stack
 from services.launcher.evaluation.rounds import hiding_place
 from services.launcher.terminal.output import rounded
-from shared.messages import MissionRequest, MissionStatus
+from shared.messages.missions import MissionRequest, MissionStatus
 from shared.queries import QueryError
 from shared.topics import MISSION
 from shared.wire import WireError

@@ -9,7 +9,7 @@ from experiments.soak.growth import Sample
 from experiments.soak.journal import Journal
 from services.launcher.processes.supervisor import Launcher
 from shared.bus import open_bus
-from shared.messages import Truth
+from shared.messages.simulation import Truth
 from shared.topics import TRUTH
 
 PERIOD_S = 0.5  # every truth is kept until then

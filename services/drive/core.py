@@ -7,7 +7,8 @@ from pydantic import BaseModel, ConfigDict, PositiveFloat, PositiveInt, model_va
 
 from services.drive.passing import Passing, PassingLimits, Steering, obstacle_heading, steer_away, steer_past
 from shared.geometry.clearance import Obstacles
-from shared.messages import Command, Heading, Ranges
+from shared.messages.drive import Command, Heading
+from shared.messages.sensors import Ranges
 
 SLOWEST = 0.25
 """Share of the speed that is left however near an obstacle is; chosen, see decision 0005."""

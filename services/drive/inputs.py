@@ -9,7 +9,8 @@ import math
 from bisect import bisect_left
 from collections.abc import Callable
 
-from shared.messages import Heading, Ranges
+from shared.messages.drive import Heading
+from shared.messages.sensors import Ranges
 
 log = logging.getLogger(__name__)
 

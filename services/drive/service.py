@@ -12,7 +12,8 @@ from services.drive.passing import Passing
 from services.drive.settings import DriveSettings
 from shared.bus import Bus
 from shared.estop.sides import EStopServer
-from shared.messages import Command, Heading, Ranges
+from shared.messages.drive import Command, Heading
+from shared.messages.sensors import Ranges
 from shared.topics import COMMAND, HEADING, RANGES
 
 log = logging.getLogger(__name__)

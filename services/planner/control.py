@@ -15,8 +15,15 @@ from services.planner.settings import PlannerSettings
 from shared.bus import Bus
 from shared.mapgraph.frontiers import open_directions
 from shared.mapgraph.graph import MapGraph
-from shared.messages import MapDelta, MissionRecord, MissionRecordRequest, MissionRequest, MissionStatus
-from shared.messages.missions import CONTROLS, EventValue, FailureKind, MissionState
+from shared.messages.maps import MapDelta, MissionRecord, MissionRecordRequest
+from shared.messages.missions import (
+    CONTROLS,
+    EventValue,
+    FailureKind,
+    MissionRequest,
+    MissionState,
+    MissionStatus,
+)
 from shared.queries import RefusedError
 from shared.topics import MISSION_RECORD
 

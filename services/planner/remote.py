@@ -8,9 +8,9 @@ from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.operations import GraphError
 from shared.mapgraph.rebasing import rebased
 from shared.mapgraph.routing import GOAL
-from shared.messages import MapReply, MapRequest, MatchRequest
 from shared.messages.features import Features
-from shared.messages.maps import AddNode, DeleteNode, MapDelta, Operation
+from shared.messages.maps import AddNode, DeleteNode, MapDelta, MapReply, MapRequest, Operation
+from shared.messages.matching import MatchRequest
 from shared.queries import RefusedError
 from shared.topics import MAP, MATCH
 

@@ -10,17 +10,11 @@ from services.planner.ports import Decision, Observation
 from services.planner.profiles import Profile
 from services.planner.settings import PlannerSettings
 from shared.bus import Bus
-from shared.messages import (
-    EStopState,
-    Event,
-    Features,
-    Heading,
-    MissionKinds,
-    MissionRequest,
-    MissionStatus,
-    Ranges,
-)
-from shared.messages.missions import EventValue
+from shared.messages.drive import Heading
+from shared.messages.estop import EStopState
+from shared.messages.features import Features
+from shared.messages.missions import Event, EventValue, MissionKinds, MissionRequest, MissionStatus
+from shared.messages.sensors import Ranges
 from shared.queries import QueryError, RefusedError, Request
 from shared.topics import (
     ESTOP_STATE,

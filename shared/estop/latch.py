@@ -11,7 +11,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from shared.messages import EStopState
+from shared.messages.estop import EStopState
 
 log = logging.getLogger(__name__)
 

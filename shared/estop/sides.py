@@ -6,7 +6,7 @@ from pathlib import Path
 
 from shared.bus import Bus, Publisher, Request
 from shared.estop.latch import Latch
-from shared.messages import EStopRequest, EStopState
+from shared.messages.estop import EStopRequest, EStopState
 from shared.topics import ESTOP, ESTOP_STATE, ROBOT_ESTOP_STATE
 
 log = logging.getLogger(__name__)

@@ -15,7 +15,7 @@ import pytest
 
 from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
-from shared.messages import Features
+from shared.messages.features import Features
 from shared.messages.maps import AddNode, Edge, Node, Operation, PutEdge
 from tests.postgres import PostgresServer, missing
 

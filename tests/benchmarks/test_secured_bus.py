@@ -18,7 +18,7 @@ from services.launcher.processes.free_ports import free_ports
 from shared.bus import open_bus, wait_until
 from shared.certificates.holders import everyone
 from shared.certificates.issuing import make
-from shared.messages import EStopRequest, EStopState
+from shared.messages.estop import EStopRequest, EStopState
 from shared.topics import ESTOP, FRAME
 
 ROUNDS, ASKS, PICTURES = 5, 100, 20

@@ -5,45 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from shared.messages import (
-    Command,
-    EStopRequest,
-    EStopState,
-    Event,
-    ExtractRequest,
-    Features,
-    Frame,
-    Heading,
-    MapDelta,
-    MapReply,
-    MapRequest,
-    MatchReply,
-    MatchRequest,
-    Message,
-    MissionKinds,
-    MissionKindsRequest,
-    MissionRecord,
-    MissionRecordRequest,
-    MissionRequest,
-    MissionStatus,
-    Ranges,
-    SimulationReply,
-    SimulationRequest,
-    Truth,
-)
-from shared.messages.maps import (
-    AddNode,
-    DeleteEdge,
-    DeleteNode,
-    Edge,
-    Node,
-    NodeFeatures,
-    PutEdge,
-    UpdateNode,
-)
-from shared.messages.matching import NodeMatch
-from shared.messages.missions import EventValue, MissionKindInfo
-from shared.messages.simulation import Pose
+from shared.messages import drive, estop, maps, matching, sensors, simulation
+from shared.messages import features as looks
+from shared.messages import missions as orders
+from shared.messages.base import Message
 from shared.wire import encode
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -51,8 +16,8 @@ STAMP_NS = 1_700_000_000_000_000_000
 HALF = (True, False) * 6
 
 
-def features() -> Features:
-    return Features(
+def features() -> looks.Features:
+    return looks.Features(
         seq=7,
         stamp_ns=STAMP_NS,
         robot="r1",
@@ -66,8 +31,8 @@ def features() -> Features:
     )
 
 
-def frame() -> Frame:
-    return Frame(
+def frame() -> sensors.Frame:
+    return sensors.Frame(
         seq=7,
         stamp_ns=STAMP_NS,
         robot="r1",
@@ -79,8 +44,8 @@ def frame() -> Frame:
     )
 
 
-def node(node_id: int) -> Node:
-    return Node(
+def node(node_id: int) -> maps.Node:
+    return maps.Node(
         node_id=node_id,
         stamp_ns=STAMP_NS,
         frame_seq=7,
@@ -91,8 +56,8 @@ def node(node_id: int) -> Node:
     )
 
 
-def edge() -> Edge:
-    return Edge(
+def edge() -> maps.Edge:
+    return maps.Edge(
         a=1,
         b=2,
         raw_matches=60,
@@ -113,18 +78,20 @@ def edge() -> Edge:
     )
 
 
-def operations() -> tuple[AddNode | UpdateNode | DeleteNode | PutEdge | DeleteEdge, ...]:
+def operations() -> tuple[
+    maps.AddNode | maps.UpdateNode | maps.DeleteNode | maps.PutEdge | maps.DeleteEdge, ...
+]:
     return (
-        AddNode(node=node(1), features=features()),
-        UpdateNode(node=node(1)),
-        PutEdge(edge=edge()),
-        DeleteEdge(a=1, b=2),
-        DeleteNode(node_id=2),
+        maps.AddNode(node=node(1), features=features()),
+        maps.UpdateNode(node=node(1)),
+        maps.PutEdge(edge=edge()),
+        maps.DeleteEdge(a=1, b=2),
+        maps.DeleteNode(node_id=2),
     )
 
 
-def mission() -> MissionRecord:
-    return MissionRecord(
+def mission() -> maps.MissionRecord:
+    return maps.MissionRecord(
         seq=7,
         stamp_ns=STAMP_NS,
         robot="r1",
@@ -146,14 +113,14 @@ def mission() -> MissionRecord:
     )
 
 
-def truth() -> Truth:
-    return Truth(
+def truth() -> simulation.Truth:
+    return simulation.Truth(
         seq=7,
         stamp_ns=STAMP_NS,
         robot="r1",
         world="apartment",
-        pose=Pose(x_m=1.0, y_m=-2.0, yaw_rad=0.5),
-        hider=Pose(x_m=3.0, y_m=4.0, yaw_rad=-0.5),
+        pose=simulation.Pose(x_m=1.0, y_m=-2.0, yaw_rad=0.5),
+        hider=simulation.Pose(x_m=3.0, y_m=4.0, yaw_rad=-0.5),
         sim_time_s=12.5,
         speed_mps=0.25,
         collisions=1,
@@ -161,8 +128,8 @@ def truth() -> Truth:
     )
 
 
-def node_match() -> NodeMatch:
-    return NodeMatch(
+def node_match() -> matching.NodeMatch:
+    return matching.NodeMatch(
         node_id=1,
         raw_matches=2,
         inliers=1,
@@ -185,12 +152,12 @@ def seen() -> tuple[Message, ...]:
     """What robots sense and the feature service makes of it."""
     return (
         frame(),
-        Ranges(
+        sensors.Ranges(
             **AT, robot="r1", lockstep=True, angles_rad=(0.5,) * 12, distances_m=(2.5,) * 12, max_range_m=5.0
         ),
         features(),
-        ExtractRequest(**AT, frame=frame()),
-        MatchRequest(
+        looks.ExtractRequest(**AT, frame=frame()),
+        matching.MatchRequest(
             **AT,
             map="flat",
             map_revision=5,
@@ -200,7 +167,7 @@ def seen() -> tuple[Message, ...]:
             targets=(features(),),
             with_matches=False,
         ),
-        MatchReply(
+        matching.MatchReply(
             **AT,
             map="flat",
             map_revision=5,
@@ -216,7 +183,7 @@ def seen() -> tuple[Message, ...]:
 def driven() -> tuple[Message, ...]:
     """Headings, commands and the emergency stop."""
     return (
-        Heading(
+        drive.Heading(
             **DRIVE,
             mission_id="m-1",
             action="hold",
@@ -227,16 +194,16 @@ def driven() -> tuple[Message, ...]:
             speed_fraction=0.5,
             method="epipolar",
         ),
-        Command(**DRIVE, steer_rad=0.25, wheel_speed_radps=4.0, avoiding=True),
-        EStopRequest(**AT, action="clear", who="anna", why="the floor is free"),
-        EStopState(**AT, robot="r1", engaged=True, who="anna", why="a child", since_ns=STAMP_NS),
+        drive.Command(**DRIVE, steer_rad=0.25, wheel_speed_radps=4.0, avoiding=True),
+        estop.EStopRequest(**AT, action="clear", who="anna", why="the floor is free"),
+        estop.EStopState(**AT, robot="r1", engaged=True, who="anna", why="a child", since_ns=STAMP_NS),
     )
 
 
 def missions() -> tuple[Message, ...]:
     """Missions and what is told of them."""
     return (
-        MissionRequest(
+        orders.MissionRequest(
             **AT,
             action="goto",
             map="flat",
@@ -247,7 +214,7 @@ def missions() -> tuple[Message, ...]:
             seed=1,
             max_steps=9,
         ),
-        MissionStatus(
+        orders.MissionStatus(
             **AT,
             robot="r1",
             mission_id="m-1",
@@ -266,15 +233,15 @@ def missions() -> tuple[Message, ...]:
             similarity=70,
             disparity_rad=0.25,
             epoch=3,
-            figures=(EventValue(name="similarity", value=70),),
+            figures=(orders.EventValue(name="similarity", value=70),),
             travel="following",
             travel_reason="a path leads from a node in sight to the destination",
         ),
-        MissionKindsRequest(**AT),
-        MissionKinds(
+        orders.MissionKindsRequest(**AT),
+        orders.MissionKinds(
             **AT,
             kinds=(
-                MissionKindInfo(
+                orders.MissionKindInfo(
                     name="patrol",
                     title="Go round",
                     parameters={"type": "object", "properties": {"rounds": {"type": "integer"}}},
@@ -283,14 +250,14 @@ def missions() -> tuple[Message, ...]:
                 ),
             ),
         ),
-        Event(
+        orders.Event(
             **AT,
             robot="r1",
             mission_id="m-1",
             step=12,
             kind="edge",
             reason="similar",
-            values=(EventValue(name="s", value=70), EventValue(name="heading", value=0.5)),
+            values=(orders.EventValue(name="s", value=70), orders.EventValue(name="heading", value=0.5)),
         ),
     )
 
@@ -298,7 +265,7 @@ def missions() -> tuple[Message, ...]:
 def mapped() -> tuple[Message, ...]:
     """Maps, and the missions that the map store keeps."""
     return (
-        MapRequest(
+        maps.MapRequest(
             **AT,
             action="transact",
             author="planner",
@@ -307,17 +274,17 @@ def mapped() -> tuple[Message, ...]:
             operations=operations(),
             node_ids=(1, 2),
         ),
-        MapReply(
+        maps.MapReply(
             **AT,
             map="flat",
             revision=5,
             nodes=(node(1), node(2)),
             edges=(edge(),),
-            features=(NodeFeatures(node_id=1, features=features()),),
+            features=(maps.NodeFeatures(node_id=1, features=features()),),
         ),
-        MapDelta(**AT, map="flat", revision=5, reset=True, author="planner", operations=operations()),
+        maps.MapDelta(**AT, map="flat", revision=5, reset=True, author="planner", operations=operations()),
         mission(),
-        MissionRecordRequest(**AT, action="save", record=mission()),
+        maps.MissionRecordRequest(**AT, action="save", record=mission()),
     )
 
 
@@ -325,16 +292,16 @@ def simulated() -> tuple[Message, ...]:
     """Simulation only."""
     return (
         truth(),
-        SimulationRequest(
+        simulation.SimulationRequest(
             **AT,
             action="place_obstacle",
-            pose=Pose(x_m=1.0, y_m=2.0, yaw_rad=0.5),
+            pose=simulation.Pose(x_m=1.0, y_m=2.0, yaw_rad=0.5),
             seed=3,
             item="box-1",
             kind="basket",
             present=True,
         ),
-        SimulationReply(**AT, truth=truth(), frame=frame()),
+        simulation.SimulationReply(**AT, truth=truth(), frame=frame()),
     )
 
 

@@ -12,10 +12,11 @@ from hypothesis import strategies as st
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from shared.messages import Features, Frame
 from shared.messages.arrays import ArraySpec
+from shared.messages.features import Features
 from shared.messages.maps import Edge
 from shared.messages.matching import NodeMatch
+from shared.messages.sensors import Frame
 
 Fields = dict[str, Any]
 

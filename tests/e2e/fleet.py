@@ -13,7 +13,7 @@ from services.launcher.client.experimenter import Experimenter
 from services.launcher.client.mission import MissionClient, MissionRun
 from services.launcher.client.stack import Stack
 from shared.bus import Inbox, wait_until
-from shared.messages import Event, MissionRequest
+from shared.messages.missions import Event, MissionRequest
 from shared.topics import EVENT
 
 SCRIPT = Path(__file__).resolve().parents[2] / "deploy" / "examples" / "another_robot.sh"

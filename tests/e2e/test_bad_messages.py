@@ -9,17 +9,12 @@ import pytest
 import zenoh
 
 from shared.bus import wait_until
-from shared.messages import (
-    Command,
-    Features,
-    Frame,
-    Heading,
-    MapRequest,
-    MatchRequest,
-    MissionRequest,
-    Ranges,
-)
-from shared.messages.maps import DeleteNode
+from shared.messages.drive import Command, Heading
+from shared.messages.features import Features
+from shared.messages.maps import DeleteNode, MapRequest
+from shared.messages.matching import MatchRequest
+from shared.messages.missions import MissionRequest
+from shared.messages.sensors import Frame, Ranges
 from shared.queries import RefusedError
 from shared.topics import MAP, MATCH, MISSION
 from shared.transport.session_config import peer_config

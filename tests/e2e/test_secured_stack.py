@@ -13,7 +13,7 @@ from services.launcher.commands.estop import ENGAGED, UNKNOWN
 from services.launcher.processes.free_ports import free_ports
 from shared.access.credentials import FILES
 from shared.bus import wait_until
-from shared.messages import EStopRequest
+from shared.messages.estop import EStopRequest
 from shared.queries import AbsentError
 from shared.topics import ESTOP, TRUTH
 

@@ -15,7 +15,8 @@ from services.launcher.client.stack import StackChoice, open_stack
 from services.launcher.client.trail import collisions
 from services.launcher.evaluation.truth_file import join_truth
 from shared.bus import wait_until
-from shared.messages import MapReply, MissionRequest
+from shared.messages.maps import MapReply
+from shared.messages.missions import MissionRequest
 from shared.messages.simulation import Pose
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world

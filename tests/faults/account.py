@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from shared.messages import MapReply, MapRequest
+from shared.messages.maps import MapReply, MapRequest
 from shared.queries import RefusedError
 from shared.topics import MAP
 from shared.wire import encode

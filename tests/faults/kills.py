@@ -10,7 +10,7 @@ import httpx
 import numpy as np
 
 from shared.bus import Bus, open_bus, wait_until
-from shared.messages import MapRequest
+from shared.messages.maps import MapRequest
 from shared.queries import QueryError, RefusedError
 from shared.topics import MAP
 from tests.faults.account import judge

@@ -9,7 +9,8 @@ from typing import Self
 import numpy as np
 
 from shared.bus import open_bus
-from shared.messages import Command, Frame
+from shared.messages.drive import Command
+from shared.messages.sensors import Frame
 from shared.topics import COMMAND, FRAME
 from tests.integration.drive.conftest import Neighbours
 

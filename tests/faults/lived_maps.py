@@ -14,7 +14,7 @@ from services.map_store.storage.database import Database
 from services.map_store.storage.graph import MAX_NODE_ID
 from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
-from shared.messages import Features
+from shared.messages.features import Features
 from shared.messages.maps import AddNode, DeleteEdge, DeleteNode, Edge, Node, PutEdge, UpdateNode
 from shared.wire import encode
 

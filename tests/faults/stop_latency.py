@@ -22,7 +22,7 @@ from services.launcher.client.experimenter import Experimenter
 from services.launcher.client.stack import Stack, StackChoice, open_stack
 from services.launcher.processes.wait import LaunchError
 from shared.bus import wait_until
-from shared.messages import MissionRequest
+from shared.messages.missions import MissionRequest
 from shared.queries import QueryError
 from shared.topics import MISSION
 from tests.faults.watching import STILL_MPS, Watch

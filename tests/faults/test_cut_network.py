@@ -11,7 +11,8 @@ import pytest
 import zenoh
 
 from shared.bus import Bus, open_bus, wait_until
-from shared.messages import Command, MapRequest
+from shared.messages.drive import Command
+from shared.messages.maps import MapRequest
 from shared.topics import COMMAND, MAP, MAP_DELTA
 from shared.transport.session_config import peer_config
 from shared.wire import decode

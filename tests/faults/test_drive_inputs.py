@@ -9,7 +9,8 @@ import msgpack
 import pytest
 
 from shared.bus import wait_until
-from shared.messages import Heading, Ranges
+from shared.messages.drive import Heading
+from shared.messages.sensors import Ranges
 from shared.topics import HEADING, RANGES
 from shared.wire import encode
 

@@ -9,7 +9,8 @@ import pytest
 
 from services.launcher.client.stack import Stack, StackChoice, open_stack
 from shared.bus import wait_until
-from shared.messages import Command, EStopRequest
+from shared.messages.drive import Command
+from shared.messages.estop import EStopRequest
 from shared.queries import RefusedError
 from shared.topics import COMMAND, ESTOP, FRAME
 from tests.faults.watching import MOVES_S, STILL_MPS, TRIES, Watch, ask, ended, exploring, set_off

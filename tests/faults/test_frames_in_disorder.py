@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from shared.bus import open_bus, wait_until
-from shared.messages import Frame
+from shared.messages.sensors import Frame
 from shared.topics import FEATURES, FRAME
 
 pytestmark = [pytest.mark.usefixtures("patient_sessions")]

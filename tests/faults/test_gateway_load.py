@@ -13,7 +13,7 @@ from websockets.sync.client import connect
 
 from experiments.bench.resources import RESIDENT, memory_mb
 from shared.bus import open_bus, wait_until
-from shared.messages import Event
+from shared.messages.missions import Event
 from shared.topics import EVENT
 from tests.faults.gateway_load import CLIENTS, PER_CLIENT, READERS, loaded, measure
 from tests.faults.latency import Stopwatch, told

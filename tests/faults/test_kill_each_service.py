@@ -9,7 +9,8 @@ import pytest
 
 from services.launcher.processes.wait import LaunchError
 from shared.bus import wait_until
-from shared.messages import ExtractRequest, MissionRequest
+from shared.messages.features import ExtractRequest
+from shared.messages.missions import MissionRequest
 from shared.topics import EXTRACT
 from tests.e2e.near_node import hiding_place_near_a_node
 from tests.faults.watching import MOVES_S, TRIES, Watch

@@ -8,8 +8,7 @@ from contextlib import closing, suppress
 import pytest
 
 from shared.bus import Bus, wait_until
-from shared.messages import MapReply, MapRequest
-from shared.messages.maps import Edge, PutEdge
+from shared.messages.maps import Edge, MapReply, MapRequest, PutEdge
 from shared.queries import AbsentError
 from shared.topics import MAP
 from tests.faults.lived_maps import place

@@ -8,8 +8,8 @@ from services.launcher.client.experimenter import Experimenter
 from services.launcher.client.maps import delete_map, read_map
 from services.launcher.client.mission import MissionClient
 from services.launcher.client.stack import Stack, StackChoice, open_stack
-from shared.messages import MapRequest, MissionRequest
-from shared.messages.maps import DeleteNode
+from shared.messages.maps import DeleteNode, MapRequest
+from shared.messages.missions import MissionRequest
 from shared.topics import MAP
 
 pytestmark = [

@@ -15,7 +15,10 @@ from services.launcher.client.maps import store_client
 from services.launcher.processes.free_ports import free_ports
 from shared.access.credentials import credentials_in
 from shared.bus import wait_until
-from shared.messages import EStopRequest, Heading, MapDelta, MapRequest, Ranges
+from shared.messages.drive import Heading
+from shared.messages.estop import EStopRequest
+from shared.messages.maps import MapDelta, MapRequest
+from shared.messages.sensors import Ranges
 from shared.queries import AbsentError, RefusedError
 from shared.topics import COMMAND, ESTOP, ESTOP_STATE, HEADING, MAP, MAP_DELTA, MAP_READ, RANGES
 from shared.transport.session_config import client_config

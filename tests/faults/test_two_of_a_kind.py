@@ -11,7 +11,10 @@ import numpy as np
 import pytest
 
 from shared.bus import open_bus, wait_until
-from shared.messages import Features, MatchReply, MissionRequest, Ranges
+from shared.messages.features import Features
+from shared.messages.matching import MatchReply
+from shared.messages.missions import MissionRequest
+from shared.messages.sensors import Ranges
 from shared.topics import FEATURES, HEADING, MATCH, MISSION, RANGES, TRUTH
 from tests.integration.map_store.conftest import Process
 from tests.integration.simulator.conftest import room_data as room_data

@@ -10,7 +10,8 @@ from experiments.bench.listener import Background
 from services.launcher.client.experimenter import Experimenter
 from services.launcher.client.stack import Stack
 from shared.bus import Bus, open_bus, wait_until
-from shared.messages import Command, Heading, MissionRequest, MissionStatus
+from shared.messages.drive import Command, Heading
+from shared.messages.missions import MissionRequest, MissionStatus
 from shared.queries import QueryError
 from shared.topics import COMMAND, FEATURES, HEADING, MISSION, TRUTH
 

@@ -8,8 +8,7 @@ import httpx
 import numpy as np
 
 from shared.bus import Bus
-from shared.messages import MapRequest
-from shared.messages.maps import AddNode, Operation
+from shared.messages.maps import AddNode, MapRequest, Operation
 from shared.queries import QueryError, RefusedError
 from shared.topics import MAP
 from shared.wire import WireError

@@ -10,7 +10,7 @@ from services.gateway.http.bodies import json_body, read_json
 from services.gateway.live.hub import facts_of
 from services.gateway.routes.robots import known
 from services.gateway.state import Gateway, GatewayDep, RobotPath
-from shared.messages import EStopRequest, EStopState
+from shared.messages.estop import EStopRequest, EStopState
 from shared.topics import ESTOP
 from shared.web.problems import ProblemError
 

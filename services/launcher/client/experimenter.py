@@ -5,9 +5,8 @@ import time
 
 from services.launcher.client.failure import ExperimentError
 from shared.bus import Bus
-from shared.messages import SimulationReply, SimulationRequest, Truth
 from shared.messages.sensors import Frame
-from shared.messages.simulation import Pose
+from shared.messages.simulation import Pose, SimulationReply, SimulationRequest, Truth
 from shared.queries import AbsentError
 from shared.topics import SIMULATION
 

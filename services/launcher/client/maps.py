@@ -17,7 +17,7 @@ from services.launcher.processes.stack_settings import StackSettings
 from services.launcher.processes.state import StateFolder
 from services.launcher.processes.supervisor import Launcher
 from shared.access.credentials import MAP_STORE_HOST, credentials_in
-from shared.messages import MapReply, MapRequest
+from shared.messages.maps import MapReply, MapRequest
 from shared.queries import RefusedError
 from shared.topics import MAP
 

@@ -7,8 +7,10 @@ from services.launcher.client.failure import ExperimentError
 from services.launcher.client.trail import Trail
 from services.launcher.terminal.progress import Watch
 from shared.bus import Bus
-from shared.messages import ExtractRequest, Features, MissionRequest, MissionStatus, Truth
+from shared.messages.features import ExtractRequest, Features
+from shared.messages.missions import MissionRequest, MissionStatus
 from shared.messages.sensors import Frame
+from shared.messages.simulation import Truth
 from shared.queries import QueryError
 from shared.topics import EXTRACT, FEATURES, HEADING, MISSION, STATUS, TRUTH
 

@@ -12,7 +12,7 @@ from services.launcher.processes.stack_settings import Ports
 from services.launcher.processes.state import StateFolder
 from services.launcher.processes.supervisor import Launcher
 from shared.bus import Bus, wait_until
-from shared.messages import MissionRequest
+from shared.messages.missions import MissionRequest
 from shared.topics import MISSION
 
 ROBOT = "r1"

@@ -9,7 +9,7 @@ import typer
 from services.launcher.terminal import options
 
 if TYPE_CHECKING:
-    from shared.messages import EStopRequest, EStopState
+    from shared.messages.estop import EStopRequest, EStopState
 
 app = typer.Typer()
 
@@ -63,7 +63,7 @@ def estop(
 
 
 def _request(why: str, clear: bool, who: str, status: bool) -> "EStopRequest":
-    from shared.messages import EStopRequest
+    from shared.messages.estop import EStopRequest
 
     if clear and status:
         raise typer.BadParameter("--clear and --status exclude each other")

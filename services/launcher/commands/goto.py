@@ -29,7 +29,7 @@ def goto(
     from services.launcher.drawing.pictures import frame_from_file
     from services.launcher.terminal.output import print_figures, rounded, wide_console, write_json
     from services.launcher.terminal.progress import mission_progress
-    from shared.messages import MissionRequest
+    from shared.messages.missions import MissionRequest
 
     choice = stack.StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
     with stack.open_stack(choice) as opened:

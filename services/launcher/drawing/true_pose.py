@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from foxglove.messages import FrameTransform, PoseInFrame, Vector3
 
 from services.recorder.foxglove.drawings import Drawing, floor_pose, rotation, timestamp
-from shared.messages import Message, Truth
+from shared.messages.base import Message
+from shared.messages.simulation import Truth
 
 
 def draw_true_pose(message: Message, arrived_ns: int) -> Sequence[Drawing]:

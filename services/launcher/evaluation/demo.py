@@ -19,7 +19,7 @@ from services.launcher.evaluation.rounds import Game
 from services.launcher.evaluation.truth_file import save_truth, truth_path
 from services.launcher.terminal.output import print_rows, write_json
 from services.launcher.terminal.progress import mission_progress
-from shared.messages import MissionStatus
+from shared.messages.missions import MissionStatus
 from simulator.world.freespace import FreeSpace
 from simulator.world.world_file import WorldFile
 

@@ -16,7 +16,8 @@ from services.launcher.evaluation.map_quality import EdgeCheck, check_edges, com
 from services.launcher.evaluation.truth_file import MapTruth, join_truth, load_truth
 from services.launcher.terminal.output import rounded
 from services.launcher.terminal.progress import Watch
-from shared.messages import MapReply, MissionRequest
+from shared.messages.maps import MapReply
+from shared.messages.missions import MissionRequest
 from shared.messages.simulation import Pose
 from simulator.world.freespace import FreeSpace
 

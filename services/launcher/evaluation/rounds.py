@@ -13,7 +13,7 @@ from services.launcher.client.mission import MissionClient, MissionRun, goal_fea
 from services.launcher.client.stack import Stack
 from services.launcher.evaluation.outcome import ARRIVED_M, Round
 from services.launcher.terminal.progress import Watch
-from shared.messages import MissionRequest
+from shared.messages.missions import MissionRequest
 from shared.messages.sensors import Frame
 from shared.messages.simulation import Pose, Truth
 from shared.topics import FRAME

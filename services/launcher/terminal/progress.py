@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from shared.messages import MissionStatus
+from shared.messages.missions import MissionStatus
 
 LINE_PERIOD_S = 20.0
 """Between two lines where nobody looks at a terminal: a log of an hour stays short."""

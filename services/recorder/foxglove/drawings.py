@@ -25,7 +25,10 @@ from foxglove.messages import (
 )
 from PIL import Image
 
-from shared.messages import Command, Event, Frame, Heading, Message, Ranges
+from shared.messages.base import Message
+from shared.messages.drive import Command, Heading
+from shared.messages.missions import Event
+from shared.messages.sensors import Frame, Ranges
 
 JPEG_QUALITY = 85  # for people to look at
 STEP_TOLERANCE_RAD = 1e-3  # 0.06 degrees: float32 angles round less

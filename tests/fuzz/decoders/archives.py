@@ -15,7 +15,7 @@ from services.map_store.storage.archive import INDEX, Archive, write_archive
 from services.map_store.storage.blobs import checksum, pack_features
 from services.map_store.storage.contents import Kind
 from services.map_store.storage.graph import AddStoredNode, Graph, StoredNode, apply
-from shared.messages import Features
+from shared.messages.features import Features
 from shared.messages.maps import Edge, Node, PutEdge
 from tests.fuzz.decoder import Decoder, Shape
 

@@ -6,8 +6,9 @@ from typing import Annotated, Any, get_args
 import msgpack
 import numpy as np
 
-from shared.messages import ALL, Message
+from shared.messages import all_messages
 from shared.messages.arrays import ArraySpec
+from shared.messages.base import Message
 from shared.topics import QUERIES, TOPICS
 from shared.wire import WireError, decode, encode
 from tests.contract.samples import GOLDEN
@@ -32,7 +33,7 @@ FEATURES_SHAPE = Annotated[np.ndarray, ArraySpec(("float32", "uint8"), (None, 2)
 
 def decoders(_scratch: Path) -> list[Decoder]:
     """One per kind of message, with the longest payload its stream allows."""
-    return [*(_message(kind) for kind in ALL), _array()]
+    return [*(_message(kind) for kind in all_messages()), _array()]
 
 
 def unpacked(data: bytes) -> Any:

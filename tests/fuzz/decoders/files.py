@@ -12,7 +12,7 @@ from services.launcher.compose.compose_file import COMPOSE_FILE, load_compose
 from services.launcher.processes.stack_settings import profile_variables
 from services.planner.profile_file import profile_of_file
 from shared.estop.latch import UNREADABLE, Latch
-from shared.messages import EStopState
+from shared.messages.estop import EStopState
 from simulator.disturbances.levels import Disturbances
 from tests.fuzz.decoder import Decoder, Shape
 from tests.fuzz.decoders.worlds import YAML_TOKENS, folded, unfolded

@@ -7,7 +7,7 @@ from services.recorder.backlog import Sample
 from services.recorder.channels import RecordingError
 from services.recorder.reading import WholePart, contents, read
 from services.recorder.recording import RecordingWriter
-from shared.messages import Ranges
+from shared.messages.sensors import Ranges
 from shared.wire import encode
 from tests.fuzz.decoder import Decoder
 

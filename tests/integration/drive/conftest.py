@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 
 from shared.bus import Bus, open_bus, wait_until
-from shared.messages import Command, EStopRequest, EStopState, Heading, Ranges
+from shared.messages.drive import Command, Heading
+from shared.messages.estop import EStopRequest, EStopState
+from shared.messages.sensors import Ranges
 from shared.topics import COMMAND, ESTOP, ESTOP_STATE, HEADING, RANGES, ROBOT_ESTOP_STATE
 
 START_S, SOON_S = 60.0, 30.0

@@ -5,7 +5,7 @@ import time
 import pytest
 
 from shared.bus import wait_until
-from shared.messages import EStopState
+from shared.messages.estop import EStopState
 from shared.queries import RefusedError
 from tests.integration.drive.conftest import SOON_S
 

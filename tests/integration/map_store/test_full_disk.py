@@ -9,7 +9,7 @@ import httpx
 import pytest
 
 from shared.bus import Bus, open_bus, wait_until
-from shared.messages import MapReply, MapRequest
+from shared.messages.maps import MapReply, MapRequest
 from shared.queries import RefusedError
 from shared.topics import MAP
 from tests.faults.lived_maps import place

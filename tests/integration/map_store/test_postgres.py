@@ -17,8 +17,7 @@ from services.map_store.storage.database import Database
 from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
 from shared.bus import Bus, open_bus, wait_until
-from shared.messages import MapDelta, MapReply, MapRequest
-from shared.messages.maps import AddNode
+from shared.messages.maps import AddNode, MapDelta, MapReply, MapRequest
 from shared.queries import QueryError, RefusedError
 from shared.topics import MAP, MAP_DELTA, MAP_READ
 from shared.transport.session_config import router_config

@@ -12,8 +12,16 @@ import pytest
 import zenoh
 
 from shared.bus import Bus, wait_until
-from shared.messages import MapDelta, MapReply, MapRequest, MissionRecord, MissionRecordRequest
-from shared.messages.maps import DeleteNode, Edge, PutEdge
+from shared.messages.maps import (
+    DeleteNode,
+    Edge,
+    MapDelta,
+    MapReply,
+    MapRequest,
+    MissionRecord,
+    MissionRecordRequest,
+    PutEdge,
+)
 from shared.queries import QueryError, RefusedError
 from shared.topics import MAP, MAP_DELTA, MISSION_RECORD
 from tests.integration.map_store.conftest import START_S, Process

@@ -3,7 +3,7 @@
 import pytest
 
 from shared.bus import Bus, wait_until
-from shared.messages import EStopState
+from shared.messages.estop import EStopState
 from shared.queries import RefusedError
 from shared.topics import ESTOP_STATE
 from tests.integration.map_store.conftest import START_S

@@ -9,7 +9,7 @@ import httpx
 import pytest
 
 from shared.bus import Bus, wait_until
-from shared.messages import MissionRequest, MissionStatus
+from shared.messages.missions import MissionRequest, MissionStatus
 from shared.topics import MISSION, STATUS
 from tests.integration.map_store.conftest import START_S
 from tests.integration.map_store.conftest import bus as bus

@@ -15,7 +15,7 @@ from services.recorder.reading import contents, read
 from services.recorder.recorder import record
 from services.recorder.recording import RecordingWriter, recover
 from shared.bus import open_bus, wait_until
-from shared.messages import Frame, Ranges
+from shared.messages.sensors import Frame, Ranges
 from shared.topics import FRAME, RANGES, TRUTH
 from shared.wire import decode
 

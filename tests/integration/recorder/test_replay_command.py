@@ -10,7 +10,8 @@ import pytest
 from services.recorder.backlog import Sample
 from services.recorder.recording import RecordingWriter
 from shared.bus import open_bus, wait_until
-from shared.messages import Frame, MissionStatus
+from shared.messages.missions import MissionStatus
+from shared.messages.sensors import Frame
 from shared.wire import encode
 
 SOON_S, RUN_S, TRIES = 60.0, 120.0, 3

@@ -8,8 +8,9 @@ import sys
 import pytest
 
 from shared.bus import Bus, open_bus, wait_until
-from shared.messages import Command, EStopState, SimulationRequest
-from shared.messages.simulation import Pose
+from shared.messages.drive import Command
+from shared.messages.estop import EStopState
+from shared.messages.simulation import Pose, SimulationRequest
 from shared.queries import RefusedError
 from shared.topics import COMMAND, ESTOP_STATE, FRAME, RANGES, ROBOT_ESTOP_STATE, SIMULATION, TRUTH
 

@@ -13,7 +13,9 @@ import zenoh
 
 from shared.bus import Bus, open_bus, wait_until
 from shared.inbox import Inbox
-from shared.messages import Command, Event, MapDelta, MapReply, MapRequest, MissionStatus
+from shared.messages.drive import Command
+from shared.messages.maps import MapDelta, MapReply, MapRequest
+from shared.messages.missions import Event, MissionStatus
 from shared.queries import AbsentError, RefusedError, Requests, TimedOutError
 from shared.topics import COMMAND, EVENT, MAP, MAP_DELTA, STATUS
 from shared.transport.session_config import router_config

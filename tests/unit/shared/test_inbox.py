@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from shared.inbox import Counters, Inbox
-from shared.messages import Command
+from shared.messages.drive import Command
 from shared.wire import encode
 
 

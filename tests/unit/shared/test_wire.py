@@ -3,7 +3,7 @@
 import msgpack
 import pytest
 
-from shared.messages import Command, Heading
+from shared.messages.drive import Command, Heading
 from shared.wire import WireError, decode, encode
 
 

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from experiments.bench.stages import Arrival, latency, stage_durations_ms, table
-from shared.messages import Command, Event, Features, Frame, Heading, Truth
-from shared.messages.missions import EventValue
-from shared.messages.simulation import Pose
+from shared.messages.drive import Command, Heading
+from shared.messages.features import Features
+from shared.messages.missions import Event, EventValue
+from shared.messages.sensors import Frame
+from shared.messages.simulation import Pose, Truth
 
 POSE = Pose(x_m=0.0, y_m=0.0, yaw_rad=0.0)
 

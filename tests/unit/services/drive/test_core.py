@@ -8,7 +8,8 @@ from pydantic import ValidationError
 
 from services.drive.core import DriveLimits, WheelLimits, compute_command, velocity_gain, wheel_speed
 from services.drive.passing import Passing
-from shared.messages import Heading, Ranges
+from shared.messages.drive import Heading
+from shared.messages.sensors import Ranges
 
 RANGES_PERIOD_MS = 100
 ANGLES = tuple(i * math.tau / 12 for i in range(12))

@@ -14,8 +14,8 @@ from services.map_store.api.app import create_app
 from services.map_store.merging.merges import Merges
 from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
-from shared.messages import Features, MapDelta
-from shared.messages.maps import AddNode, Edge, Node, PutEdge
+from shared.messages.features import Features
+from shared.messages.maps import AddNode, Edge, MapDelta, Node, PutEdge
 from shared.messages.matching import MatchReply, MatchRequest
 from shared.queries import AbsentError
 

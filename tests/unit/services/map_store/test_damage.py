@@ -13,8 +13,7 @@ from services.map_store.service import answer_map
 from services.map_store.storage.database import Database
 from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
-from shared.messages import MapRequest
-from shared.messages.maps import DeleteNode
+from shared.messages.maps import DeleteNode, MapRequest
 from tests.unit.services.map_store.conftest import add
 from tests.unit.services.map_store.test_store import damage, link, reopened
 

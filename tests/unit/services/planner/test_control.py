@@ -6,8 +6,8 @@ from services.planner.control import MissionControl
 from services.planner.mission_kinds import MissionError, mission_kinds
 from services.planner.profiles import DEFAULT
 from services.planner.settings import PlannerSettings
-from shared.messages import MapReply, MapRequest, MissionRecord, MissionRecordRequest, MissionRequest
-from shared.messages.maps import Node
+from shared.messages.maps import MapReply, MapRequest, MissionRecord, MissionRecordRequest, Node
+from shared.messages.missions import MissionRequest
 
 
 class Store:

@@ -5,9 +5,8 @@ import pytest
 from services.planner.remote import RemoteMap, RemoteMatcher
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.routing import GOAL
-from shared.messages import MapReply, MatchReply
-from shared.messages.maps import Edge, MapDelta, Node, PutEdge
-from shared.messages.matching import NodeMatch
+from shared.messages.maps import Edge, MapDelta, MapReply, Node, PutEdge
+from shared.messages.matching import MatchReply, NodeMatch
 
 
 class Answers:

@@ -20,9 +20,12 @@ from services.recorder.channels import RecordingError
 from services.recorder.foxglove.export import export
 from services.recorder.foxglove.plain_json import plain_json, plain_schema
 from services.recorder.recording import RecordingWriter, recover
-from shared.messages import Command, Event, Features, Frame, Heading, MapDelta, Message, MissionStatus, Ranges
-from shared.messages.maps import AddNode, Node, PutEdge
-from shared.messages.missions import EventValue
+from shared.messages.base import Message
+from shared.messages.drive import Command, Heading
+from shared.messages.features import Features
+from shared.messages.maps import AddNode, MapDelta, Node, PutEdge
+from shared.messages.missions import Event, EventValue, MissionStatus
+from shared.messages.sensors import Frame, Ranges
 from shared.topics import TOPICS
 from shared.wire import encode
 

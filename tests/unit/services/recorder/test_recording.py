@@ -9,7 +9,7 @@ from services.recorder.backlog import Backlog, Sample
 from services.recorder.channels import RecordingError, topic_of, topics_named
 from services.recorder.reading import WholePart, contents, read
 from services.recorder.recording import RecordingWriter, recover
-from shared.messages import Ranges
+from shared.messages.sensors import Ranges
 from shared.topics import TOPICS
 from shared.wire import encode
 

@@ -3,7 +3,7 @@
 import pytest
 
 from shared.estop.latch import MOST_CHANGES, Latch
-from shared.messages import EStopState
+from shared.messages.estop import EStopState
 
 
 @pytest.fixture

@@ -4,8 +4,7 @@ import math
 
 import pytest
 
-from shared.messages import SimulationRequest
-from shared.messages.simulation import Pose
+from shared.messages.simulation import Pose, SimulationRequest
 from simulator.experimenter import Experimenter, RequestError
 from simulator.outbox import MessageMaker
 from simulator.service_settings import SimulatorSettings

@@ -12,8 +12,8 @@ from services.launcher import cli
 from services.launcher.commands.foxglove import app
 from services.recorder.backlog import Sample
 from services.recorder.recording import RecordingWriter
-from shared.messages import MissionStatus, Truth
-from shared.messages.simulation import Pose
+from shared.messages.missions import MissionStatus
+from shared.messages.simulation import Pose, Truth
 from shared.wire import encode
 
 POSE = Pose(x_m=1.5, y_m=-2.0, yaw_rad=0.8)

@@ -8,8 +8,8 @@ from PIL import Image
 from services.launcher.drawing.pictures import frame_from_file, picture_of, png_bytes
 from services.launcher.drawing.plans import NODE, PATH, START, TARGET, VIA, Way, draw_map, draw_way
 from services.launcher.drawing.world import BORDER, OBJECT
-from shared.messages import Frame
 from shared.messages.maps import Edge
+from shared.messages.sensors import Frame
 from shared.messages.simulation import Pose
 from simulator.world.world_file import load_world
 

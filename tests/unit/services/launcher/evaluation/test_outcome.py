@@ -4,8 +4,9 @@ import pytest
 
 from services.launcher.client.mission import MissionRun
 from services.launcher.evaluation.outcome import Round
-from shared.messages import Frame, MissionStatus, Truth
-from shared.messages.simulation import Pose
+from shared.messages.missions import MissionStatus
+from shared.messages.sensors import Frame
+from shared.messages.simulation import Pose, Truth
 
 START = Pose(x_m=2.6, y_m=1.3, yaw_rad=0.0)
 

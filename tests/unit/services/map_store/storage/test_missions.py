@@ -8,7 +8,8 @@ from services.map_store.errors import ConflictError, InvalidError
 from services.map_store.storage.database import Database
 from services.map_store.storage.missions import MissionStore
 from services.map_store.storage.tables import missions
-from shared.messages import Features, MissionRecord
+from shared.messages.features import Features
+from shared.messages.maps import MissionRecord
 
 
 def test_a_claim_without_a_record_gives_an_empty_one_with_epoch_one(database: Database):
