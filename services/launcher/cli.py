@@ -20,6 +20,7 @@ from services.launcher.commands import (
     foxglove,
     goto,
     map,
+    mission,
     models,
     record,
     recover,
@@ -45,7 +46,7 @@ app = typer.Typer(
 )
 for command in (demo, explore, goto, estop, world, models, record, replay, recover, foxglove):
     app.add_typer(command.app)
-for command in (map, certs, token, up, down, status, doctor):
+for command in (map, mission, certs, token, up, down, status, doctor):
     app.add_typer(command.app)
 
 

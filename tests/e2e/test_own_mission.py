@@ -1,5 +1,8 @@
 """A mission from a file of one's own is started over HTTP and seen in Runs and in the console."""
 
+import json
+import subprocess
+import sys
 from typing import Any
 
 import httpx
@@ -60,3 +63,32 @@ def test_the_console_offers_it_with_its_parameters(browser: Any, explored: Explo
         assert "Look about" in page.inner_text("#mission-facts")
     finally:
         page.close()
+
+
+def test_it_is_known_to_the_command_line(explored: Explored) -> None:
+    words = ["mission", "kinds", "--json", "--data-dir", str(explored.data_dir)]
+    answer = subprocess.run(
+        [sys.executable, "-m", "services.launcher", *words], capture_output=True, text=True, timeout=WAIT_S
+    )
+    assert answer.returncode == 0, answer.stderr
+    kinds = {kind["name"]: kind for kind in json.loads(answer.stdout)}
+    assert kinds["wave"]["parameters"]["properties"]["frames"]["maximum"] == 100
+
+
+def test_the_command_line_starts_it(explored: Explored) -> None:
+    words = [
+        "mission",
+        "start",
+        "wave",
+        "--map",
+        MAP,
+        "--set",
+        "frames=2",
+        "--data-dir",
+        str(explored.data_dir),
+    ]
+    answer = subprocess.run(
+        [sys.executable, "-m", "services.launcher", *words], capture_output=True, text=True, timeout=WAIT_S
+    )
+    assert answer.returncode == 0, answer.stderr
+    assert "frames_seen" in answer.stdout

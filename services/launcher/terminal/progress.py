@@ -44,7 +44,8 @@ def describe(status: MissionStatus, start_s: float) -> str:
     """One line about a running mission."""
     rate = status.step / max(time.monotonic() - start_s, 1e-9)
     waypoint = f", via {status.via_index + 1}/{len(status.via_points)}" if status.via_points else ""
-    frontiers = f", {status.open_directions} open" if status.action == "explore" else ""
+    shown = {figure.name for figure in status.figures}
+    frontiers = f", {status.open_directions} open" if "open_directions" in shown else ""
     return (
         f"step {status.step}, {rate:.1f} steps/s, {status.nodes} nodes, {status.edges} edges"
         f"{frontiers}{waypoint}, S {status.similarity}: {status.reason[:60]}"

@@ -1,0 +1,101 @@
+"""`topnav mission`: what a robot can be asked to do, and asking for any of it."""
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from services.launcher.terminal import options
+
+app = typer.Typer(name="mission", no_args_is_help=True, help="Missions of any kind that the planner knows.")
+
+Kind = Annotated[str, typer.Argument(help="One of 'topnav mission kinds'.")]
+Given = Annotated[
+    list[str] | None,
+    typer.Option("--set", help="A parameter of the kind, as NAME=VALUE; may be given often."),
+]
+Image = Annotated[Path | None, typer.Option(help="A goal picture, for kinds that take one.")]
+
+
+@app.command("kinds")
+def show_kinds(
+    data_dir: options.DataDir = options.DATA_DIR,
+    endpoint: options.Endpoint = None,
+    as_json: options.AsJson = False,
+) -> None:
+    """Show the kinds of mission of the running stack, with their parameters."""
+    from services.launcher.client import stack
+    from services.launcher.terminal.output import print_rows
+    from shared.messages.missions import MissionKindsRequest
+    from shared.topics import MISSION_KINDS
+
+    with stack.open_stack(stack.StackChoice(data_dir, endpoint=endpoint)) as opened:
+        reply = opened.bus.ask(MISSION_KINDS, MissionKindsRequest(), stack.ASK_TIMEOUT_S, robot=opened.robot)
+    if as_json:
+        typer.echo(json.dumps([kind.model_dump() for kind in reply.kinds], indent=2))
+        return
+    rows = [
+        {"kind": kind.name, "does": kind.title, "parameters": ", ".join(_properties(kind.parameters))}
+        for kind in reply.kinds
+    ]
+    print_rows("kinds of mission", rows)
+
+
+@app.command("start")
+def start(
+    kind: Kind,
+    map_name: options.MapName = "flat",
+    given: Given = None,
+    image: Image = None,
+    seed: options.Seed = 1,
+    max_steps: options.MaxSteps = 20_000,
+    data_dir: options.DataDir = options.DATA_DIR,
+    endpoint: options.Endpoint = None,
+    json_file: options.JsonFile = None,
+) -> None:
+    """Start a mission of any kind and follow it to its end."""
+    from services.launcher.client import failure, mission, stack
+    from services.launcher.drawing.pictures import frame_from_file
+    from services.launcher.terminal.output import print_figures, wide_console, write_json
+    from services.launcher.terminal.progress import mission_progress
+    from shared.messages.missions import MissionRequest
+
+    parameters = dict(_parameter(text) for text in given or [])
+    with stack.open_stack(stack.StackChoice(data_dir, endpoint=endpoint)) as opened:
+        client = mission.MissionClient(opened.bus, opened.robot)
+        goal = image and mission.goal_features(opened.bus, frame_from_file(image, opened.robot))
+        request = MissionRequest(
+            action=kind, map=map_name, parameters=parameters, goal=goal, seed=seed, max_steps=max_steps
+        )
+        with mission_progress(wide_console(stderr=True), kind) as watch:
+            run = client.run(request, watch)
+    status = run.status
+    report = {
+        "kind": kind,
+        "map": map_name,
+        "outcome": status.state,
+        "failure": status.failure,
+        "reason": status.reason,
+        "steps": status.step,
+        **{figure.name: figure.value for figure in status.figures},
+    }
+    write_json(json_file, report)
+    print_figures(f"{kind} in {map_name}", report)
+    if not run.succeeded:
+        raise failure.ExperimentError(f"{kind} ended as {status.failure or status.state}: {status.reason}")
+
+
+def _properties(schema: dict[str, Any]) -> list[str]:
+    return list(schema.get("properties", {}))
+
+
+def _parameter(text: str) -> tuple[str, Any]:
+    """NAME=VALUE; a value is JSON where it can be read as such, else text."""
+    name, separator, value = text.partition("=")
+    if not name or not separator:
+        raise typer.BadParameter(f"--set expects NAME=VALUE, got {text!r}")
+    try:
+        return name, json.loads(value)
+    except ValueError:
+        return name, value

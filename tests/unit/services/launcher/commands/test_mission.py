@@ -1,0 +1,27 @@
+"""Parameters of a mission from the shell: JSON where they are JSON, else text; anything else is refused."""
+
+import pytest
+import typer
+
+from services.launcher.commands.mission import _parameter
+
+
+@pytest.mark.parametrize(
+    ("text", "parameter"),
+    [
+        ("frames=3", ("frames", 3)),
+        ("fast=true", ("fast", True)),
+        ('places=["dock", "door"]', ("places", ["dock", "door"])),
+        ("name=kitchen", ("name", "kitchen")),
+        ("note=a=b", ("note", "a=b")),
+        ("empty=", ("empty", "")),
+    ],
+)
+def test_values_are_json_or_text(text, parameter):
+    assert _parameter(text) == parameter
+
+
+@pytest.mark.parametrize("text", ["frames", "=3", ""])
+def test_what_names_nothing_is_refused(text):
+    with pytest.raises(typer.BadParameter, match="NAME=VALUE"):
+        _parameter(text)
