@@ -1,11 +1,14 @@
 # Everything runs from a bare clone: `setup` makes .venv and installs all that a run needs.
 #   make demo    explore the apartment, then find a hidden robot from its picture (KEEP=1 leaves it running)
 #   make test    every test but those of tests/faults      make check   lint, types, unit tests: a minute
+#                (WORKERS=0: in one process)
 #   make faults  what dies, hangs, lies, floods or is cut off: deploy/FAULTS.md
 PYTHON ?= python3
 VENV ?= .venv
 KEEP ?=
 PYTEST_ARGS ?=
+# Most tests wait for processes: twice as many workers as the smallest machine has cores. 0: in one process.
+WORKERS ?= 4
 FUZZ_ARGS ?= --seconds 60 --json runs/fuzz/report.json
 
 BIN := $(VENV)/bin
@@ -30,7 +33,8 @@ demo: setup
 	KEEP=$(KEEP) $(BIN)/topnav demo
 
 test: setup
-	$(BIN)/python -m pytest --ignore=tests/faults --ignore=tests/benchmarks $(PYTEST_ARGS)
+	@bash deploy/setup/test_programs.sh
+	$(BIN)/python -m pytest -n $(WORKERS) --ignore=tests/faults --ignore=tests/benchmarks $(PYTEST_ARGS)
 
 faults: setup
 	$(BIN)/python -m pytest tests/faults $(PYTEST_ARGS)

@@ -17,17 +17,34 @@ from tests.postgres import PostgresServer, missing
 REPOSITORY = Path(__file__).resolve().parents[1]
 
 
-STACK = "explored"
-"""Fixture of the stack that end-to-end tests share."""
+ONE_STACK = "tests/e2e/one_stack"
+"""Tests that share a running stack: one worker runs all of them, and the others of a file on one as well."""
+
+LONGEST_FIRST = ("tests/e2e", "tests/integration", "tests")
+"""In this order workers take files, so that no long one is left for the end."""
+
+
+@pytest.hookimpl(optionalhook=True)  # of pytest-xdist, which `make test` runs with
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Distribute tests by file; those of a shared stack together."""
+    from xdist.scheduler import LoadScopeScheduling
+
+    class ByStackAndFile(LoadScopeScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return ONE_STACK if nodeid.startswith(f"{ONE_STACK}/") else nodeid.partition("::")[0]
+
+    config.option.loadscopereorder = False
+    return ByStackAndFile(config, log)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Keep tests of one file on one worker, and all of the shared stack on one, which begins."""
-    for item in items:
-        shared = STACK in getattr(item, "fixturenames", ())
-        group = STACK if shared else item.path.relative_to(REPOSITORY).as_posix()
-        item.add_marker(pytest.mark.xdist_group(group))
-    items.sort(key=lambda item: STACK not in getattr(item, "fixturenames", ()))
+    """Put what waits longest first."""
+
+    def rank(item: pytest.Item) -> int:
+        nodeid = item.nodeid
+        return next((k for k, folder in enumerate(LONGEST_FIRST) if nodeid.startswith(f"{folder}/")), 0)
+
+    items.sort(key=rank)
 
 
 @pytest.fixture(scope="session")

@@ -3,6 +3,7 @@
 import typer
 
 from experiments.commands import (
+    cycles,
     disturbance,
     disturbance_matches,
     failures,
@@ -16,5 +17,15 @@ from experiments.commands import (
 app = typer.Typer(
     name="study", no_args_is_help=True, help="Experiments on headings, matching, disturbances and scale."
 )
-for study in (heading, heading_frames, disturbance, disturbance_matches, failures, matching, recovery, scale):
+for study in (
+    heading,
+    heading_frames,
+    cycles,
+    disturbance,
+    disturbance_matches,
+    failures,
+    matching,
+    recovery,
+    scale,
+):
     app.add_typer(study.app)

@@ -27,11 +27,21 @@ class Sight(NamedTuple):
     yaw_rad: float | None
 
 
+class Misses(NamedTuple):
+    """By how much a triangle does not close.
+
+    Attributes:
+        yaw_rad: of the yaws round it.
+        direction_rad: of the bearings; None where one is unknown: then one of the three is where the frame
+            is, and there is no triangle.
+    """
+
+    yaw_rad: float
+    direction_rad: float | None
+
+
 def triangle_closes(to_node: Sight, to_neighbour: Sight, onward: Sight) -> bool:
     """Whether the yaws add up round frame, node and neighbour, and the bearings between them can close.
-
-    Seen from the frame, the bearing node -> neighbour must lie between the bearing of the neighbour and the
-    opposite of the bearing of the node.
 
     Args:
         to_node: the node seen from the frame.
@@ -41,16 +51,27 @@ def triangle_closes(to_node: Sight, to_neighbour: Sight, onward: Sight) -> bool:
     Returns:
         False also when a yaw is unknown; where a bearing is unknown only the yaws count.
     """
+    misses = triangle_misses(to_node, to_neighbour, onward)
+    if misses is None or misses.yaw_rad > YAW_RAD:
+        return False
+    return misses.direction_rad is None or misses.direction_rad < DIRECTION_RAD
+
+
+def triangle_misses(to_node: Sight, to_neighbour: Sight, onward: Sight) -> Misses | None:
+    """What the three views of `triangle_closes` miss; None when a yaw is unknown.
+
+    Seen from the frame, the bearing node -> neighbour must lie between the bearing of the neighbour and the
+    opposite of the bearing of the node.
+    """
     if onward.yaw_rad is None or to_node.yaw_rad is None or to_neighbour.yaw_rad is None:
-        return False
-    if apart_rad(to_node.yaw_rad + onward.yaw_rad, to_neighbour.yaw_rad) > YAW_RAD:
-        return False
+        return None
+    yaw_rad = apart_rad(to_node.yaw_rad + onward.yaw_rad, to_neighbour.yaw_rad)
     if to_node.heading_rad is None or to_neighbour.heading_rad is None or onward.heading_rad is None:
-        return True  # one of them is where the frame is: there is no triangle
+        return Misses(yaw_rad, None)
     onward_rad = onward.heading_rad + to_node.yaw_rad
     back_rad = to_node.heading_rad + math.pi
-    detour = apart_rad(to_neighbour.heading_rad, onward_rad) + apart_rad(onward_rad, back_rad)
-    return detour - apart_rad(to_neighbour.heading_rad, back_rad) < DIRECTION_RAD
+    detour_rad = apart_rad(to_neighbour.heading_rad, onward_rad) + apart_rad(onward_rad, back_rad)
+    return Misses(yaw_rad, detour_rad - apart_rad(to_neighbour.heading_rad, back_rad))
 
 
 def apart_rad(first_rad: float, second_rad: float) -> float:

@@ -12,7 +12,7 @@ MAX_KEYPOINTS = 4096
 
 
 class Features(Message):
-    """The visual words of one frame; what a map node keeps instead of the picture.
+    """Keypoints and descriptors of one frame; what a map node keeps instead of the picture.
 
     Attributes:
         pipeline: extractor, representation and count that made them; only equals can be matched.

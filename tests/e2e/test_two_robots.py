@@ -7,12 +7,11 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 
 import pytest
-from services.launcher.evaluation.components import components
-from services.launcher.evaluation.false_edges import check_edges
 
 from services.launcher.client.maps import require_map
 from services.launcher.client.stack import StackChoice, open_stack
 from services.launcher.client.trail import collisions
+from services.launcher.evaluation.map_quality import check_edges, components
 from services.launcher.evaluation.truth_file import join_truth
 from shared.bus import wait_until
 from shared.messages.maps import MapReply

@@ -22,19 +22,14 @@ def test_links_and_pictures_lead_to_files(page):
     assert [target for target in targets if not (page.parent / target).exists()] == []
 
 
-def test_the_errand_is_the_script_that_the_end_to_end_tests_run(repository):
-    script = (repository / "deploy/examples/goto.sh").read_text(encoding="utf-8")
-    assert examples("bash")[1] == script[script.index("map=$1") :]
-
-
 def test_the_extractor_works_as_a_plugin():
     (source,) = examples("python", FEATURES_PAGE)
     names: dict[str, type] = {}
     exec(compile(source, FEATURES_PAGE, "exec"), names)
     profile = Profile("brisk", keypoints=50)
     picture = np.random.default_rng(1).integers(0, 255, (128, 256, 3), dtype=np.uint8)
-    words = extract(picture, names["Brisk"](profile), create_representation(profile), profile)
-    assert words.descriptors.shape == (50, 64)
+    features = extract(picture, names["Brisk"](profile), create_representation(profile), profile)
+    assert features.descriptors.shape == (50, 64)
 
 
 NAMED = {

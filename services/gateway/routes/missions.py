@@ -5,9 +5,11 @@ import contextlib
 import time
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Query, Request, Response
-from pydantic import BaseModel, ConfigDict, Field
+from fastapi import APIRouter, Request, Response
+from fastapi import Query as UrlQuery
+from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 
+from services.gateway.http.asking import Q, R
 from services.gateway.http.bodies import json_body, read_json
 from services.gateway.live.hub import RobotView
 from services.gateway.routes.goals import PICTURE_BODY
@@ -22,7 +24,7 @@ from shared.messages.missions import (
     MissionStatus,
     Parameters,
 )
-from shared.topics import MISSION, MISSION_KINDS
+from shared.topics import MISSION, MISSION_KINDS, Query
 from shared.web.problems import ProblemError
 
 router = APIRouter(tags=["missions"])
@@ -33,7 +35,13 @@ ASK_AGAIN_S = 5.0
 
 Seed = Annotated[int, Field(ge=0, lt=2**63)]
 Steps = Annotated[int, Field(ge=1, le=1_000_000)]
-MissionId = Annotated[str, Query(max_length=64)]
+MissionId = Annotated[str, UrlQuery(max_length=64)]
+
+
+AnyParameters = Annotated[
+    Parameters, WithJsonSchema({"type": "object", "additionalProperties": True, "maxProperties": 64})
+]
+"""Described without a reference, which the description of a body read by hand could not resolve."""
 
 
 class StartMission(BaseModel):
@@ -50,7 +58,7 @@ class StartMission(BaseModel):
     action: str = Field(pattern=r"^[a-z0-9_-]{1,64}$")
     map: str = Field(pattern=r"^[a-z0-9_-]{1,64}$")
     seed: Seed = 0
-    parameters: Parameters = Field(default_factory=dict)
+    parameters: AnyParameters = Field(default_factory=dict)
     goal_node: int | None = Field(default=None, ge=0, lt=2**63)
     max_steps: Steps = 20_000
 
@@ -58,9 +66,7 @@ class StartMission(BaseModel):
 @router.get("/api/robots/{robot}/mission-kinds")
 async def show_kinds(robot: RobotPath, gateway: GatewayDep) -> list[MissionKindInfo]:
     """What the robot can be asked to do: kinds of mission, with a JSON Schema of their parameters."""
-    timeout_s = gateway.settings.ask_timeout_s
-    reply = await gateway.asker.ask("planner", MISSION_KINDS, MissionKindsRequest(), timeout_s, robot=robot)
-    return list(reply.kinds)
+    return list((await _ask_planner(gateway, robot, MISSION_KINDS, MissionKindsRequest())).kinds)
 
 
 class WaitAnswer(BaseModel):
@@ -93,8 +99,8 @@ async def start_goto(
     map_name: MapQuery,
     gateway: GatewayDep,
     response: Response,
-    seed: Annotated[int, Query(ge=0, lt=2**63)] = 0,
-    max_steps: Annotated[int, Query(ge=1, le=1_000_000)] = 20_000,
+    seed: Annotated[int, UrlQuery(ge=0, lt=2**63)] = 0,
+    max_steps: Annotated[int, UrlQuery(ge=1, le=1_000_000)] = 20_000,
 ) -> dict[str, Any]:
     """Drive to where the uploaded picture was taken."""
     goal = await goal_of(request, gateway, robot)
@@ -124,7 +130,7 @@ async def look(robot: RobotPath, gateway: GatewayDep) -> dict[str, Any]:
 async def wait(
     robot: RobotPath,
     gateway: GatewayDep,
-    timeout_s: Annotated[float, Query(ge=0.0, le=300.0)] = 30.0,
+    timeout_s: Annotated[float, UrlQuery(ge=0.0, le=300.0)] = 30.0,
     mission_id: MissionId = "",
 ) -> WaitAnswer:
     """Answer when the mission ends, or after `timeout_s` with `done` false: then ask again."""
@@ -177,20 +183,26 @@ async def _start(gateway: Gateway, robot: str, wish: MissionRequest) -> MissionS
 async def _ask(gateway: Gateway, robot: str, wish: MissionRequest) -> MissionStatus:
     outcome = "failed"
     try:
-        status = await gateway.asker.ask(
-            "planner", MISSION, wish, gateway.settings.ask_timeout_s, robot=robot
-        )
+        status = await _ask_planner(gateway, robot, MISSION, wish)
         outcome = "accepted"
         return status
     except ProblemError as problem:
         outcome = problem.code
-        if problem.code == "service_absent" and robot != gateway.settings.robot:
-            known(gateway, robot)  # a robot nobody heard of is a better reason than a missing planner
         raise
     finally:
         if wish.action != "status":
             known_name = outcome == "accepted" or wish.action in CONTROLS  # a label from outside has no bound
             gateway.metrics.missions.labels(wish.action if known_name else "start", outcome).inc()
+
+
+async def _ask_planner(gateway: Gateway, robot: str, query: Query[Q, R], question: Q) -> R:
+    timeout_s = gateway.settings.ask_timeout_s
+    try:
+        return await gateway.asker.ask("planner", query, question, timeout_s, robot=robot)
+    except ProblemError as problem:
+        if problem.code == "service_absent" and robot != gateway.settings.robot:
+            known(gateway, robot)  # a robot nobody heard of is a better reason than a missing planner
+        raise
 
 
 def _facts(status: MissionStatus) -> dict[str, Any]:

@@ -48,5 +48,5 @@ def test_every_line_answers(http: httpx.Client, gateway: str, robot_bus: Bus, tm
     assert answer.returncode == 0, answer.stdout + answer.stderr
     assert '"state":"cancelled"' in answer.stdout
     assert (tmp_path / "frame.jpg").read_bytes().startswith(b"\xff\xd8")
-    assert (tmp_path / "place.jpg").read_bytes() == b"jpeg"
+    assert (tmp_path / "node.jpg").read_bytes() == b"jpeg"
     assert (tmp_path / "flat.zip").read_bytes().startswith(b"PK")

@@ -50,6 +50,12 @@ def sign_in(page: "Page", secret: str) -> None:
     page.click("#token-dialog button.primary")
 
 
+def explore(page: "Page") -> None:
+    page.wait_for_selector("#start:enabled", timeout=WAIT_MS)
+    page.select_option("#mission-kind", "explore")
+    page.click("#start")
+
+
 def test_a_viewer_sees_everything_and_is_told_what_takes_more(page: "Page", planner: Planner) -> None:
     addresses: list[str] = []
     page.on("request", lambda request: addresses.append(request.url))
@@ -59,7 +65,7 @@ def test_a_viewer_sees_everything_and_is_told_what_takes_more(page: "Page", plan
     page.wait_for_selector('#graph[data-nodes="5"]', timeout=WAIT_MS)
     page.wait_for_selector("#identity:text-is('vera, viewer')", timeout=WAIT_MS)
     asked = len(planner.asked)
-    page.click("#explore")
+    explore(page)
     page.wait_for_selector("#answer.bad", timeout=WAIT_MS)
     assert (
         page.inner_text("#answer")
@@ -85,7 +91,7 @@ def test_an_operator_steers_after_a_reload_without_being_asked_again(page: "Page
     assert not page.is_visible("#token-dialog")
     page.wait_for_selector("#identity:text-is('otto, operator')", timeout=WAIT_MS)
     before = len(planner.asked)
-    page.click("#explore")
+    explore(page)
     assert wait_until(lambda: any(wish.action == "explore" for wish in planner.asked[before:]), WAIT_S)
 
 

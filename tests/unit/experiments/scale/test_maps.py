@@ -1,4 +1,4 @@
-"""Maps larger than the world: real places first, then places whose words are all real."""
+"""Maps larger than the world: real nodes first, then nodes whose features are all real."""
 
 import numpy as np
 
@@ -28,7 +28,7 @@ def test_no_more_places_than_asked_for():
     assert len(list(nodes_of([seen(n) for n in range(6)], 4, np.random.default_rng(1)))) == 4
 
 
-def test_each_direction_shows_one_of_the_sources_and_the_strongest_words_come_first():
+def test_each_direction_shows_one_of_the_sources_and_the_strongest_keypoints_come_first():
     sources = [seen(n) for n in range(4)]
     made = put_together(sources, np.random.default_rng(3))
     assert (np.diff(made.scores) <= 0).all()

@@ -26,13 +26,13 @@ def place(number: int) -> FeatureSet:
 
 
 def test_a_picture_is_found_among_many_as_exhaustive_search_finds_it(pipeline):
-    words = [place(number) for number in range(PLACES)]
-    places, load_s = load(words, pipeline)
-    query = Seen("none", 1.0, Pose(x_m=0.0, y_m=0.0, yaw_rad=0.0), words[77])
+    nodes = [place(number) for number in range(PLACES)]
+    places, load_s = load(nodes, pipeline)
+    query = Seen("none", 1.0, Pose(x_m=0.0, y_m=0.0, yaw_rad=0.0), nodes[77])
     (found,) = localise([query], places, pipeline)
     assert load_s > 0.0
     assert found.node_id == 77
-    inliers, _ = exhaustive(query, words, pipeline)
+    inliers, _ = exhaustive(query, nodes, pipeline)
     assert inliers.argmax() == 77
     (followed,) = track([query], [[76, 77, 78]], places, pipeline)
     assert (followed.node_id, followed.inliers) == (77, found.inliers)

@@ -17,7 +17,7 @@ def pipeline() -> Pipeline:
 
 
 def pictures(spread: int) -> tuple[FeatureSet, FeatureSet]:
-    """The same words seen from two places; descriptors differ by a tenth of their `spread`."""
+    """The same keypoints seen from two nodes; descriptors differ by a tenth of their `spread`."""
     rng = np.random.default_rng(3)
     points_m = rng.uniform(-5.0, 5.0, (WORDS, 3))
     kinds = rng.integers(60, 60 + spread, (WORDS, 128))
@@ -31,7 +31,7 @@ def pictures(spread: int) -> tuple[FeatureSet, FeatureSet]:
     return seen[1], seen[0]
 
 
-def test_words_like_real_ones_lose_next_to_nothing(pipeline):
+def test_features_like_real_ones_lose_next_to_nothing(pipeline):
     row = loss(pipeline, [pictures(120)])
     assert row["matches"] > 0.9 * WORDS
     assert abs(row["lost"]) < 0.02

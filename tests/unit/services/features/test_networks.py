@@ -47,7 +47,7 @@ def untrained(profile: Profile) -> Pipeline:
 
 
 @pytest.mark.parametrize("name", [n for n in (*KEYPOINT_NETWORKS, *PATCH_NETWORKS) if n not in SLOW])
-def test_untrained_networks_give_words_of_the_right_shape(room, name):
+def test_untrained_networks_give_features_of_the_right_shape(room, name):
     profile = replace(combined(name, "equirectangular", "mutual_ratio"), keypoints=60)
     pipeline = untrained(profile)
     found = extract(room(0.0, 0.0, 0.0, 400), pipeline.extractor, pipeline.representation, profile)
@@ -83,7 +83,7 @@ def test_trained_networks_find_the_turn_between_two_views(room, name):
 
 
 @pytest.mark.parametrize("extractor", [n for n in LIGHTGLUE if n not in ("superpoint", "dedode")])
-def test_untrained_lightglue_pairs_words_of_its_extractor(room, extractor):
+def test_untrained_lightglue_pairs_features_of_its_extractor(room, extractor):
     profile = replace(combined(extractor, "equirectangular", "lightglue"), keypoints=40)
     pipeline = untrained(profile)
     found = extract(room(0.0, 0.0, 0.0, 400), pipeline.extractor, pipeline.representation, profile)
@@ -92,7 +92,7 @@ def test_untrained_lightglue_pairs_words_of_its_extractor(room, extractor):
     assert len(np.unique(pairs[:, 0])) == len(pairs)
 
 
-def test_untrained_superglue_pairs_words_of_superpoint(room):
+def test_untrained_superglue_pairs_features_of_superpoint(room):
     pytest.importorskip("transformers")
     profile = replace(combined("superpoint", "equirectangular", "superglue"), keypoints=40)
     pipeline = untrained(profile)

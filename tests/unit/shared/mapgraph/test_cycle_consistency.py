@@ -28,10 +28,10 @@ def relation(first, second):
     return math.atan2(v - y, u - x) - yaw, math.remainder(turned - yaw, math.tau)
 
 
-def match(place, turned_rad=0.0, aside_rad=0.0):
-    heading, yaw = relation(FRAME, place)
+def match(node, turned_rad=0.0, aside_rad=0.0):
+    heading, yaw = relation(FRAME, node)
     return NodeMatch(
-        node_id=place,
+        node_id=node,
         raw_matches=90,
         inliers=70,
         status="ok",
@@ -47,11 +47,11 @@ def graph():
     return MapGraph([Node(node_id=n) for n in range(9)], edges)
 
 
-def test_places_near_where_the_robot_came_from_need_no_witness(graph):
+def test_nodes_near_where_the_robot_came_from_need_no_supporting_neighbour(graph):
     assert unsupported_loop_closures(graph, {0: match(0), 1: match(1)}, driven_from=0) == {}
 
 
-def test_a_far_place_needs_a_neighbour_that_fits(graph):
+def test_a_far_node_needs_a_neighbour_that_fits(graph):
     assert set(unsupported_loop_closures(graph, {0: match(0), 7: match(7)}, driven_from=0)) == {7}
     seen = {0: match(0), 7: match(7), 6: match(6)}
     assert unsupported_loop_closures(graph, seen, driven_from=0) == {}
@@ -76,17 +76,17 @@ def test_a_carried_robot_is_asked_for_none(graph):
     assert unsupported_loop_closures(graph, {7: match(7)}, driven_from=None) == {}
 
 
-def test_places_bear_witness_for_one_another_in_a_chain(graph):
+def test_nodes_support_one_another_in_a_chain(graph):
     seen = {n: match(n) for n in (4, 5, 6)}
     assert supported_by(graph, seen, {4}) == {5, 6}
     assert supported_by(graph, seen | {5: match(5, turned_rad=0.3)}, {4}) == set(), "the chain is broken"
     assert supported_by(graph, seen, set()) == set(), "somebody must be sure"
 
 
-@pytest.mark.parametrize("place", [6, 7, 8])
-def test_true_neighbours_agree(graph, place):
-    for witness in graph.neighbours(place):
-        assert is_consistent(graph, {place: match(place), witness: match(witness)}, place, witness)
+@pytest.mark.parametrize("node", [6, 7, 8])
+def test_true_neighbours_agree(graph, node):
+    for neighbour in graph.neighbours(node):
+        assert is_consistent(graph, {node: match(node), neighbour: match(neighbour)}, node, neighbour)
 
 
 def test_a_turn_that_does_not_add_up_disagrees(graph):
@@ -99,19 +99,19 @@ def test_directions_that_cannot_close_disagree(graph):
     assert not is_consistent(graph, seen, 7, 8)
 
 
-def test_where_the_frame_stands_at_the_place_only_the_turn_counts(graph):
+def test_where_the_frame_stands_at_the_node_only_the_turn_counts(graph):
     here = match(7).model_copy(update={"status": "no_baseline", "heading_rad": None})
     assert is_consistent(graph, {7: here, 8: match(8)}, 7, 8)
 
 
-def test_true_places_are_not_outvoted(graph):
+def test_true_nodes_are_not_outvoted(graph):
     assert contradicted(graph, {n: match(n) for n in range(9)}) == {}
 
 
-@pytest.mark.parametrize("place", [0, 3, 7])
-def test_a_place_seen_the_wrong_way_round_is_outvoted(graph, place):
-    seen = {n: match(n) for n in range(9)} | {place: match(place, aside_rad=math.pi)}
-    assert set(contradicted(graph, seen)) == {place}
+@pytest.mark.parametrize("node", [0, 3, 7])
+def test_a_node_seen_the_wrong_way_round_is_outvoted(graph, node):
+    seen = {n: match(n) for n in range(9)} | {node: match(node, aside_rad=math.pi)}
+    assert set(contradicted(graph, seen)) == {node}
 
 
 def test_of_two_that_disagree_the_better_verified_stays(graph):
@@ -119,7 +119,7 @@ def test_of_two_that_disagree_the_better_verified_stays(graph):
     assert set(contradicted(graph, {6: weak, 7: match(7)})) == {6}
 
 
-def test_a_place_without_neighbours_in_view_is_not_judged(graph):
+def test_a_node_without_neighbours_in_view_is_not_judged(graph):
     assert contradicted(graph, {0: match(0, aside_rad=math.pi), 7: match(7)}) == {}
 
 

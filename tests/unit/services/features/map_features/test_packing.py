@@ -44,18 +44,18 @@ def test_directions_come_back_to_a_hundredth_of_a_degree_even_at_the_seam():
     assert np.rad2deg(np.abs(apart)).max() < 0.01
 
 
-def test_three_hundred_root_sift_words_take_less_than_22_kilobytes():
+def test_three_hundred_root_sift_descriptors_take_less_than_22_kilobytes():
     assert Packing(300, 128, "uint8", "euclidean").record.itemsize < 22_000
 
 
 @pytest.mark.parametrize(
     "other", [np.zeros((6, 8), np.uint8), np.zeros((3, 9), np.uint8), np.zeros((3, 8), np.float32)]
 )
-def test_words_that_do_not_fit_are_refused_naming_both_kinds(other):
+def test_features_that_do_not_fit_are_refused_naming_both_kinds(other):
     with pytest.raises(ValueError, match=r"at most 5 descriptors of 8 x uint8 expected, got \d of \d x "):
         Packing(5, 8, "uint8", "euclidean").pack(features(other))
 
 
-def test_a_place_without_words_stays_empty():
+def test_a_node_without_features_stays_empty():
     packing = Packing(5, 8, "uint8", "euclidean")
     assert len(packing.unpack(packing.pack(features(np.zeros((0, 8), np.uint8))))) == 0

@@ -77,7 +77,7 @@ def test_only_a_continued_seam_has_keypoints(room):
 
 
 @pytest.mark.parametrize("name", CLASSIC)
-def test_the_same_picture_gives_the_same_words(room, name):
+def test_the_same_picture_gives_the_same_features(room, name):
     first, second = (features_in(room(0.0, 0.0, 0.0, 400), PROFILES[name]) for _ in range(2))
     np.testing.assert_array_equal(first.lonlat_rad, second.lonlat_rad)
     np.testing.assert_array_equal(first.descriptors, second.descriptors)
@@ -98,7 +98,7 @@ def test_bearings_do_not_depend_on_the_size_of_the_picture(room):
 
 @pytest.mark.parametrize("name", CLASSIC)
 @pytest.mark.parametrize("shape", [(1, 2), (3, 6), (400, 800)])
-def test_a_blank_or_tiny_picture_has_no_words(name, shape):
+def test_a_blank_or_tiny_picture_has_no_features(name, shape):
     found = features_in(np.full((*shape, 3), 128, np.uint8), PROFILES[name])
     assert len(found) == 0
     assert found.lonlat_rad.shape == (0, 2)

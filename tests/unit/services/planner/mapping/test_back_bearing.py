@@ -1,4 +1,4 @@
-"""The direction back to the place left turns slowly; a jump gives a look-alike view away."""
+"""The bearing back to the node left turns slowly; a jump gives an aliased view away."""
 
 import math
 

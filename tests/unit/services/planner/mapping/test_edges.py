@@ -26,8 +26,8 @@ class Memory:
 
 
 def observation():
-    words = np.zeros((1, 2), np.float32), np.zeros(1, np.float32), np.zeros((1, 4), np.float32)
-    features = Features(pipeline="p", lonlat_rad=words[0], scores=words[1], descriptors=words[2])
+    arrays = np.zeros((1, 2), np.float32), np.zeros(1, np.float32), np.zeros((1, 4), np.float32)
+    features = Features(pipeline="p", lonlat_rad=arrays[0], scores=arrays[1], descriptors=arrays[2])
     ranges = Ranges(
         robot="r1", angles_rad=tuple(np.arange(12) * 0.5), distances_m=(4.0,) * 12, max_range_m=4.0
     )
@@ -99,6 +99,6 @@ def test_a_place_too_uncertain_for_an_edge_leaves_nothing_unexplored_that_way():
     weak = match(1, 35, 80)
     edges = judge_edges(maps.graph, observation(), {0: match(0, 90, 120), 1: weak}, OUTDOOR, 0)
     assert set(edges.admitted) == {0}
-    assert set(edges.covered) == {1}, "its neighbour bears witness"
+    assert set(edges.covered) == {1}, "its neighbour supports it"
     node, _ = add_node(maps, observation(), edges, OUTDOOR, 0)
     assert maps.graph.neighbours(node) == [0]

@@ -14,7 +14,7 @@ QUARTER = 3
 """Sectors in a right angle."""
 
 AHEAD = {1: match(1, 90, 120), 2: match(2, 80, 110)}
-"""Two places that bear witness for each other."""
+"""Two nodes that support each other."""
 
 
 @pytest.fixture

@@ -20,8 +20,8 @@ from shared.bus import open_bus, wait_until
 from shared.messages.sensors import Frame
 from shared.topics import FRAME
 from tests.browser import WAIT_MS, listen, needs_chromium
-from tests.e2e.conftest import MAP, Explored
 from tests.e2e.near_node import hiding_place_near_a_node
+from tests.e2e.one_stack.conftest import MAP, Explored
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(600), needs_chromium]
 

@@ -9,7 +9,7 @@ import httpx
 import pytest
 
 from shared.bus import wait_until
-from tests.e2e.conftest import MAP, Explored
+from tests.e2e.one_stack.conftest import MAP, Explored
 
 WAIT_S = 60.0
 

@@ -4,10 +4,13 @@ import os
 import shutil
 import subprocess
 
+import httpx
 import pytest
 
 from services.launcher.drawing.pictures import save_picture
 from tests.e2e.near_node import hiding_place_near_a_node
+from tests.e2e.one_stack.conftest import MAP
+from tests.readme import examples
 
 pytestmark = [
     pytest.mark.render,
@@ -19,7 +22,7 @@ pytestmark = [
 
 def run_example(repository, explored, picture):
     environment = {**os.environ, "TOPNAV_URL": explored.stack.gateway_url, "TOPNAV_TOKEN": ""}
-    command = [str(repository / "deploy/examples/goto.sh"), "small", str(picture)]
+    command = [str(repository / "deploy/examples/goto.sh"), MAP, str(picture)]
     return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
 
 
@@ -32,6 +35,27 @@ def test_a_picture_sent_with_curl_brings_the_robot_there(explored, repository, t
     assert answer.returncode == 0, answer.stdout + answer.stderr
     assert '"verdict":"found"' in answer.stdout
     assert '"state":"succeeded"' in answer.stdout
+
+
+def test_the_two_calls_of_the_readme_send_the_robot_off(explored, tmp_path):
+    game = explored.game
+    start = game.begin(seed=2).pose
+    picture = game.hide(hiding_place_near_a_node(explored.result, explored.space, start))
+    save_picture(tmp_path / "goal.png", picture)
+    answer = subprocess.run(
+        ["bash", "-ec", examples("bash")[1].replace("map=flat", f"map={MAP}")],
+        env={**os.environ, "TOPNAV_URL": explored.stack.gateway_url},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert answer.returncode == 0, answer.stdout + answer.stderr
+    assert '"verdict":"found"' in answer.stdout
+    assert '"action":"goto"' in answer.stdout
+    robot = f"{explored.stack.gateway_url}/api/robots/{explored.stack.robot}"
+    ended = httpx.get(f"{robot}/mission/wait", params={"timeout_s": 60}, timeout=90).json()
+    assert ended["mission"]["state"] == "succeeded"
 
 
 def test_a_picture_of_the_wrong_shape_is_refused_with_a_reason(explored, repository, tmp_path):
