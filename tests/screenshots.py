@@ -17,7 +17,7 @@ from services.launcher.evaluation.rounds import Game
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
 from tests.browser import WAIT_MS, chromium
-from tests.e2e.test_console import png_of
+from tests.e2e.one_stack.test_console import png_of
 
 PICTURES = Path(__file__).resolve().parents[1] / "deploy" / "pictures"
 WORLD, MAP, STEPS = "apartment", "flat", 450

@@ -15,7 +15,7 @@ from simulator.world.world_file import load_world
 
 WORLD = "apartment"
 MAP = "small"
-STEPS = 60
+STEPS = 80
 PATIENT = {
     "GATEWAY_ASK_TIMEOUT_S": "60",
     "GATEWAY_COMPUTE_TIMEOUT_S": "60",

@@ -1,4 +1,4 @@
-"""The processes of docker-compose.yml under the launcher, without the simulator: they survive kill -9."""
+"""The processes of docker-compose.yml under the launcher, without the simulator: killed, each comes back."""
 
 import pytest
 
