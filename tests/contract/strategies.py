@@ -49,6 +49,8 @@ def _value(annotation: Any, metadata: tuple[Any, ...]) -> st.SearchStrategy[Any]
         return st.one_of([_value(choice, metadata) for choice in get_args(annotation)])
     if origin is Literal:
         return st.sampled_from(get_args(annotation))
+    if origin is tuple and get_args(annotation)[-1] is not Ellipsis:
+        return st.tuples(*(_value(each, ()) for each in get_args(annotation)))
     if origin is tuple:
         least = _limit(metadata, limits.MinLen, "min_length", 0)
         return st.lists(_value(get_args(annotation)[0], ()), min_size=least, max_size=max(LONG, least)).map(
