@@ -12,6 +12,10 @@ from torch import Tensor
 TOLERANCE = 1e-12  # of sgn: what float64 leaves of a difference that is zero
 
 
+Vote = tuple[Tensor, Tensor]
+"""(B, 2) vector and (B,) logarithm of its scale."""
+
+
 def batch_headings(method: str, current: Tensor, target: Tensor, gain_per_rad: float) -> Tensor:
     """Headings (B,) from longitudes and latitudes (B, N, 2); weights are exp(gain_per_rad * angle)."""
     vector, _ = _methods()[method](current, target, gain_per_rad)
@@ -20,45 +24,49 @@ def batch_headings(method: str, current: Tensor, target: Tensor, gain_per_rad: f
 
 def all_headings(current: Tensor, target: Tensor, gain_per_rad: float) -> Tensor:
     """Headings (6, B) of methods 1 to 6, which share their votes."""
-    one, two = _pairs(current, target, None), _pairs(current, target, gain_per_rad)
+    pairs = _Pairs(current, target)
+    one, two = pairs.plain(), pairs.weighted(gain_per_rad)
     three, four = _singles(current, target, None), _singles(current, target, gain_per_rad)
     votes = (one, two, three, four, _sum(one, four), _sum(two, four))
     return torch.stack([torch.atan2(vector[:, 1], vector[:, 0]) for vector, _ in votes])
 
 
-Vote = tuple[Tensor, Tensor]
-"""(B, 2) vector and (B,) logarithm of its scale."""
-
-
 def _methods() -> dict[str, Callable[[Tensor, Tensor, float], Vote]]:
     return {
-        "1": lambda c, t, _: _pairs(c, t, None),
-        "2": lambda c, t, g: _pairs(c, t, g),
+        "1": lambda c, t, _: _Pairs(c, t).plain(),
+        "2": lambda c, t, g: _Pairs(c, t).weighted(g),
         "3": lambda c, t, _: _singles(c, t, None),
         "4": lambda c, t, g: _singles(c, t, g),
-        "5": lambda c, t, g: _sum(_pairs(c, t, None), _singles(c, t, g)),
-        "6": lambda c, t, g: _sum(_pairs(c, t, g), _singles(c, t, g)),
+        "5": lambda c, t, g: _sum(_Pairs(c, t).plain(), _singles(c, t, g)),
+        "6": lambda c, t, g: _sum(_Pairs(c, t).weighted(g), _singles(c, t, g)),
     }
 
 
-def _pairs(current: Tensor, target: Tensor, gain: float | None) -> Vote:
+class _Pairs:
     """Equations (2.1) to (2.10). Every pair is met twice, as (i, j) and (j, i), which changes no direction.
 
     Without trigonometry but for the weights: a sum of unit vectors has length sqrt(2 + 2 dot), and the
     bisectors of keypoint i add up to u_i times the sum of its row.
     """
-    u, v = _units(current), _units(target)
-    dot_c, dot_t = u @ u.mT, v @ v.mT
-    cross = _crosses(u) * _crosses(v)
-    vote = 1.0 + (_sign(cross) + 1.0) / 2.0 * (_sign(dot_c - dot_t) - 1.0)
-    vote = vote * (2.0 + 2.0 * dot_c).clamp_min(TOLERANCE).rsqrt()
-    scale = torch.zeros_like(u[:, 0, 0])
-    if gain is not None:
-        logs = gain * (torch.acos(dot_t.clamp(-1.0, 1.0)) - torch.acos(dot_c.clamp(-1.0, 1.0)))
+
+    def __init__(self, current: Tensor, target: Tensor) -> None:
+        self._u, v = _units(current), _units(target)
+        self._dot_c, self._dot_t = self._u @ self._u.mT, v @ v.mT
+        kept = (_sign(_crosses(self._u) * _crosses(v)) + 1.0) / 2.0
+        vote = 1.0 + kept * (_sign(self._dot_c - self._dot_t) - 1.0)
+        self._vote = vote * (2.0 + 2.0 * self._dot_c).clamp_min(TOLERANCE).rsqrt()
+        self._vote.diagonal(dim1=1, dim2=2).zero_()
+
+    def plain(self) -> Vote:
+        """Method 1."""
+        return (self._vote @ self._u).sum(1), torch.zeros_like(self._u[:, 0, 0])
+
+    def weighted(self, gain: float) -> Vote:
+        """Method 2."""
+        logs = gain * (torch.acos(self._dot_t.clamp(-1.0, 1.0)) - torch.acos(self._dot_c.clamp(-1.0, 1.0)))
         scale = logs.amax((1, 2))
-        vote = vote * torch.exp(logs - scale[:, None, None])
-    vote.diagonal(dim1=1, dim2=2).zero_()
-    return (vote @ u).sum(1), scale
+        vote = self._vote * torch.exp(logs - scale[:, None, None])
+        return (vote @ self._u).sum(1), scale
 
 
 def _singles(current: Tensor, target: Tensor, gain: float | None) -> Vote:
