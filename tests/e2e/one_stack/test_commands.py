@@ -1,12 +1,14 @@
 """The command line against a running stack: it joins, and what cannot be done is one clear line."""
 
 import json
+import math
 import subprocess
 import sys
 
 import pytest
 
 from services.launcher.drawing.pictures import save_picture
+from shared.mapgraph.triangle import DIRECTION_RAD, YAW_RAD
 from tests.e2e.near_node import hiding_place_near_a_node
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(600)]
@@ -58,3 +60,16 @@ def test_hide_and_seek_writes_the_fixed_keys_and_the_drawings(explored, reposito
     assert {*wanted, "steps_per_s"} <= report["summary"].keys()
     for name in ("path.png", "goal.png", "seeker_final.png", "hider_final.png"):
         assert (tmp_path / "round-01" / name).stat().st_size > 1000
+
+
+def test_the_triangles_of_a_map_close_within_the_tolerances_of_cycle_consistency(
+    explored, repository, tmp_path
+):
+    figures = tmp_path / "cycles.json"
+    answer = topnav(explored, repository, "study", "cycles", "--map", "small", "--json", str(figures))
+    assert answer.returncode == 0, answer.stderr
+    report = json.loads(figures.read_text())
+    assert report["triangles"] > 5
+    most = {row["miss"]: math.radians(row["p100_deg"]) for row in report["misses"]}
+    assert 0.0 < most["yaw"] < YAW_RAD
+    assert 0.0 < most["direction"] < DIRECTION_RAD
