@@ -23,6 +23,7 @@ class EStopServer:
         self._requests = bus.requests(ESTOP, robot=robot)
         self._robot_states = bus.subscribe(ROBOT_ESTOP_STATE, robot=robot)
         self._told = _RepeatedState(bus.publisher(ESTOP_STATE, robot=robot))
+        self._kept = _KeptState(self._latch)
 
     @property
     def state(self) -> EStopState:
@@ -36,7 +37,7 @@ class EStopServer:
         robots = self._robot_states.take()
         if robots is not None and self._latch.learn(robots):
             self._told.publish(self.state, now_s)
-            _save(self._latch)
+        self._kept.keep(now_s)
         self._told.repeat(self.state, now_s)
 
     def _answer(self, request: Request[EStopRequest, EStopState], now_s: float) -> None:
@@ -71,6 +72,7 @@ class RobotEStop:
         self._latch = Latch(robot, folder)
         self._drive_states = bus.subscribe(ESTOP_STATE, robot=robot)
         self._told = _RepeatedState(bus.publisher(ROBOT_ESTOP_STATE, robot=robot))
+        self._kept = _KeptState(self._latch)
         self._changed = False
 
     def engaged(self) -> bool:
@@ -84,9 +86,9 @@ class RobotEStop:
 
     def tell(self, now_s: float) -> None:
         """Keep what was read and say so. Call it after the wheels: a disk may be slower than brakes may."""
+        self._kept.keep(now_s)
         if self._changed:
             self._changed = False
-            _save(self._latch)
             self._told.publish(self._latch.state, now_s)
         self._told.repeat(self._latch.state, now_s)
 
@@ -107,9 +109,25 @@ class _RepeatedState:
             self.publish(state, now_s)
 
 
-def _save(latch: Latch) -> None:
-    """What was heard holds even where it cannot be saved: the other side has it too."""
-    try:
-        latch.save()
-    except OSError as error:
-        log.error("emergency stop not saved: %s", error)
+class _KeptState:
+    """Saves a state, and one that could not be saved once more every heartbeat, until it is.
+
+    What was heard holds meanwhile: the other side has it too.
+    """
+
+    def __init__(self, latch: Latch) -> None:
+        self._latch = latch
+        self._failed: tuple[EStopState, float] | None = None
+
+    def keep(self, now_s: float) -> None:
+        """Save what is not saved yet."""
+        failed = self._failed
+        if failed is not None and failed[0] == self._latch.state and now_s - failed[1] < HEARTBEAT_S:
+            return
+        try:
+            self._latch.save()
+        except OSError as error:
+            log.error("emergency stop not saved, tried again in %g s: %s", HEARTBEAT_S, error)
+            self._failed = self._latch.state, now_s
+        else:
+            self._failed = None

@@ -56,9 +56,18 @@ async def read_json(request: Request, kind: type[B], timeout_s: float) -> B:
     if media_type != "application/json":
         expected, next_step = "content type application/json", "send the fields as a JSON object"
         raise ProblemError(415, "not_json", expected, media_type[:80] or "none", next_step)
-    body = await read_body(request, MAX_JSON_BYTES, timeout_s)
+    return parse_json(await read_body(request, MAX_JSON_BYTES, timeout_s), kind)
+
+
+def parse_json(body: bytes, kind: type[B]) -> B:
+    """A JSON object as `kind`.
+
+    Raises:
+        ProblemError: 422 not JSON, text that is none (half a surrogate pair), or not of that kind.
+    """
     try:
         content = json.loads(body, parse_constant=_no_constant, object_pairs_hook=_no_duplicates)
+        json.dumps(content, ensure_ascii=False).encode()  # as the bus will write its texts
     except (ValueError, RecursionError) as error:
         got, next_step = str(error)[:200] or type(error).__name__, "check the body with a JSON linter"
         raise ProblemError(422, "invalid_json", "a JSON object", got, next_step) from None

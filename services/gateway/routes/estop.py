@@ -1,12 +1,12 @@
 """The emergency stop: anybody engages it, without a token; an operator who gives a name clears it."""
 
-from typing import Annotated, TypeVar
+from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
 from services.gateway.auth.guard import access_of, person_of
-from services.gateway.http.bodies import json_body, read_json
+from services.gateway.http.bodies import MAX_JSON_BYTES, json_body, parse_json, read_body, read_json
 from services.gateway.live.hub import facts_of
 from services.gateway.routes.robots import known
 from services.gateway.state import Gateway, GatewayDep, RobotPath
@@ -14,19 +14,20 @@ from shared.messages.estop import EStopRequest, EStopState
 from shared.topics import ESTOP
 from shared.web.problems import ProblemError
 
-B = TypeVar("B", bound=BaseModel)
 router = APIRouter(tags=["robots"])
 
 TIMEOUT_S = 2.0
 """Chosen: drive answers within one of its steps; a person waits no longer before they press again."""
 LONGEST_WHO, LONGEST_WHY = 64, 400
 """Characters, as `EStopRequest` has them."""
+BODY_S = 0.25
+"""Chosen: a stop waits no longer for its reason, which usually comes with the head."""
 
 Who = Annotated[str, Query(max_length=LONGEST_WHO, description="name of the person who looked")]
 
 
 class Engage(BaseModel):
-    """Body of a stop, which may be left out. Long texts are cut: a stop is never refused for its reason."""
+    """Body of a stop, which may be left out. A stop is never refused for it: see `warning`."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -44,13 +45,18 @@ class Clear(BaseModel):
 
 
 class EStopAnswer(BaseModel):
-    """How it stands; `since` is the time of the last change by the robot's drive service, null before any."""
+    """How it stands; `since` is the time of the last change by the robot's drive service, null before any.
+
+    Attributes:
+        warning: what was wrong with the body of a stop, which holds all the same; empty when nothing was.
+    """
 
     robot: str
     engaged: bool
     who: str
     why: str
     since: AwareDatetime | None
+    warning: str = ""
 
 
 @router.get("/api/robots/{robot}/estop")
@@ -62,18 +68,22 @@ async def show_estop(robot: RobotPath, gateway: GatewayDep) -> EStopAnswer:
 @router.post("/api/robots/{robot}/estop", openapi_extra=json_body(Engage, required=False))
 async def engage_estop(request: Request, robot: RobotPath, gateway: GatewayDep) -> EStopAnswer:
     """Stop the robot now; it stands until a person clears the stop, whatever restarts."""
-    wish = await _wish(request, gateway, Engage())
+    wish, warning = await _reason(request)
     who = _signed(wish.who, person_of(request).name)
     engage = EStopRequest(action="engage", who=who, why=wish.why[:LONGEST_WHY])
     if access_of(request).rates.stop(robot):
-        return _answer(await _ask(gateway, robot, engage))
-    return _answer(await gateway.stops.join(robot, lambda: _ask(gateway, robot, engage)))
+        state = await _ask(gateway, robot, engage)
+    else:
+        state = await gateway.stops.join(robot, lambda: _ask(gateway, robot, engage))
+    return _answer(state, warning)
 
 
 @router.delete("/api/robots/{robot}/estop", openapi_extra=json_body(Clear, required=False))
 async def clear_estop(request: Request, robot: RobotPath, gateway: GatewayDep, who: Who = "") -> EStopAnswer:
     """Let the robot go: `who` names the person who saw that it may. A paused mission stays paused."""
-    wish = await _wish(request, gateway, Clear())
+    wish = Clear()
+    if "content-type" in request.headers:
+        wish = await read_json(request, Clear, gateway.settings.upload_timeout_s)
     name = (wish.who or who).strip()
     if not name:
         expected = "the name of the person who clears the stop, in the body or as ?who="
@@ -83,17 +93,20 @@ async def clear_estop(request: Request, robot: RobotPath, gateway: GatewayDep, w
     return _answer(await _ask(gateway, robot, EStopRequest(action="clear", who=signed, why=wish.why)))
 
 
-async def _wish(request: Request, gateway: Gateway, default: B) -> B:
-    """The body, or `default` where none was announced."""
-    if "content-type" not in request.headers:
-        return default
-    return await read_json(request, type(default), gateway.settings.upload_timeout_s)
+async def _reason(request: Request) -> tuple[Engage, str]:
+    """Who stops and why, and what is wrong with that: then nobody is named, and the stop holds."""
+    try:
+        body = await read_body(request, MAX_JSON_BYTES, BODY_S)
+        return (parse_json(body, Engage) if body.strip() else Engage()), ""
+    except ProblemError as problem:
+        return Engage(), f"stopped without who and why, as the body could not be read: {problem.detail}"[:400]
 
 
 def _signed(who: str, token: str) -> str:
-    """What somebody says to be called, and what is known of them."""
-    known_as = f" (token {token})" if token and token != who else ""
-    return who[: LONGEST_WHO - len(known_as)] + known_as
+    """What somebody says to be called, and what is known of them: only that stands in brackets."""
+    said = who.replace("(", "").replace(")", "").strip()
+    known_as = f" (token {token})" if token and token != said else ""
+    return said[: LONGEST_WHO - len(known_as)] + known_as
 
 
 async def _ask(gateway: Gateway, robot: str, request: EStopRequest) -> EStopState:
@@ -105,5 +118,5 @@ async def _ask(gateway: Gateway, robot: str, request: EStopRequest) -> EStopStat
         raise
 
 
-def _answer(state: EStopState) -> EStopAnswer:
-    return EStopAnswer(**facts_of(state))
+def _answer(state: EStopState, warning: str = "") -> EStopAnswer:
+    return EStopAnswer(**facts_of(state), warning=warning)

@@ -1,6 +1,7 @@
 """The emergency stop over HTTP, and what pages hear of it."""
 
 import json
+import socket
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -54,6 +55,7 @@ def test_engage_look_and_clear(clear: httpx.Client) -> None:
         "who": "anna",
         "why": "a child",
         "since": None,
+        "warning": "",
     }
     assert clear.get(PATH).json() == engaged.json()
     cleared = clear.request("DELETE", PATH, json={"who": "bert", "why": "looked"})
@@ -66,6 +68,54 @@ def test_a_stop_needs_no_body_and_no_reason_is_too_long_for_it(clear: httpx.Clie
     assert clear.post(PATH).json()["engaged"]
     clear.delete(PATH, params={"who": "anna"})
     assert clear.post(PATH, json={"why": "x" * 1000}).json()["why"] == "x" * 400
+
+
+FORM = "application/x-www-form-urlencoded"
+ODD_BODIES = [
+    pytest.param(b"", FORM, "", "gateway", id="curl -d ''"),
+    pytest.param(b'{"who": "anna"}', FORM, "", "anna", id="curl's own content type"),
+    pytest.param(b"who=anna", FORM, "body", "gateway", id="a form"),
+    pytest.param(b"", "application/json", "", "gateway", id="empty"),
+    pytest.param(b'{"reason": "smoke"}', "application/json", "reason", "gateway", id="unknown field"),
+    pytest.param(b'{"who": null}', "application/json", "who", "gateway", id="null"),
+    pytest.param(b'{"who": "an', "application/json", "body", "gateway", id="cut"),
+    pytest.param(b'{"who": "anna\\ud800"}', "application/json", "surrogates", "gateway", id="lone surrogate"),
+    pytest.param(b"\xff\xfe", "application/json", "body", "gateway", id="no text"),
+    pytest.param(b"[" * 5000, "application/json", "body", "gateway", id="deep"),
+    pytest.param(b"x" * 100_000, "text/plain", "bytes", "gateway", id="long"),
+]
+
+
+@pytest.mark.parametrize(("body", "kind", "warned", "who"), ODD_BODIES)
+def test_a_stop_holds_whatever_its_body_is_and_says_what_was_wrong(
+    clear: httpx.Client, body: bytes, kind: str, warned: str, who: str
+) -> None:
+    answer = clear.post(PATH, content=body, headers={"Content-Type": kind})
+    assert answer.status_code == 200, answer.text
+    assert (answer.json()["engaged"], answer.json()["who"]) == (True, who)
+    assert warned in answer.json()["warning"]
+    assert bool(answer.json()["warning"]) is bool(warned)
+
+
+def test_a_stop_holds_while_its_body_is_still_on_the_way(clear: httpx.Client, gateway: str) -> None:
+    """Nobody waits for a reason: the head says all that it takes."""
+    address = httpx.URL(gateway)
+    with socket.create_connection((address.host, address.port)) as sender:
+        head = f"POST {PATH} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
+        sender.sendall(f'{head}Content-Length: 100\r\n\r\n{{"who"'.encode())
+        assert wait_until(lambda: clear.get(PATH).json()["engaged"], 5.0)
+
+
+def test_nobody_can_write_what_only_a_token_proves(clear: httpx.Client) -> None:
+    assert clear.post(PATH, json={"who": "anna (token anna)"}).json()["who"] == "anna token anna"
+
+
+@pytest.mark.parametrize("body", [b'{"who": "anna\\ud800"}', b'{"who": "an'])
+def test_a_clearance_that_cannot_be_read_clears_nothing(clear: httpx.Client, body: bytes) -> None:
+    clear.post(PATH)
+    answer = clear.request("DELETE", PATH, content=body, headers={"Content-Type": "application/json"})
+    assert answer.status_code == 422
+    assert clear.get(PATH).json()["engaged"]
 
 
 @pytest.mark.parametrize("who", [None, "", "  "])
