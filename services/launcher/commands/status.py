@@ -26,4 +26,10 @@ def status(data_dir: options.StackDir = options.DATA_DIR, as_json: options.AsJso
         console.print(
             f"console {state.gateway_url}  bus {state.endpoint}  logs {state.logs}", highlight=False
         )
+        if state.silent:
+            who = f"the launcher (pid {state.launcher_pid})"
+            console.print(
+                f"[bold red]{who} has been silent for {state.silent_s:.0f} s[/bold red]: "
+                "nothing that dies is started again; 'topnav down', then 'topnav up'"
+            )
     raise typer.Exit(0 if state and state.healthy else 1)

@@ -1,14 +1,21 @@
 """The thread that steps every service runner, and stops all of them in the reverse of the start order."""
 
+import logging
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 from services.launcher.processes.process import ChildProcess, stop_all
 from services.launcher.processes.runner import ServiceRunner, State
 from services.launcher.processes.state import ServiceStatus
 
-PERIOD_S = 0.05  # an ended process is noticed sooner than the first pause before a restart (0.3 s)
+log = logging.getLogger(__name__)
+
+PERIOD_S = 0.05
+"""Chosen: an ended process is noticed sooner than the first pause before a restart (0.3 s)."""
+BEAT_S = 1.0
+"""Chosen: how often the state on disk says that this loop runs, and logs are looked at."""
 
 
 class SupervisorLoop:
@@ -17,7 +24,9 @@ class SupervisorLoop:
     Args:
         runners: service name -> runner.
         stages: start order; the first stage is what the others talk through.
-        changed: called in the loop's thread after any change, with the status of all services.
+        changed: called in the loop's thread after any change, with the status of all services; where it
+            raises OSError (a full disk), again at the next beat.
+        beat: called in the loop's thread about once a second; may raise OSError.
     """
 
     def __init__(
@@ -25,8 +34,9 @@ class SupervisorLoop:
         runners: Mapping[str, ServiceRunner],
         stages: Sequence[Sequence[str]],
         changed: Callable[[Mapping[str, ServiceStatus]], None],
+        beat: Callable[[], None],
     ) -> None:
-        self._runners, self._stages, self._changed = runners, stages, changed
+        self._runners, self._stages, self._changed, self._beat = runners, stages, changed, beat
         self._stop = threading.Event()
         # A daemon: should the main thread die without stopping us, the process ends and the kernel kills all.
         self._thread = threading.Thread(target=self._run, name="supervisor", daemon=True)
@@ -64,17 +74,30 @@ class SupervisorLoop:
         return self._runners[name].child
 
     def _run(self) -> None:
-        last: dict[str, ServiceStatus] = {}
+        told: dict[str, ServiceStatus] | None = {}
+        beat_s = float("-inf")
         try:
             while not self._stop.is_set():
-                self._step_all(time.monotonic())
-                now = self.status()
-                if now != last:
-                    self._changed(now)
-                    last = now
+                now_s = time.monotonic()
+                self._step_all(now_s)
+                status, beats = self.status(), now_s - beat_s >= BEAT_S
+                if status != told and (beats or told is not None):
+                    told = status if self._done(partial(self._changed, status)) else None
+                if beats:
+                    beat_s = now_s
+                    self._done(self._beat)
                 self._stop.wait(PERIOD_S)
         finally:
             self._stop_services()
+
+    def _done(self, write: Callable[[], None]) -> bool:
+        """Whether it worked: what a full disk refuses must not end the services."""
+        try:
+            write()
+        except OSError as error:
+            log.error("state of the stack not written, tried again: %s", error)
+            return False
+        return True
 
     def _step_all(self, now_s: float) -> None:
         base = set(self._stages[0])
@@ -85,7 +108,10 @@ class SupervisorLoop:
                 ready = all(
                     self._runners[other].satisfies(healthy) for other, healthy in runner.spec.needs.items()
                 )
-                runner.step(now_s, ready, watch_hung=base_healthy or name in base)
+                try:
+                    runner.step(now_s, ready, watch_hung=base_healthy or name in base)
+                except OSError as error:  # no file descriptor or process left to look with
+                    log.error("%s could not be looked at, tried again: %s", name, error)
 
     def _stop_services(self) -> None:
         for stage in reversed(self._stages):
@@ -93,4 +119,4 @@ class SupervisorLoop:
             stop_all({runner.child: runner.spec.stop_grace_s for runner in runners if runner.child})
             for runner in runners:
                 runner.child, runner.state = None, State.EXITED
-        self._changed(self.status())
+        self._done(partial(self._changed, self.status()))

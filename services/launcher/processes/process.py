@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -10,7 +11,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 CHILD = Path(__file__).with_name("child.py")
-LOG_BYTES = 10_000_000  # with the old one beside it 20 MB a service
+LOG_BYTES = 10_000_000
+"""Chosen: with the old one beside it 20 MB a service."""
 REAP_S = 5.0  # SIGKILL acts at once but for a process in the kernel
 
 
@@ -78,6 +80,16 @@ def stop_all(children: Mapping[ChildProcess, float]) -> None:
 
 
 def rotate(path: Path, limit_bytes: int = LOG_BYTES) -> None:
-    """Keep one old log beside the new one once it has grown past the limit."""
-    if path.exists() and path.stat().st_size > limit_bytes:
-        path.replace(path.with_suffix(path.suffix + ".1"))
+    """Keep one old log beside the new one once it has grown past the limit.
+
+    The file stays the one that a running process appends to: it is copied and emptied. Where there is no room
+    for the copy, what is in it goes.
+    """
+    if not path.exists() or path.stat().st_size <= limit_bytes:
+        return
+    old = path.with_suffix(path.suffix + ".1")
+    try:
+        shutil.copyfile(path, old)
+    except OSError:
+        old.unlink(missing_ok=True)
+    os.truncate(path, 0)

@@ -14,6 +14,9 @@ log = logging.getLogger(__name__)
 HUNG_AFTER_S = 15.0
 """A process that was healthy and then silent for so long is killed and started again."""
 
+CANNOT_START = 126
+"""Exit code of what could not be started, as shells have it."""
+
 
 class State(StrEnum):
     """What a service is doing."""
@@ -91,7 +94,12 @@ class ServiceRunner:
     def _start(self, now_s: float) -> None:
         self._started_s = now_s
         self._stale = self._health()
-        self.child = self._spawn(self.spec)
+        try:
+            self.child = self._spawn(self.spec)
+        except OSError as error:  # a full disk, or no process or file descriptor left: like an exit at once
+            log.error("%s cannot be started: %s", self.spec.name, error)
+            self._ended(CANNOT_START, now_s)
+            return
         if self.state is not State.DEGRADED:
             self._become(State.STARTING)
 

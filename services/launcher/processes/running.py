@@ -22,6 +22,9 @@ from shared.lifecycle import JsonFormatter, stop_on_signals
 STOP_S = 30.0
 """What a launcher that came up too late may take to stop: longer than the grace of any service."""
 
+LOOK_S = 1.0
+"""Chosen: a launcher that can no longer do its work ends so soon."""
+
 
 def run_foreground(
     settings: StackSettings,
@@ -62,7 +65,9 @@ def run_foreground(
         launcher.wait_all_healthy(timeout_s, stop)
         if not stop.is_set():
             healthy(launcher.gateway_url)
-        stop.wait()
+        while not stop.wait(LOOK_S):
+            if not launcher.running:
+                raise LaunchError(f"the launcher stopped looking after the services: see {launcher.logs}")
     finally:
         launcher.stop()
 
@@ -115,18 +120,16 @@ def stop_stack(data_dir: Path, timeout_s: float) -> str:
     Returns:
         What happened, in one line.
 
-    Raises:
-        LaunchError: a launcher owns the folder but left no state to find it by.
     """
     folder = StateFolder(data_dir)
     if not folder.owned():
         folder.release()  # a killed launcher leaves its state file
         return f"no stack runs in {data_dir}"
-    state = folder.read()
-    if state is None:
-        raise LaunchError(f"the stack in {data_dir} is just starting or stopping; try again in a second")
     for number in (signal.SIGTERM, signal.SIGKILL):
-        os.kill(state.launcher_pid, number)
+        owner = folder.owner()
+        if owner is None:
+            return "stopped"
+        os.kill(owner, number)
         if wait_until(lambda: not folder.owned(), timeout_s, 0.05) and number == signal.SIGTERM:
             return "stopped"
     return f"the launcher did not stop within {timeout_s:.0f} s and was killed with its services"

@@ -24,7 +24,7 @@ from services.launcher.processes.free_ports import HOST
 from services.launcher.processes.health import CommandHealth, Health, Liveliness, always_ready
 from services.launcher.processes.loop import SupervisorLoop
 from services.launcher.processes.preparing import OPERATOR, prepare
-from services.launcher.processes.process import ChildProcess
+from services.launcher.processes.process import ChildProcess, rotate
 from services.launcher.processes.restart import RestartPolicy
 from services.launcher.processes.runner import ServiceRunner
 from services.launcher.processes.stack_settings import Ports, StackSettings
@@ -83,7 +83,7 @@ class Launcher:
         policy = policy or RestartPolicy()
         runners = {spec.name: ServiceRunner(spec, self._health(spec), self._spawn, policy) for spec in specs}
         self._uses_bus = any(spec.alive_as for spec in specs)
-        self._loop = SupervisorLoop(runners, self._stages, self._changed)
+        self._loop = SupervisorLoop(runners, self._stages, self._changed, self._beat)
 
     @property
     def endpoint(self) -> str:
@@ -151,6 +151,11 @@ class Launcher:
         """Stop."""
         self.stop()
 
+    @property
+    def running(self) -> bool:
+        """Whether anybody still looks after the services."""
+        return self._loop.running
+
     def status(self) -> dict[str, ServiceStatus]:
         """Describe every service as of now."""
         return self._loop.status()
@@ -217,6 +222,11 @@ class Launcher:
         return ChildProcess(
             spec.command, self._environment(spec), self.logs / f"{spec.name}.jsonl", self._root
         )
+
+    def _beat(self) -> None:
+        self._state.beat()
+        for log_path in self.logs.glob("*.jsonl"):
+            rotate(log_path)
 
     def _changed(self, services: Mapping[str, ServiceStatus]) -> None:
         self._state.write(

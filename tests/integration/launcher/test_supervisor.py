@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from services.launcher.processes import process
 from services.launcher.processes.restart import RestartPolicy
 from services.launcher.processes.runner import State
 from services.launcher.processes.state import AlreadyRunningError, StateFolder
@@ -187,3 +188,52 @@ def test_a_failing_up_is_one_line_and_exit_1(tmp_path):
     assert up.stderr.startswith("topnav: ")
     assert "bad.jsonl" in up.stderr
     assert len(up.stderr.splitlines()) == 1
+
+
+def test_a_state_that_cannot_be_written_ends_nothing_and_is_written_once_it_can_be(launch, tmp_path):
+    """As on a full disk: the file cannot be replaced while something stands where its new version goes."""
+    stack = launch(a=SLEEP, b=SLEEP)
+    way = tmp_path / "data" / "launcher" / "state.new"
+    way.mkdir()
+    other = stack.pid("b")
+    old = stack.kill("a")
+    stack.wait_healthy("a", SOON_S, other_than=old)
+    assert (stack.running, stack.pid("b")) == (True, other)
+    assert StateFolder(tmp_path / "data").read().services["a"].state is State.EXITED, "not as it was written"
+    way.rmdir()
+    assert wait_until(
+        lambda: StateFolder(tmp_path / "data").read().services["a"].pid == stack.pid("a"), SOON_S
+    )
+
+
+def test_a_service_that_cannot_be_started_for_a_while_is_tried_again(launch, monkeypatch):
+    """As without room for its log, or without a process or file descriptor left."""
+    stack = launch(a=SLEEP, b=SLEEP)
+    spawn, refused = subprocess.Popen, []
+
+    def none_left(*arguments, **options):
+        if len(refused) < 3:
+            refused.append(1)
+            raise OSError(24, "Too many open files")
+        return spawn(*arguments, **options)
+
+    other = stack.pid("b")
+    monkeypatch.setattr(subprocess, "Popen", none_left)
+    old = stack.kill("a")
+    stack.wait_healthy("a", SOON_S, other_than=old)
+    assert (len(refused), stack.running, stack.pid("b")) == (3, True, other)
+
+
+def test_the_log_of_a_running_service_does_not_grow_without_bound(launch, monkeypatch):
+    monkeypatch.setattr(process, "LOG_BYTES", 100_000)
+    monkeypatch.setattr(process.rotate, "__defaults__", (100_000,))
+    talk = "import time\nwhile True: print('x' * 999, flush=True); time.sleep(0.001)"
+    stack = launch(a=[sys.executable, "-c", talk])
+    log, pid = stack.logs / "a.jsonl", stack.pid("a")
+    old = stack.logs / "a.jsonl.1"
+    assert wait_until(old.exists, SOON_S)
+    sizes = []
+    assert wait_until(lambda: sizes.append(log.stat().st_size) or len(sizes) > 40, SOON_S, 0.1)
+    assert max(sizes) < 4_000_000, "a second's worth beyond the limit"
+    assert min(sizes[1:]) < 100_000, "emptied while the service runs"
+    assert stack.pid("a") == pid

@@ -2,9 +2,12 @@
 
 import fcntl
 import os
+import subprocess
 import threading
+import time
 
 import pytest
+from pydantic import ValidationError
 
 from services.launcher.processes.runner import State
 from services.launcher.processes.state import AlreadyRunningError, ServiceStatus, StackState, StateFolder
@@ -18,7 +21,7 @@ def example(state=State.HEALTHY):
         gateway_url="http://127.0.0.1:8000",
         map_store_url="http://127.0.0.1:8001",
         logs="logs",
-        services={"a": ServiceStatus(state=state, pid=5)},
+        services={"a": ServiceStatus(state=state, pid=os.getpid())},
     )
 
 
@@ -28,7 +31,7 @@ def test_the_state_of_a_living_launcher_is_found_and_gone_after_it(tmp_path):
     mine.acquire()
     assert StateFolder(tmp_path).read() is None  # owned, nothing written yet
     mine.write(example())
-    assert StateFolder(tmp_path).read() == example()
+    assert StateFolder(tmp_path).read().model_copy(update={"silent_s": 0.0}) == example()
     mine.release()
     assert StateFolder(tmp_path).read() is None
     assert not StateFolder(tmp_path).owned()
@@ -64,6 +67,59 @@ def test_who_looks_is_no_owner_to_others_who_look_and_keeps_nobody_from_becoming
         mine.acquire()
     assert StateFolder(tmp_path).owned()
     mine.release()
+
+
+def test_what_a_killed_launcher_left_is_not_taken_for_that_of_the_next(tmp_path):
+    """Its process id may be an innocent process's by now, and `topnav down` would kill that."""
+    with subprocess.Popen(["sleep", "600"]) as innocent:
+        mine = StateFolder(tmp_path)
+        mine.acquire()
+        left = example().model_copy(update={"launcher_pid": innocent.pid})
+        mine.write(left)
+        (tmp_path / "launcher" / "lock").write_text(str(innocent.pid))
+        assert StateFolder(tmp_path).owner() == os.getpid(), "as the kernel knows it"
+        assert StateFolder(tmp_path).read() is None
+        mine.release()
+        assert StateFolder(tmp_path).owner() is None
+        mine.write(left)
+        mine.acquire()
+        assert not (tmp_path / "launcher" / "state.json").exists()
+        mine.release()
+        innocent.kill()
+
+
+def test_a_service_whose_process_is_gone_is_not_told_as_healthy(tmp_path):
+    """Whatever stands in the file of a launcher that cannot write, or that was stopped itself."""
+    child = subprocess.Popen(["true"])
+    os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT)  # dead and not reaped
+    mine = StateFolder(tmp_path)
+    mine.acquire()
+    mine.write(
+        example().model_copy(update={"services": {"a": ServiceStatus(state="healthy", pid=child.pid)}})
+    )
+    seen = StateFolder(tmp_path).read()
+    assert (seen.services["a"].state, seen.services["a"].pid, seen.healthy) == (State.EXITED, None, False)
+    child.wait()
+    mine.release()
+
+
+def test_a_launcher_that_says_nothing_is_told_as_silent(tmp_path):
+    mine = StateFolder(tmp_path)
+    mine.acquire()
+    mine.write(example())
+    file = tmp_path / "launcher" / "state.json"
+    os.utime(file, (time.time() - 60.0,) * 2)
+    seen = StateFolder(tmp_path).read()
+    assert (seen.silent, seen.healthy) == (True, False)
+    mine.beat()
+    assert StateFolder(tmp_path).read().healthy
+    mine.release()
+
+
+@pytest.mark.parametrize("pid", [1, 0, -1])
+def test_no_launcher_has_such_a_process_id(pid):
+    with pytest.raises(ValidationError):
+        StackState.model_validate(example().model_dump() | {"launcher_pid": pid})
 
 
 def test_a_stack_is_healthy_when_every_service_is():
