@@ -37,6 +37,8 @@ class GatewaySettings(ServiceSettings):
         max_imports: archives received at once.
         writes_per_s, write_burst: of one client: address, or token where there is one.
         uploads_per_s, upload_burst: pictures and archives of one client.
+        comparisons_per_s, comparison_burst: pictures compared for one client.
+        max_comparisons, max_comparisons_per_client: of these at once; robots ask the same service.
         failures_per_s, failure_burst: wrong tokens of one address; more are not looked at.
         max_connections: connections open at once.
         max_connections_per_client: of these by one address, WebSockets not counted.
@@ -75,6 +77,10 @@ class GatewaySettings(ServiceSettings):
     write_burst: int = Field(default=100, ge=1)
     uploads_per_s: float = Field(default=2.0, gt=0.0)
     upload_burst: int = Field(default=20, ge=1)
+    comparisons_per_s: float = Field(default=5.0, gt=0.0)
+    comparison_burst: int = Field(default=20, ge=1)
+    max_comparisons: int = Field(default=3, ge=1)
+    max_comparisons_per_client: int = Field(default=2, ge=1)
     failures_per_s: float = Field(default=0.2, gt=0.0)
     failure_burst: int = Field(default=10, ge=1)
     max_connections: int = Field(default=1024, ge=1)

@@ -47,6 +47,7 @@ class Gateway:
         self.stops: Coalescer[EStopState] = Coalescer()
         self.uploads = Slots("uploads", chosen.max_uploads, chosen.max_uploads_per_client)
         self.imports = Slots("imports", chosen.max_imports, chosen.max_imports)
+        self.comparisons = Slots("comparisons", chosen.max_comparisons, chosen.max_comparisons_per_client)
         self.sockets = Slots("sockets", chosen.max_sockets, chosen.max_sockets_per_client)
 
     async def work(self, job: Callable[[], T]) -> T:

@@ -61,6 +61,7 @@ class RateLimits:
         self._clock = clock
         self._writes = TokenBuckets(settings.writes_per_s, settings.write_burst)
         self._uploads = TokenBuckets(settings.uploads_per_s, settings.upload_burst)
+        self._comparisons = TokenBuckets(settings.comparisons_per_s, settings.comparison_burst)
         self._failures = TokenBuckets(settings.failures_per_s, settings.failure_burst)
         self._stops = TokenBuckets(STOPS_PER_S, STOP_BURST)
         self._proven: OrderedDict[tuple[str, str], None] = OrderedDict()
@@ -72,6 +73,10 @@ class RateLimits:
     def upload(self, client: str) -> None:
         """Count a picture or an archive; raises ProblemError 429."""
         _refuse(self._uploads.take(client, self._clock()), "uploads")
+
+    def comparison(self, client: str) -> None:
+        """Count a comparison of pictures, which reads only but computes; raises ProblemError 429."""
+        _refuse(self._comparisons.take(client, self._clock()), "comparisons")
 
     def stop(self, robot: str) -> bool:
         """Count an emergency stop; whether it is passed on at once, or together with others."""

@@ -1,9 +1,12 @@
 """Evidence for people: the matches behind an edge, and those between the live picture and a node."""
 
 import asyncio
+from collections.abc import AsyncIterator
+from typing import Annotated
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Depends, Request
 
+from services.gateway.auth.guard import access_of, person_of
 from services.gateway.http.asking import bad_answer
 from services.gateway.routes.goals import NodeAnswer
 from services.gateway.routes.robots import newest_frame
@@ -33,8 +36,21 @@ class Matches(NodeAnswer):
     inlier: list[bool]
 
 
-@router.get("/api/maps/{map_name}/edges/{a:int}/{b:int}/matches")
-async def show_edge_matches(map_name: MapPath, a: NodePath, b: NodePath, gateway: GatewayDep) -> Matches:
+async def comparison(request: Request, gateway: GatewayDep) -> AsyncIterator[None]:
+    """A turn at the feature service, which robots need more urgently than whoever looks on."""
+    client = person_of(request).client
+    access_of(request).rates.comparison(client)
+    with gateway.comparisons.hold(client):
+        yield
+
+
+Turn = Annotated[None, Depends(comparison)]
+
+
+@router.get("/api/maps/{map_name}/edges/{a}/{b}/matches")
+async def show_edge_matches(
+    map_name: MapPath, a: NodePath, b: NodePath, gateway: GatewayDep, _turn: Turn
+) -> Matches:
     """Compare the pictures of two nodes again: what speaks for an edge between them."""
     settings = gateway.settings
     wish = MapRequest(action="read_features", node_ids=(a,))
@@ -48,7 +64,7 @@ async def show_edge_matches(map_name: MapPath, a: NodePath, b: NodePath, gateway
 
 @router.get("/api/robots/{robot}/matches")
 async def show_live_matches(
-    robot: RobotPath, map_name: MapQuery, node: NodeQuery, gateway: GatewayDep
+    robot: RobotPath, map_name: MapQuery, node: NodeQuery, gateway: GatewayDep, _turn: Turn
 ) -> Matches:
     """Compare the newest picture with a node."""
     left = LIVE_TRIES

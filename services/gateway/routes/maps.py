@@ -11,7 +11,7 @@ from services.gateway.http.map_store_proxy import forward, forward_stream
 from services.gateway.state import GatewayDep, MapPath, NodePath
 
 API, IMPORT = "/api", "/maps/import"
-MAP, NODE, EDGE = "/maps/{map_name}", "/nodes/{node_id:int}", "/edges/{a:int}/{b:int}"
+MAP, NODE, EDGE = "/maps/{map_name}", "/nodes/{node_id}", "/edges/{a}/{b}"
 OPERATIONS = (
     ("GET", "/maps", "list_maps", "All maps."),
     ("POST", "/maps", "create_map", "Make an empty map."),

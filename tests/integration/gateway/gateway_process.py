@@ -16,7 +16,16 @@ from tests.integration.gateway.corpus import LIMIT_BYTES
 ROOT = Path(__file__).resolve().parents[3]
 
 UNHURRIED = {
-    name: 10_000 for name in ("writes_per_s", "write_burst", "uploads_per_s", "upload_burst", "failure_burst")
+    name: 10_000
+    for name in (
+        "writes_per_s",
+        "write_burst",
+        "uploads_per_s",
+        "upload_burst",
+        "comparisons_per_s",
+        "comparison_burst",
+        "failure_burst",
+    )
 }
 """No rate limits: tests ask faster than people and programs do."""
 

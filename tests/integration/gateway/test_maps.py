@@ -66,6 +66,16 @@ def test_names_are_checked_before_they_reach_the_store(http: httpx.Client, store
     assert len(stored[1]) == asked
 
 
+@pytest.mark.parametrize("path", ["nodes/{0}", "nodes/{0}/thumbnail", "edges/1/{0}/matches", "edges/{0}/1"])
+@pytest.mark.parametrize("number", ["9" * 4400, "9" * 20, "-1", "x", "1.5"])
+def test_numbers_of_nodes_are_checked_as_any_input_is(http: httpx.Client, path: str, number: str) -> None:
+    """Python refuses to read 4400 digits: raised in a route's own pattern, that was a traceback a request."""
+    method = "DELETE" if path == "edges/{0}/1" else "GET"
+    answer = http.request(method, "/api/maps/flat/" + path.format(number))
+    assert answer.status_code == 422, answer.text
+    assert answer.headers["content-type"] == "application/problem+json"
+
+
 def test_a_store_that_is_down_is_a_missing_service(endpoint: str) -> None:
     for address in serve_gateway(endpoint, map_store_url=f"http://127.0.0.1:{free_port()}"):
         answer = httpx.get(f"{address}/api/maps", trust_env=False, timeout=WAIT_S)

@@ -1,17 +1,21 @@
 """Too often: guesses at tokens, writes and uploads are told when to come again; others go on."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import httpx
 import pytest
 
+from shared.bus import Bus
+from shared.topics import MAP
 from tests.integration.gateway.conftest import serve_gateway
 from tests.integration.gateway.gateway_process import WAIT_S
 from tests.integration.gateway.keys import SECRETS, bearer, write_file
-from tests.integration.gateway.standins import Planner
+from tests.integration.gateway.standins import Peer, Planner
 
 PAUSE = "/api/robots/r1/missions/pause"
+MATCHES = "/api/maps/flat/edges/1/2/matches"
 
 
 @pytest.fixture
@@ -27,6 +31,8 @@ def strict(endpoint: str, planner: Planner, tmp_path: Path) -> Iterator[str]:
         write_burst=5,
         uploads_per_s=0.01,
         upload_burst=2,
+        comparisons_per_s=0.01,
+        comparison_burst=3,
         failures_per_s=0.01,
         failure_burst=3,
     )
@@ -65,6 +71,40 @@ def test_writes_are_limited_for_each_token_and_reading_is_not(strict: str) -> No
         assert refused(answers[-1])
         assert http.post(PAUSE, headers=bearer("admin")).status_code == 200
         assert all(http.get("/api/robots").status_code == 200 for _ in range(50))
+
+
+def test_comparisons_are_limited_though_they_only_read(strict: str) -> None:
+    """They compute where the robot's own questions are answered."""
+    with client(strict) as http:
+        answers = [http.get(MATCHES, headers=bearer("viewer")) for _ in range(4)]
+        assert [refused(answer) for answer in answers] == [False] * 3 + [True]
+        assert not refused(http.get(MATCHES, headers=bearer("operator")))
+        assert http.get("/api/robots", headers=bearer("viewer")).status_code == 200
+
+
+@pytest.fixture
+def never_compared(endpoint: str) -> Iterator[str]:
+    """A gateway whose map store never answers."""
+
+    def setup(bus: Bus) -> Callable[[], None]:
+        held = [bus.requests(MAP, map="*")]
+        return lambda: held.reverse()
+
+    settings = {"max_comparisons": 3, "max_comparisons_per_client": 2, "compute_timeout_s": 4.0}
+    with Peer(endpoint, "map_store", setup):
+        yield from serve_gateway(endpoint, ["map_store"], **settings)
+
+
+def test_only_a_few_comparisons_wait_at_once_and_the_rest_is_told_so(never_compared: str) -> None:
+    def code(source: str) -> int:
+        with client(never_compared, source) as http:
+            return http.get(MATCHES).status_code
+
+    with ThreadPoolExecutor(10) as pool:
+        codes = list(pool.map(code, ["127.0.0.1"] * 5 + ["127.0.0.2"] * 5))
+    assert sorted(codes)[-3:] == [504] * 3, "three were asked about"
+    assert set(codes) <= {429, 503, 504}
+    assert max(codes[:5].count(504), codes[5:].count(504)) == 2
 
 
 def test_uploads_are_limited_more_tightly(strict: str) -> None:
