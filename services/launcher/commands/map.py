@@ -31,18 +31,27 @@ def list_maps(data_dir: options.DataDir = options.DATA_DIR) -> None:
 
 @app.command("export")
 def export_map(name: Name, file: File, data_dir: options.DataDir = options.DATA_DIR) -> None:
-    """Write a map to an archive file."""
+    """Write a map to an archive file; one that is there already is replaced."""
+    import os
+    import tempfile
+    import zipfile
+
+    from services.launcher.client.failure import ExperimentError
     from services.launcher.client.maps import open_store
 
-    new = file.with_name(file.name + ".new")
-    with open_store(data_dir) as store, store.stream("GET", f"/maps/{name}/export") as answer:
-        if answer.is_error:
-            answer.read()
-        answer.raise_for_status()
-        with new.open("wb") as out:
-            for chunk in answer.iter_bytes():
-                out.write(chunk)
-    new.replace(file)
+    if file.exists() and not zipfile.is_zipfile(file):
+        raise ExperimentError(f"{file} exists and is no archive of a map: name another file, or delete it")
+    with tempfile.TemporaryDirectory(dir=file.parent, prefix=f".{file.name}-") as folder:
+        new = Path(folder) / "archive.zip"
+        with open_store(data_dir) as store, store.stream("GET", f"/maps/{name}/export") as answer:
+            if answer.is_error:
+                answer.read()
+            answer.raise_for_status()
+            with new.open("wb") as out:
+                for chunk in answer.iter_bytes():
+                    out.write(chunk)
+                os.fsync(out.fileno())
+        new.replace(file)
     typer.echo(f"{name}: {file.stat().st_size} bytes in {file}")
 
 

@@ -4,6 +4,7 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from urllib.parse import quote
 
 from services.launcher.compose.compose_file import Service
 
@@ -114,9 +115,12 @@ def _mounts(volumes: Sequence[str], data_dir: Path) -> dict[str, Path]:
 
 
 def _local_value(value: str, hosts: Collection[str], mounts: Mapping[str, Path]) -> str:
-    """Point service host names ("tcp/router:7447") at loopback and volume paths at the data folder."""
+    """Point service host names ("tcp/router:7447") at loopback and volume paths at the data folder.
+
+    A path in a URL is written as URLs have it: a folder named "a?b" or "a%20b" is no other one.
+    """
     names = "|".join(re.escape(host) for host in hosts)
     value = re.sub(rf"(?<=[/@])(?:{names})(?=:\d)", "127.0.0.1", value)
     for target, folder in mounts.items():
-        value = value.replace(target, str(folder))
+        value = value.replace(target, quote(str(folder)) if "://" in value else str(folder))
     return value

@@ -1,5 +1,6 @@
 """The whole database as one file: copied while it is in use, and put back while it is not."""
 
+import fcntl
 import os
 import shutil
 import sqlite3
@@ -7,6 +8,7 @@ import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
+from typing import IO
 from urllib.parse import quote
 
 from services.map_store.errors import (
@@ -38,16 +40,20 @@ def file_of(url: str) -> Path:
 def back_up(source: Path, file: Path) -> int:
     """Copy the database in `source`, one moment of it, to `file`; returns how many maps it holds.
 
-    Others may read and write meanwhile. What is there already is replaced once the copy was checked.
+    Others may read and write meanwhile. A backup that is there already is replaced once the copy was checked.
 
     Raises:
         MissingError: no database there.
+        InvalidError: what is there already is no backup, or a database in use.
+        ConflictError: another backup to `file` is being made.
         CorruptError: it is damaged; the older backup stays.
         StorageFullError: no room for the copy.
     """
     if not source.exists():
         raise MissingError(f"no database {source}")
     with _new_beside(file) as new:
+        if file.exists():
+            _require_replaceable(file, source)
         with _open(source) as live, closing(sqlite3.connect(new)) as copy:
             live.backup(copy)
         found = _require_sound(new)
@@ -78,17 +84,58 @@ def put_back(file: Path, target: Path) -> Path | None:
 
 @contextmanager
 def _new_beside(file: Path) -> Iterator[Path]:
-    """A name for a file under construction, which is gone afterwards."""
+    """A name for a file under construction, which is gone afterwards and nobody else's meanwhile."""
     new = file.with_name(file.name + ".new")
-    new.unlink(missing_ok=True)
     try:
-        yield new
+        with _alone(new, file):
+            yield new
     except (sqlite3.Error, UnicodeDecodeError) as error:
         kind = StorageFullError if "full" in str(error) else CorruptError
         raise kind(f"{file}: {error}; nothing was changed") from error
-    finally:
-        for left in (new, Path(f"{new}-wal"), Path(f"{new}-shm"), Path(f"{new}-journal")):
-            left.unlink(missing_ok=True)
+
+
+@contextmanager
+def _alone(new: Path, file: Path) -> Iterator[None]:
+    """Hold the empty file `new` while the block runs; one that a killed process left is taken over.
+
+    Raises:
+        ConflictError: another process holds it.
+    """
+    busy = ConflictError(f"{file} is being written by another process: try again when that is done")
+    with new.open("ab") as held:
+        try:
+            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise busy from None
+        if not _is_at(held, new):
+            raise busy  # who held it has just put it in its place
+        held.truncate(0)
+        try:
+            yield
+        finally:
+            if _is_at(held, new):
+                for left in (Path(f"{new}-wal"), Path(f"{new}-shm"), Path(f"{new}-journal"), new):
+                    left.unlink(missing_ok=True)
+
+
+def _is_at(opened: IO[bytes], path: Path) -> bool:
+    """Whether an open file is the one of that name."""
+    try:
+        return os.path.samestat(os.fstat(opened.fileno()), path.stat())
+    except FileNotFoundError:
+        return False
+
+
+def _require_replaceable(file: Path, source: Path) -> None:
+    logs = [log for log in (Path(f"{file}-wal"), Path(f"{file}-shm")) if log.exists()]
+    if file.samefile(source) or logs:
+        raise InvalidError(f"{file} is a database in use, no backup: name another file")
+    try:
+        _require_maps(file)
+    except CorruptError as error:
+        raise InvalidError(
+            f"{file} exists and is no backup of maps: name another file, or delete it"
+        ) from error
 
 
 @contextmanager

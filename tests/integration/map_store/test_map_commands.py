@@ -84,3 +84,20 @@ def test_a_backup_is_put_back_while_nothing_runs(data_dir: Path, tmp_path: Path)
     assert sorted(opened(data_dir).graph("flat")[1].nodes) == [0, 1]
     with closing(sqlite3.connect(copy)) as connection:
         assert connection.execute("SELECT name FROM maps").fetchall() == [("flat",)]
+
+
+@pytest.mark.parametrize("name", ["data/maps/maps.sqlite3", "notes.txt"])
+def test_an_export_replaces_nothing_but_an_archive(data_dir: Path, tmp_path: Path, name: str):
+    """One slip made an archive of the database, and all maps were gone."""
+    (tmp_path / "notes.txt").write_text("mine")
+    before = (tmp_path / name).read_bytes()
+    refused = call("export", "flat", tmp_path / name)
+    assert isinstance(refused.exception, ExperimentError)
+    assert "is no archive of a map" in str(refused.exception)
+    assert (tmp_path / name).read_bytes() == before
+    archive = tmp_path / "flat.zip"
+    assert [call("export", "flat", archive).exit_code for _ in range(2)] == [0, 0], (
+        "one that is one is replaced"
+    )
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["data", "flat.zip", "notes.txt"]
+    assert data_dir.exists()

@@ -2,8 +2,11 @@
 
 from pathlib import Path
 
+import pytest
+
 from services.launcher.compose.compose_file import Service
 from services.launcher.compose.local import LocalMachine, local_process
+from services.map_store.integrity.backup import file_of
 
 MACHINE = LocalMachine("/venv/bin/python", Path("/data"))
 HOSTS = ("router", "map-store", "db")
@@ -31,6 +34,14 @@ def test_service_host_names_become_loopback_and_nothing_else_changes():
         "DB": "postgresql://user:secret@127.0.0.1:5432/router",
         "OTHER": "http://myrouter:1 router",
     }
+
+
+@pytest.mark.parametrize("name", ["q?mode=memory", "pct%20x", "a#b", "with space", "ümlaut"])
+def test_a_folder_of_any_name_is_itself_in_the_url_of_a_database(name):
+    machine = LocalMachine("python", Path("/data") / name)
+    fields = {"volumes": ["maps:/var/maps"], "environment": {"DB": "sqlite:////var/maps/m.sqlite3"}}
+    spec = local_process("a", Service.model_validate({"command": ("x",), **fields}), HOSTS, machine)
+    assert file_of(spec.environment["DB"]) == Path("/data") / name / "maps" / "m.sqlite3"
 
 
 def test_a_named_volume_becomes_a_data_folder():

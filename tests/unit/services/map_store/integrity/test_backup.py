@@ -1,6 +1,8 @@
 """Backups: taken while maps are written, checked before they replace anything, put back in one step."""
 
 import sqlite3
+import subprocess
+import sys
 from contextlib import closing
 from pathlib import Path
 from threading import Thread
@@ -47,6 +49,48 @@ def test_a_backup_is_one_moment_of_a_store_that_is_being_written(store: MapStore
     assert len(kept) >= 2
     assert len(store.graph("flat")[1].nodes) == 40
     assert not list(tmp_path.glob("*.new*"))
+
+
+def test_two_backups_to_one_file_at_once_leave_a_whole_one(store: MapStore, live: Path, tmp_path: Path):
+    """With one name for what both were writing, one told of success and left a database without maps."""
+    for number in range(2, 30):
+        store.transact("flat", [add(number)])
+    copy = tmp_path / "b.sqlite3"
+    assert back_up(live, copy) == 1
+    code = "import sys; from pathlib import Path; from services.map_store.integrity.backup import back_up\n"
+    code += "for _ in range(8):\n  try: print(back_up(Path(sys.argv[1]), Path(sys.argv[2])))\n"
+    code += "  except Exception as error: print(type(error).__name__)\n"
+    runs = [
+        subprocess.Popen(
+            [sys.executable, "-c", code, str(live), str(copy)], stdout=subprocess.PIPE, text=True
+        )
+        for _ in range(2)
+    ]
+    told = " ".join(run.communicate(timeout=150)[0] for run in runs).split()
+    assert set(told) <= {"1", "ConflictError"}
+    assert "1" in told
+    assert len(graph_in(copy)[0]) == 30
+    assert not list(tmp_path.glob("*.new*"))
+
+
+def test_what_a_killed_backup_left_is_taken_over(store: MapStore, live: Path, tmp_path: Path):
+    assert store
+    (tmp_path / "b.sqlite3.new").write_bytes(b"half of it")
+    assert back_up(live, tmp_path / "b.sqlite3") == 1
+    assert len(graph_in(tmp_path / "b.sqlite3")[0]) == 2
+
+
+@pytest.mark.parametrize("name", ["maps.sqlite3", "notes.txt", "other.sqlite3"])
+def test_nothing_but_a_backup_is_replaced_by_one(store: MapStore, live: Path, tmp_path: Path, name: str):
+    (tmp_path / "notes.txt").write_text("mine")
+    other = MapStore(Database(f"sqlite:///{tmp_path / 'other.sqlite3'}"), lambda: 0, lambda _: None)
+    other.create("theirs")
+    before = (tmp_path / name).read_bytes()
+    with pytest.raises(InvalidError, match="name another file"):
+        back_up(live, tmp_path / name)
+    assert (tmp_path / name).read_bytes() == before
+    assert len(store.graph("flat")[1].nodes) == 2
+    other.database.close()
 
 
 def test_a_damaged_database_does_not_replace_a_good_backup(store: MapStore, live: Path, tmp_path: Path):
