@@ -9,6 +9,8 @@ from shared.messages.base import Message, Name
 from shared.messages.sensors import Frame
 
 MAX_KEYPOINTS = 4096
+MAX_THUMBNAIL_BYTES = 200_000
+"""Chosen: ten times what the widest that settings allow takes."""
 
 
 class Features(Message):
@@ -31,7 +33,7 @@ class Features(Message):
     lonlat_rad: Annotated[Array, ArraySpec(("float32",), (None, 2), MAX_KEYPOINTS)]
     scores: Annotated[Array, ArraySpec(("float32",), (None,), MAX_KEYPOINTS)]
     descriptors: Annotated[Array, ArraySpec(("float32", "float16", "uint8"), (None, None), MAX_KEYPOINTS)]
-    thumbnail: bytes = Field(default=b"", max_length=200_000)
+    thumbnail: bytes = Field(default=b"", max_length=MAX_THUMBNAIL_BYTES)
     extract_ms: float = Field(default=0.0, ge=0.0)
 
     @model_validator(mode="after")

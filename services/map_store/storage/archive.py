@@ -3,6 +3,7 @@
 import zipfile
 import zlib
 from collections.abc import Callable
+from os import SEEK_END
 from typing import IO, Literal
 
 from pydantic import Field, ValidationError
@@ -13,15 +14,19 @@ from services.map_store.storage.contents import Kind
 from services.map_store.storage.graph import AddStoredNode, Graph, Step, StoredNode, apply
 from services.map_store.storage.zip_opening import open_zip
 from shared.messages.base import Name, Part
+from shared.messages.features import MAX_THUMBNAIL_BYTES
 from shared.messages.maps import Edge, PutEdge
+from shared.topics import FEATURES
 from shared.wire import MAX_CONTAINER
 
 INDEX = "map.json"
 BLOBS = "blobs/"
 MAX_INDEX_BYTES = 64_000_000
 """Twice what the largest map needs: MAX_CONTAINER nodes of 0.8 kB and as many edges of 0.6 kB."""
-MAX_BLOB_BYTES = 64_000_000
-"""The longest frame on the bus (`shared.topics.FRAME`): its features and its thumbnail are shorter."""
+MAX_UNPACKED = 4
+"""Times the length of the archive that its entries may have: ours are not packed, zip tools halve them."""
+SMALL_BYTES = 16_000_000
+"""Chosen: what any archive may unpack to; an index of many nodes packs well."""
 MAX_DIRECTORY_BYTES = 10_000_000
 """Twice what a map with as many nodes as the bus carries needs for their two blobs each."""
 EPOCH = (1980, 1, 1, 0, 0, 0)
@@ -72,14 +77,16 @@ class Archive:
 
     def __init__(self, file: IO[bytes], max_bytes: int) -> None:
         self._zip = open_zip(file, MAX_DIRECTORY_BYTES)
-        self._check_entries(max_bytes)
+        self._check_entries(min(max_bytes, max(SMALL_BYTES, MAX_UNPACKED * file.seek(0, SEEK_END))))
         self.index = self._read_index()
+        self._features = {node.features for node in self.index.places}
         self.steps = self._check_graph()
         self._check_blobs()
 
     def blob(self, sha256: str) -> bytes:
-        """Bytes of one blob."""
-        data = self._read(BLOBS + sha256, MAX_BLOB_BYTES)
+        """Bytes of one blob, no longer than the bus carries of its kind."""
+        most_bytes = FEATURES.max_bytes if sha256 in self._features else MAX_THUMBNAIL_BYTES
+        data = self._read(BLOBS + sha256, most_bytes)
         if checksum(data) != sha256:
             raise InvalidError(f"{BLOBS}{sha256[:12]}: does not match its checksum")
         return data
@@ -137,7 +144,7 @@ class Archive:
         return tuple(steps)
 
     def _check_blobs(self) -> None:
-        features = {node.features for node in self.index.places}
+        features = self._features
         thumbnails = {node.thumbnail for node in self.index.places if node.thumbnail}
         stored = {name.removeprefix(BLOBS) for name in self._zip.namelist() if name != INDEX}
         if stored != features | thumbnails:

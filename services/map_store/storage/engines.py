@@ -17,8 +17,9 @@ HUNG_AFTER_S = 20
 """Four times as long; then a server ends the transaction of a map store that hangs, and the others go on."""
 WRITER_LOCK = 0x746F706E
 """Name of the writers' lock on a server ("topn"): nobody else who uses the database shall take it."""
-PRAGMAS = ("synchronous=FULL", "foreign_keys=ON", "secure_delete=ON")
-"""For a file: what is acknowledged is on the disk, and what is deleted becomes zeros there."""
+PRAGMAS = ("synchronous=FULL", "foreign_keys=ON", "secure_delete=ON", "journal_size_limit=64000000")
+"""For a file: what is acknowledged is on the disk, what is deleted becomes zeros there, and the log of one
+long transaction does not keep its length for ever."""
 DRIVERS = {"postgresql": "postgresql+psycopg", "postgres": "postgresql+psycopg"}
 """URLs as operators and providers hand them out."""
 

@@ -243,3 +243,24 @@ def test_an_archive_longer_than_allowed_is_refused(client: TestClient):
         response = client.post("/maps/import", content=content)
         assert response.status_code == 413
         assert "at most 2000000 bytes" in response.json()["detail"]
+
+
+@pytest.mark.parametrize("length", [200_001, 1_500_000])
+def test_thumbnails_are_no_longer_than_the_bus_carries(client: TestClient, exported: bytes, length: int):
+    """24 of 60 MB each, packed into 6 MB, held up a mission for a minute and a half."""
+    entries = entries_of(exported)
+    index, picture = json.loads(entries["map.json"]), bytes(length)
+    old, index["places"][0]["thumbnail"] = index["places"][0]["thumbnail"], checksum(picture)
+    entries |= {"map.json": json.dumps(index).encode(), f"blobs/{checksum(picture)}": picture}
+    if old not in json.dumps(index):
+        del entries[f"blobs/{old}"]
+    refused = client.post("/maps/import?name=copy", content=zipped(entries, zipfile.ZIP_DEFLATED))
+    assert refused.status_code == 422
+    assert "at most 200000 bytes expected" in refused.json()["detail"]
+    assert [entry["name"] for entry in client.get("/maps").json()] == ["flat"]
+
+
+def test_an_archive_unpacks_to_a_few_times_its_length(exported: bytes):
+    packed = zipped(entries_of(exported) | {"blobs/" + "0" * 64: bytes(20_000_000)}, zipfile.ZIP_DEFLATED)
+    with pytest.raises(InvalidError, match="must unpack to at most 16000000 bytes"):
+        Archive(io.BytesIO(packed), 10**9)
