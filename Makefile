@@ -1,6 +1,6 @@
 # Everything runs from a bare clone: `setup` makes .venv and installs all that a run needs.
 #   make demo    explore the apartment, then find a hidden robot from its picture (KEEP=1 leaves it running)
-#   make test    every test but those of tests/faults      make check   lint, types, unit tests: a minute
+#   make test    every test but those of tests/faults      make check   lint, types, unit tests: two minutes
 #                (WORKERS=0: in one process)
 #   make faults  what dies, hangs, lies, floods or is cut off: deploy/FAULTS.md
 PYTHON ?= python3
@@ -40,7 +40,8 @@ faults: setup
 	$(BIN)/python -m pytest tests/faults $(PYTEST_ARGS)
 
 check: setup lint types
-	$(BIN)/python -m pytest tests/unit tests/test_architecture.py -m "not render and not slow" $(PYTEST_ARGS)
+	$(BIN)/python -m pytest -n $(WORKERS) tests/unit tests/test_architecture.py tests/test_rooms.py \
+		-m "not render and not slow" $(PYTEST_ARGS)
 
 lint: setup
 	$(BIN)/ruff check $(SOURCES)

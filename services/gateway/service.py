@@ -4,9 +4,10 @@ import resource
 import threading
 
 from services.gateway.app import create_app
+from services.gateway.routes.estop import STOP_PATH
 from services.gateway.settings import GatewaySettings
 from shared.bus import Bus
-from shared.web.connections import ConnectionLimits
+from shared.web.crowding import RESERVE, ConnectionLimits
 from shared.web.server import serving
 
 GRACE_S = 1
@@ -29,12 +30,14 @@ def run(settings: GatewaySettings, bus: Bus, stop: threading.Event) -> None:
     Raises:
         RuntimeError: the server did not start, for example because the port is taken, or ended by itself.
     """
-    _allow_files(settings.max_connections + OTHER_FILES)
+    _allow_files(settings.max_connections + RESERVE + settings.max_sockets + OTHER_FILES)
     limits = ConnectionLimits(
         header_s=settings.header_timeout_s,
         unread_s=UNREAD_S,
+        most=settings.max_connections,
         most_per_client=settings.max_connections_per_client,
         unlimited=settings.proxies,
+        always=STOP_PATH,
     )
     with serving(
         create_app(settings, bus),
@@ -47,7 +50,6 @@ def run(settings: GatewaySettings, bus: Bus, stop: threading.Event) -> None:
         ws="websockets-sansio",
         ws_max_size=MAX_SOCKET_MESSAGE_BYTES,
         ws_per_message_deflate=False,  # a compressor for each reader costs more than it saves
-        limit_concurrency=settings.max_connections,
         backlog=MAX_WAITING_CONNECTIONS,
         proxy_headers=bool(settings.proxies),
         forwarded_allow_ips=list(settings.proxies),

@@ -1,57 +1,41 @@
 """Connections that end when their sender stalls or may not come in: what uvicorn has no settings for.
 
 A connection must send the head of its next request within a time, whatever trickles in meanwhile; what is
-sent to it must be taken; one address has so many connections at most. A WebSocket leaves this when it begins.
+sent to it must be taken; there are so many connections at most. A WebSocket leaves this when it begins.
 """
 
 import asyncio
 import functools
 import logging
+import re
 import socket
 import ssl
-from collections import Counter
-from collections.abc import Collection
-from dataclasses import dataclass
 from typing import Any, cast
 
 import h11
+from starlette.responses import PlainTextResponse
+from starlette.types import ASGIApp, Receive, Scope, Send
 from uvicorn.protocols.http.h11_impl import H11Protocol
+
+from shared.web.crowding import Admission, ConnectionLimits, Crowd
 
 log = logging.getLogger(__name__)
 
+TOO_MANY = "too many connections: close some, or wait until they are\n"
+CLOSING = {"Connection": "close", "Retry-After": "5"}
 REFUSAL = (
-    b"HTTP/1.1 429 Too Many Requests\r\nConnection: close\r\nRetry-After: 5\r\n"
-    b"Content-Type: text/plain\r\nContent-Length: 33\r\n\r\ntoo many connections from one IP\n"
-)
-
-
-@dataclass(frozen=True)
-class ConnectionLimits:
-    """What one connection may do.
-
-    Attributes:
-        header_s: to the end of a request's head, from the connection's start or the last answer's end.
-        unread_s: how long what was sent may wait for the other side to take it.
-        most_per_client: connections of one address.
-        unlimited: addresses, for example of a proxy, that have no such limit.
-        admitted: common names of certificates, others are not even read; None: whoever connects.
-    """
-
-    header_s: float
-    unread_s: float
-    most_per_client: int
-    unlimited: Collection[str] = ()
-    admitted: Collection[str] | None = None
+    f"HTTP/1.1 429 Too Many Requests\r\nConnection: close\r\nRetry-After: 5\r\n"
+    f"Content-Type: text/plain\r\nContent-Length: {len(TOO_MANY)}\r\n\r\n{TOO_MANY}"
+).encode()
 
 
 class LimitedProtocol(H11Protocol):
-    """uvicorn's HTTP/1.1 with `ConnectionLimits`; `opened` counts the connections of each address."""
+    """uvicorn's HTTP/1.1 with `ConnectionLimits`, among the `crowd` of a server's connections."""
 
-    def __init__(self, limits: ConnectionLimits, opened: Counter[str], **options: Any) -> None:
+    def __init__(self, limits: ConnectionLimits, crowd: Crowd, **options: Any) -> None:
         super().__init__(**options)
-        self._limits, self._opened = limits, opened
+        self._limits, self._crowd = limits, crowd
         self._deadline: asyncio.TimerHandle | None = None
-        self._counted: str | None = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Let in who may come in, count the connection and start waiting for its first request."""
@@ -62,16 +46,14 @@ class LimitedProtocol(H11Protocol):
             return
         super().connection_made(transport)
         _limit_unread(transport, self._limits.unread_s)
-        self._await_head()
-        address = self.client[0] if self.client else ""
-        if address in self._limits.unlimited:
-            return
-        if self._opened[address] >= self._limits.most_per_client:
+        admission = self._crowd.admit(self, self.client[0] if self.client else "")
+        if admission is Admission.REFUSED:
             transport.write(REFUSAL)
             transport.close()
             return
-        self._opened[address] += 1
-        self._counted = address
+        if admission is Admission.RESERVED and self._limits.always is not None:
+            self.app = _only(self._limits.always, self.app)
+        self._await_head()
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Forget it; there is nothing to forget of those who never came in."""
@@ -87,6 +69,10 @@ class LimitedProtocol(H11Protocol):
         if self.cycle is not None and not self.cycle.response_complete:
             self._stop_waiting()
 
+    def evict(self) -> None:
+        """Make room for another."""
+        self._end()
+
     def handle_websocket_upgrade(self, event: h11.Request) -> None:
         """From here on the WebSocket's own limits hold."""
         self._release()
@@ -99,10 +85,12 @@ class LimitedProtocol(H11Protocol):
             self._await_head()
 
     def _await_head(self) -> None:
+        self._crowd.waits(self)
         if self._deadline is None:
             self._deadline = self.loop.call_later(self._limits.header_s, self._end)
 
     def _stop_waiting(self) -> None:
+        self._crowd.works(self)
         if self._deadline is not None:
             self._deadline.cancel()
             self._deadline = None
@@ -113,16 +101,23 @@ class LimitedProtocol(H11Protocol):
 
     def _release(self) -> None:
         self._stop_waiting()
-        if self._counted is not None:
-            self._opened[self._counted] -= 1
-            if not self._opened[self._counted]:
-                del self._opened[self._counted]
-            self._counted = None
+        self._crowd.forget(self)
 
 
 def limited_protocol(limits: ConnectionLimits) -> type[asyncio.Protocol]:
     """What to give uvicorn as `http`."""
-    return cast(type[asyncio.Protocol], functools.partial(LimitedProtocol, limits, Counter()))
+    return cast(type[asyncio.Protocol], functools.partial(LimitedProtocol, limits, Crowd(limits)))
+
+
+def _only(always: re.Pattern[str], app: ASGIApp) -> ASGIApp:
+    """The application for requests to some paths; others are refused."""
+
+    async def serve(scope: Scope, receive: Receive, send: Send) -> None:
+        allowed = scope["type"] == "http" and always.fullmatch(scope["path"]) is not None
+        answer = app if allowed else PlainTextResponse(TOO_MANY, 429, CLOSING)
+        await answer(scope, receive, send)
+
+    return serve
 
 
 def _common_name(connection: ssl.SSLObject | None) -> str:

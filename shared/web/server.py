@@ -12,7 +12,8 @@ from starlette.types import ASGIApp
 
 from shared.access.credentials import Credentials
 from shared.inbox import wait_until
-from shared.web.connections import ConnectionLimits, limited_protocol
+from shared.web.connections import limited_protocol
+from shared.web.crowding import ConnectionLimits
 
 log = logging.getLogger(__name__)
 

@@ -1,6 +1,5 @@
 """How often one client may write, upload and be wrong about a token; bounded in memory."""
 
-import ipaddress
 import math
 import time
 from collections import OrderedDict
@@ -10,12 +9,11 @@ from typing import Any
 from starlette.requests import HTTPConnection
 
 from services.gateway.settings import GatewaySettings
+from shared.web.crowding import client_of
 from shared.web.problems import ProblemError
 
 STOPS_PER_S, STOP_BURST = 5.0, 20
 """Of one robot, each passed on by itself: nobody presses faster. Others are coalesced, never refused."""
-V6_PREFIX = 64
-"""One customer's share of IPv6 (RFC 6177): its addresses count as one client."""
 MOST_KEYS = 4096
 """Clients remembered; the one heard of longest ago is forgotten, which at worst gives it a full bucket."""
 
@@ -102,14 +100,7 @@ class RateLimits:
 
 def address_of(connection: HTTPConnection) -> str:
     """Where a connection comes from; a network's name for IPv6."""
-    host = connection.client.host if connection.client else "unknown"
-    try:
-        address = ipaddress.ip_address(host)
-    except ValueError:
-        return host[:64]
-    if isinstance(address, ipaddress.IPv6Address) and address.ipv4_mapped is None and not address.is_loopback:
-        return str(ipaddress.ip_network((int(address), V6_PREFIX), strict=False))
-    return str(address)
+    return client_of(connection.client.host if connection.client else "unknown")
 
 
 def _forget_oldest(used: OrderedDict[Any, Any], key: object, most: int) -> None:

@@ -1,5 +1,6 @@
 """The emergency stop: anybody engages it, without a token; an operator who gives a name clears it."""
 
+import re
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
@@ -20,6 +21,8 @@ TIMEOUT_S = 2.0
 """Chosen: drive answers within one of its steps; a person waits no longer before they press again."""
 LONGEST_WHO, LONGEST_WHY = 64, 400
 """Characters, as `EStopRequest` has them."""
+STOP_PATH = re.compile(r"/api/robots/[^/]+/estop")
+"""Served however many connections there are."""
 BODY_S = 0.25
 """Chosen: a stop waits no longer for its reason, which usually comes with the head."""
 

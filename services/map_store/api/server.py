@@ -8,7 +8,7 @@ from fastapi import FastAPI
 from services.map_store.settings import MapStoreSettings
 from shared.access.credentials import credentials_in
 from shared.access.rules import Role
-from shared.web.connections import ConnectionLimits
+from shared.web.crowding import ConnectionLimits
 from shared.web.server import serving
 
 MAX_CONNECTIONS = 200
@@ -36,10 +36,9 @@ def serve(
         app,
         settings.host,
         settings.port,
-        ConnectionLimits(HEADER_S, UNREAD_S, MAX_CONNECTIONS, admitted=admitted),
+        ConnectionLimits(HEADER_S, UNREAD_S, MAX_CONNECTIONS, MAX_CONNECTIONS, admitted=admitted),
         stop=stop,
         grace_s=GRACE_S,
         credentials=credentials,
-        limit_concurrency=MAX_CONNECTIONS,
         backlog=MAX_WAITING_CONNECTIONS,
     )

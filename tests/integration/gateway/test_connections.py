@@ -111,17 +111,40 @@ def test_an_archive_that_stops_flowing_is_refused(impatient: str) -> None:
         assert b" 408 " in sender.recv(4096)
 
 
-def test_one_address_has_so_many_connections_and_others_are_served(narrow: str) -> None:
-    def room() -> bool:
-        with contextlib.suppress(httpx.HTTPError):
-            return served(narrow)
-        return False
+def test_whoever_says_nothing_makes_room_for_one_who_comes(narrow: str) -> None:
+    with contextlib.ExitStack() as stack:
+        idle = [stack.enter_context(contextlib.closing(opened(narrow))) for _ in range(PER_CLIENT)]
+        assert served(narrow), "from the same address"
+        idle[0].settimeout(MUST_END_S)
+        with contextlib.suppress(ConnectionError):
+            assert idle[0].recv(1) == b"", "the one that waited longest"
+        assert served(narrow, "127.0.0.2")
 
-    assert wait_until(room, MUST_END_S)
+
+def test_while_one_address_holds_all_it_may_busy_a_stop_is_heard_and_nothing_else(narrow: str) -> None:
+    """Requests whose bodies are on the way: nobody may end those."""
+    head = b"POST /api/maps HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
     with contextlib.ExitStack() as stack:
         for _ in range(PER_CLIENT):
-            stack.enter_context(contextlib.closing(opened(narrow)))
-        with contextlib.closing(opened(narrow)) as one_more:
-            assert one_more.recv(4096).startswith(b"HTTP/1.1 429 ")
+            sender = stack.enter_context(contextlib.closing(opened(narrow)))
+            sender.sendall(head + b"Content-Length: 100\r\n\r\n{")
+        assert wait_until(lambda: status(narrow, "GET", "/healthz") == 429, MUST_END_S)
+        assert status(narrow, "POST", "/api/robots/r1/estop") == 503, "heard: there is no drive service here"
         assert served(narrow, "127.0.0.2")
-    assert wait_until(room, MUST_END_S)
+
+
+def test_a_stop_is_heard_among_1250_connections_that_say_nothing(endpoint: str) -> None:
+    for address in serve_gateway(endpoint, header_timeout_s=120.0):
+        with contextlib.ExitStack() as stack:
+            for number in range(1250):
+                sender = stack.enter_context(contextlib.closing(opened(address, f"127.0.0.{2 + number % 5}")))
+                sender.sendall(b"POST /api/robots/r1/estop HTTP/1.1\r\nHost:")
+            codes = [status(address, "POST", "/api/robots/r1/estop") for _ in range(20)]
+            codes.append(status(address, "POST", "/api/robots/r1/estop", "127.0.0.2"))
+        assert codes == [503] * 21, "heard: there is no drive service here"
+
+
+def status(address: str, method: str, path: str, source: str = "127.0.0.1") -> int:
+    transport = httpx.HTTPTransport(local_address=source)
+    with httpx.Client(transport=transport, timeout=MUST_END_S) as client:
+        return client.request(method, address + path).status_code

@@ -12,11 +12,11 @@ from starlette.responses import PlainTextResponse
 from starlette.routing import Route
 
 from services.launcher.processes.free_ports import free_ports
-from shared.web.connections import ConnectionLimits
+from shared.web.crowding import ConnectionLimits
 from shared.web.server import serving
 
 HOST = "127.0.0.1"
-LIMITS = ConnectionLimits(header_s=30.0, unread_s=30.0, most_per_client=8)
+LIMITS = ConnectionLimits(header_s=30.0, unread_s=30.0, most=64, most_per_client=8)
 SLOW_S = 60.0
 
 
