@@ -16,7 +16,8 @@ from shared.access.credentials import Credentials, credentials_in
 from shared.inbox import Counters, Inbox, wait_until
 from shared.messages.base import Message
 from shared.queries import Request, Requests
-from shared.topics import Delivery, Query, Topic, alive_key
+from shared.topics import Delivery, Query, Topic
+from shared.transport.keys import alive_key
 from shared.transport.reconnection import PeerReconnection
 from shared.transport.session_config import client_config, peer_config
 from shared.wire import WireError, encode

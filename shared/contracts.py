@@ -12,7 +12,8 @@ from typing import Any
 from shared.messages import all_messages
 from shared.messages.base import SECTORS, Message
 from shared.queries import CODED, REASONS
-from shared.topics import NAME, QUERIES, TOPICS, Query, Topic
+from shared.topics import QUERIES, TOPICS, Query, Topic
+from shared.transport.keys import NAME
 
 FOLDER = Path("deploy/contracts")
 DIALECT = "https://json-schema.org/draft/2020-12/schema"

@@ -10,7 +10,8 @@ import zenoh
 
 from shared.inbox import Counters, queue_bytes
 from shared.messages.base import Message
-from shared.topics import NAME, Query
+from shared.topics import Query
+from shared.transport.keys import NAME
 from shared.wire import WireError, decode, encode
 
 Q = TypeVar("Q", bound=Message)

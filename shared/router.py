@@ -14,7 +14,7 @@ from shared.access.credentials import credentials_in
 from shared.access.rules import robot_names
 from shared.bus import Bus
 from shared.lifecycle import configure_logging, stop_on_signals
-from shared.transport.session_config import router_config, secured_router_config
+from shared.transport.router_config import router_config, secured_router_config
 
 log = logging.getLogger(__name__)
 

@@ -4,7 +4,8 @@ import os
 from pathlib import Path
 from typing import Any, Self
 
-from pydantic import BaseModel, field_validator
+from pydantic import BaseModel, ValidationError, field_validator
+from pydantic_core import ErrorDetails
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 NESTED = "__"
@@ -53,7 +54,20 @@ class ServiceSettings(BaseSettings):
             for field in ServiceSettings.model_fields
             if f"TOPNAV_{field.upper()}" in os.environ and f"{prefix}{field.upper()}" not in os.environ
         }
-        return cls(**shared)
+        try:
+            return cls(**shared)
+        except ValidationError as error:
+            raise ValueError("; ".join(_told(prefix, fault) for fault in error.errors())) from None
+
+
+def _told(prefix: str, fault: ErrorDetails) -> str:
+    """One fault under the name of its variable; what came is left out, as it may be a secret."""
+    why = str(fault["msg"]).removeprefix("Value error, ")
+    path = [str(part) for part in fault["loc"]]
+    if not path:
+        return why
+    shared = path[0] in ServiceSettings.model_fields and f"{prefix}{path[0].upper()}" not in os.environ
+    return f"{'TOPNAV_' if shared else prefix}{NESTED.join(path).upper()}: {why}"
 
 
 def _leads_somewhere(model: type[BaseModel], path: list[str]) -> bool:

@@ -6,7 +6,7 @@ import time
 import uuid
 
 from shared.bus import Bus
-from shared.topics import robot_key
+from shared.transport.keys import robot_key
 
 log = logging.getLogger(__name__)
 

@@ -1,18 +1,17 @@
 """Every key expression beside its message type and delivery policy."""
 
-import re
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Generic, TypeVar
 
 from shared.messages import drive, estop, features, maps, matching, missions, sensors, simulation
 from shared.messages.base import Message
+from shared.transport.keys import fill
 
 M = TypeVar("M", bound=Message)
 Q = TypeVar("Q", bound=Message)
 R = TypeVar("R", bound=Message)
 
-NAME = re.compile(r"[a-z0-9_-]{1,64}\Z")
 MB = 1_000_000
 
 
@@ -59,14 +58,6 @@ class Query(Generic[Q, R]):
         return fill(self.template, names)
 
 
-def fill(template: str, names: dict[str, str]) -> str:
-    """Put checked names into a key template."""
-    for label, name in names.items():
-        if name != "*" and not NAME.match(name):
-            raise ValueError(f"{label} must match [a-z0-9_-]{{1,64}}, got {name[:80]!r}")
-    return template.format(**names)
-
-
 FRAME = Topic("topnav/{robot}/frame", sensors.Frame, Delivery.DATA, 64 * MB)
 RANGES = Topic("topnav/{robot}/ranges", sensors.Ranges, Delivery.DATA, 10_000)
 FEATURES = Topic("topnav/{robot}/features", features.Features, Delivery.DATA, 8 * MB)
@@ -101,13 +92,3 @@ TOPICS: tuple[Topic[Any], ...] = tuple(
 QUERIES: tuple[Query[Any, Any], ...] = tuple(
     entry for entry in list(globals().values()) if isinstance(entry, Query)
 )
-
-
-def alive_key(service: str, instance: str) -> str:
-    """Liveliness key of one process; '*' as instance watches them all."""
-    return fill("topnav/alive/{service}/{instance}", {"service": service, "instance": instance})
-
-
-def robot_key(robot: str, holder: str) -> str:
-    """Liveliness key of a process that is robot `robot`; '*' as holder watches for all that say so."""
-    return fill("topnav/alive/robot/{robot}/{holder}", {"robot": robot, "holder": holder})

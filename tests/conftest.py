@@ -10,7 +10,7 @@ import zenoh
 
 from services.launcher.processes.free_ports import free_ports
 from shared.transport import session_config as bus_config
-from shared.transport.session_config import router_config
+from shared.transport.router_config import router_config
 from tests import patient
 from tests.postgres import PostgresServer, missing
 

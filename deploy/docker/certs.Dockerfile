@@ -2,13 +2,18 @@
 FROM python:3.11-slim-trixie
 
 WORKDIR /app
-COPY pyproject.toml constraints.txt README.md LICENSE ./
+COPY pyproject.toml constraints.txt LICENSE ./
+# The core is the same layer in every image. The README belongs to the package and not to what runs.
+RUN touch README.md && pip install --no-cache-dir --constraint constraints.txt .
 RUN pip install --no-cache-dir --constraint constraints.txt '.[certs]'
 
 COPY shared shared
+# Nothing is written at run time: every start would compile anew otherwise.
+RUN python -m compileall -q shared
 
 # An empty volume takes the owner of the folder it covers: all services run as the same user.
-RUN useradd --system --uid 10001 topnav \
+RUN groupadd --system --gid 10001 topnav \
+    && useradd --system --uid 10001 --gid 10001 topnav \
     && for one in authority router simulator features map_store planner drive \
         gateway recorder operator viewer; do install --directory --owner topnav --mode 700 "/certs/$one"; done
 USER topnav

@@ -2,14 +2,19 @@
 FROM python:3.11-slim-trixie
 
 WORKDIR /app
-COPY pyproject.toml constraints.txt README.md LICENSE ./
+COPY pyproject.toml constraints.txt LICENSE ./
+# The core is the same layer in every image. The README belongs to the package and not to what runs.
+RUN touch README.md && pip install --no-cache-dir --constraint constraints.txt .
 RUN pip install --no-cache-dir --constraint constraints.txt '.[drive]'
 
 COPY shared shared
 COPY services/__init__.py services/__init__.py
 COPY services/drive services/drive
+# Nothing is written at run time: every start would compile anew otherwise.
+RUN python -m compileall -q shared services
 
-RUN useradd --system --uid 10001 topnav \
+RUN groupadd --system --gid 10001 topnav \
+    && useradd --system --uid 10001 --gid 10001 topnav \
     && install --directory --owner topnav /var/lib/topnav/drive-state
 USER topnav
 # The root file system is read-only: caches go to the tmpfs.

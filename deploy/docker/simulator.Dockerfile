@@ -7,7 +7,9 @@ RUN apt-get update \
     && rm -rf /var/lib/apt/lists/*
 
 WORKDIR /app
-COPY pyproject.toml constraints.txt README.md LICENSE ./
+COPY pyproject.toml constraints.txt LICENSE ./
+# The core is the same layer in every image. The README belongs to the package and not to what runs.
+RUN touch README.md && pip install --no-cache-dir --constraint constraints.txt .
 COPY deploy/packaging/opencv-shim deploy/packaging/opencv-shim
 RUN pip install --no-cache-dir --constraint constraints.txt ./deploy/packaging/opencv-shim '.[simulator]'
 
@@ -16,7 +18,8 @@ COPY simulator simulator
 # Nothing is written at run time, so the bytecode is made here: every start would compile anew otherwise.
 RUN python -m compileall -q shared simulator
 
-RUN useradd --system --uid 10001 topnav \
+RUN groupadd --system --gid 10001 topnav \
+    && useradd --system --uid 10001 --gid 10001 topnav \
     && install --directory --owner topnav /var/lib/topnav/simulator-cache /var/lib/topnav/robot-state
 USER topnav
 # The root file system is read-only: caches go to the tmpfs.

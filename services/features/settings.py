@@ -10,7 +10,7 @@ from services.features.pipeline.interfaces import Profile, Runtime
 from services.features.pipeline.named_pipelines import find_profile
 from shared.access.credentials import credentials_in
 from shared.settings import ServiceSettings
-from shared.topics import NAME
+from shared.transport.keys import NAME
 
 
 class FeaturesSettings(ServiceSettings):

@@ -11,7 +11,7 @@ from shared.lifecycle import run_service
 def main() -> int:
     """Run until told to stop; 2 when the settings are wrong."""
     try:
-        settings = GatewaySettings.from_environment()
+        settings = GatewaySettings.from_environment().with_kept_secret()
         ValidTokens.chosen(settings)
     except ValueError as error:
         sys.stderr.write(f"gateway: {error}\n")

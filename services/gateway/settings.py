@@ -1,14 +1,17 @@
 """Settings of the gateway, read from GATEWAY_*."""
 
+import logging
 from pathlib import Path
 from typing import Self
 
 from pydantic import Field, HttpUrl, SecretStr, field_validator, model_validator
 from pydantic_settings import SettingsConfigDict
 
-from shared.access.tokens import check_chosen
+from shared.access.tokens import check_chosen, kept_secret
 from shared.settings import ServiceSettings
 from shared.web.origins import is_loopback
+
+log = logging.getLogger(__name__)
 
 MB = 1_000_000
 
@@ -21,6 +24,8 @@ class GatewaySettings(ServiceSettings):
         map_store_url: where the map store's REST interface is.
         map_store_token: secret of the map store, if it asks for one.
         token: secret of the one admin token without a name, sent as `Authorization: Bearer`; empty for none.
+        token_file: where a secret is kept that is made when it is missing, for reachable addresses without
+            `token` and `tokens_file`, and for a map store that keeps its own there.
         tokens_file: tokens with names and roles, made by `topnav token add`; read again when it changes.
         guard_reading: reading needs a token, too; unset: off loopback only.
         estop_needs_token: engaging the emergency stop asks for a token (any role); off: anybody may stop.
@@ -59,6 +64,7 @@ class GatewaySettings(ServiceSettings):
     map_store_url: HttpUrl = HttpUrl("http://127.0.0.1:8001")
     map_store_token: SecretStr = SecretStr("")
     token: SecretStr = SecretStr("")
+    token_file: Path | None = None
     tokens_file: Path | None = None
     guard_reading: bool | None = None
     estop_needs_token: bool = False
@@ -94,7 +100,7 @@ class GatewaySettings(ServiceSettings):
     runs_dir: Path = Path("data/runs")
     required_services: tuple[str, ...] = ("features", "map_store", "planner", "drive")
 
-    @field_validator("tokens_file", mode="before")
+    @field_validator("token_file", "tokens_file", mode="before")
     @classmethod
     def _empty_is_none(cls, path: object) -> object:
         return None if path == "" else path  # a variable that Compose passes on without a value
@@ -106,13 +112,31 @@ class GatewaySettings(ServiceSettings):
             return self
         if secret:
             check_chosen(secret, "GATEWAY_TOKEN")
-        elif self.tokens_file is None:
+        elif self.tokens_file is None and self.token_file is None:
             raise ValueError(
                 f"GATEWAY_HOST {self.host} is reachable from other machines and GATEWAY_TOKEN is empty: "
                 "set a token or GATEWAY_TOKENS_FILE, serve on 127.0.0.1, or let anyone drive the robot "
                 "with GATEWAY_ALLOW_OPEN=true"
             )
         return self
+
+    def with_kept_secret(self) -> Self:
+        """With the secrets that nobody chose taken from `token_file`, which is made where it is missing.
+
+        Raises:
+            ValueError: it cannot be.
+        """
+        if self.loopback or self.token_file is None:
+            return self
+        secret, chosen = SecretStr(kept_secret(self.token_file)), {}
+        if not self.token.get_secret_value() and self.tokens_file is None:
+            chosen["token"] = secret
+            log.warning(
+                "no TOPNAV_TOKEN was set: the admin's secret is in %s of this service", self.token_file
+            )
+        if not self.map_store_token.get_secret_value():
+            chosen["map_store_token"] = secret
+        return self.model_copy(update=chosen)
 
     @property
     def loopback(self) -> bool:

@@ -26,7 +26,7 @@ NAME = "map_store"
 def main() -> None:
     """Run until a signal comes; exits with 2 and one line when the settings are wrong."""
     try:
-        settings = MapStoreSettings.from_environment()
+        settings = MapStoreSettings.from_environment().with_kept_secret()
     except ValueError as error:
         sys.stderr.write(f"map_store: {error}\n")
         sys.exit(2)

@@ -1,12 +1,13 @@
 """Settings of the map store."""
 
+from pathlib import Path
 from typing import Self
 
-from pydantic import Field, SecretStr, model_validator
+from pydantic import Field, SecretStr, field_validator, model_validator
 from pydantic_settings import SettingsConfigDict
 
 from shared.access.credentials import credentials_in
-from shared.access.tokens import check_chosen
+from shared.access.tokens import check_chosen, kept_secret
 from shared.settings import ServiceSettings
 from shared.web.origins import is_loopback
 
@@ -18,6 +19,8 @@ class MapStoreSettings(ServiceSettings):
         database_url: sqlite:///relative/file, sqlite:////absolute/file or postgresql://user:password@host/database.
         host, port: where REST listens; port 0 takes any free one.
         token: bearer token that writes over REST need, off loopback reading as well; empty = none.
+        token_file: where a secret is kept that is made when it is missing, for reachable addresses without
+            `token`.
         allow_open: listen on a reachable address without a token all the same, as in a network of
             containers of which no port is published.
         max_archive_bytes: largest archive that may be imported, packed and unpacked.
@@ -30,6 +33,7 @@ class MapStoreSettings(ServiceSettings):
     host: str = "127.0.0.1"
     port: int = Field(default=8001, ge=0, le=65_535)
     token: SecretStr = SecretStr("")
+    token_file: Path | None = None
     allow_open: bool = False
     max_archive_bytes: int = Field(default=4_000_000_000, ge=1)
     compute_timeout_s: float = Field(default=20.0, gt=0.0)
@@ -39,6 +43,8 @@ class MapStoreSettings(ServiceSettings):
         secret = self.token.get_secret_value()
         if self.loopback or self.allow_open or credentials_in(self.certs) is not None:
             return self
+        if not secret and self.token_file is not None:
+            return self
         if not secret:
             raise ValueError(
                 f"MAP_STORE_HOST {self.host} is reachable from other machines and MAP_STORE_TOKEN is empty: "
@@ -47,6 +53,21 @@ class MapStoreSettings(ServiceSettings):
             )
         check_chosen(secret, "MAP_STORE_TOKEN")
         return self
+
+    @field_validator("token_file", mode="before")
+    @classmethod
+    def _empty_is_none(cls, path: object) -> object:
+        return None if path == "" else path
+
+    def with_kept_secret(self) -> Self:
+        """With the secret of `token_file` where one is needed and none was chosen.
+
+        Raises:
+            ValueError: it can be neither read nor made.
+        """
+        if self.loopback or self.token_file is None or self.token.get_secret_value():
+            return self
+        return self.model_copy(update={"token": SecretStr(kept_secret(self.token_file))})
 
     @property
     def loopback(self) -> bool:

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from shared.access.rules import BODIES, QUESTIONS, STREAMS, Role
-from shared.topics import Delivery, Query, Topic, alive_key, robot_key
+from shared.topics import Delivery, Query, Topic
+from shared.transport.keys import alive_key, robot_key
 
 IN, OUT = "ingress", "egress"
 """Seen from the router: from a client, to a client."""

@@ -9,7 +9,8 @@ from enum import Enum
 from typing import Any
 
 from shared import topics
-from shared.topics import NAME, Query, Topic
+from shared.topics import Query, Topic
+from shared.transport.keys import NAME
 
 
 class Role(Enum):

@@ -6,6 +6,7 @@ import os
 import secrets
 import tempfile
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Literal, Self, get_args
 
@@ -86,13 +87,38 @@ def check_chosen(secret: str, variable: str) -> None:
     """Refuse a secret that anybody would try first.
 
     Raises:
-        ValueError: it is an example's placeholder or short.
+        ValueError: it is an example's placeholder, short, or has signs of a line that was read wrongly, such
+            as a comment.
     """
-    if secret.lower() in PLACEHOLDERS or len(secret) < SHORTEST:
+    if secret.lower() in PLACEHOLDERS or len(secret) < SHORTEST or set(secret) & set("# \t\"'"):
         raise ValueError(
             f"{variable} must be a secret of at least {SHORTEST} characters and none from an example, "
-            f"got {len(secret)} characters: make one with 'openssl rand -hex 32'"
+            f"without spaces, quotes and #, got {len(secret)} characters: "
+            "make one with 'openssl rand -hex 32'"
         )
+
+
+def kept_secret(path: Path) -> str:
+    """The secret in a file, made when it is first asked for; of several who ask at once all get the same.
+
+    Raises:
+        ValueError: the file cannot be made or read, or holds no such secret.
+    """
+    try:
+        if not path.exists():
+            handle, new = tempfile.mkstemp(dir=path.parent)
+            with os.fdopen(handle, "w", encoding="ascii") as file:
+                file.write(secrets.token_hex(SECRET_BYTES))
+                file.flush()
+                os.fsync(file.fileno())
+            with suppress(FileExistsError):
+                os.link(new, path)
+            Path(new).unlink()
+        secret = path.read_text(encoding="ascii").strip()
+    except (OSError, UnicodeDecodeError) as error:
+        raise ValueError(f"the secret in {path} cannot be made or read: {error}") from error
+    check_chosen(secret, str(path))
+    return secret
 
 
 def read_tokens(path: Path) -> tuple[Token, ...]:

@@ -7,7 +7,7 @@ from cryptography import x509
 from cryptography.x509.oid import NameOID
 
 from shared.access.rules import Role
-from shared.topics import NAME
+from shared.transport.keys import NAME
 
 AUTHORITY = "authority"
 """Folder of the private key that signs all others. No service ever needs it: keep it off the robot."""

@@ -8,7 +8,7 @@ from typing import Any
 import zenoh
 
 from shared.access.credentials import FILES, Credentials
-from shared.transport.session_config import secured_router_config
+from shared.transport.router_config import secured_router_config
 
 PATH = Path("deploy/zenoh/router-secure.json5")
 CERTS = Path("/run/topnav/certs")

@@ -5,12 +5,10 @@ nothing goes around the router: it alone listens, and it enforces the access rul
 """
 
 import json
-from collections.abc import Sequence
 
 import zenoh
 
 from shared.access.credentials import Credentials, CredentialsError, secured_endpoint
-from shared.access.router_policy import access_control
 
 LEASE_MS = 2000
 """A hung process is declared gone after this; a killed one at once."""
@@ -32,20 +30,7 @@ def peer_config(endpoint: str, listen: str = "tcp/127.0.0.1:0") -> zenoh.Config:
         raise CredentialsError(
             f"{endpoint} is a secured bus: set TOPNAV_CERTS to a folder of 'topnav certs', got none"
         )
-    return _config("peer", [listen], [endpoint], {"scouting/gossip/autoconnect_strategy": ONE_DIALS})
-
-
-def router_config(listen: str) -> zenoh.Config:
-    """Settings of the router, which introduces the peers to each other.
-
-    Raises:
-        CredentialsError: as for `peer_config`.
-    """
-    if listen.startswith("tls/"):
-        raise CredentialsError(
-            f"{listen} is to be secured: set TOPNAV_CERTS to a folder of 'topnav certs', got none"
-        )
-    return _config("router", [listen], [])
+    return session_config("peer", [listen], [endpoint], {"scouting/gossip/autoconnect_strategy": ONE_DIALS})
 
 
 def client_config(endpoint: str, credentials: Credentials) -> zenoh.Config:
@@ -58,33 +43,20 @@ def client_config(endpoint: str, credentials: Credentials) -> zenoh.Config:
         "verify_name_on_connect": True,
     }
     closed = {"scouting/gossip/enabled": False, "transport/link/tls": tls, "connect/timeout_ms": JOIN_MS}
-    return _config("client", [], [secured_endpoint(endpoint)], closed)
+    return session_config("client", [], [secured_endpoint(endpoint)], closed)
 
 
-def secured_router_config(listen: str, credentials: Credentials, robots: Sequence[str]) -> zenoh.Config:
-    """Settings of the router that lets in who has a certificate, and lets pass what the table allows.
-
-    Raises:
-        ValueError: `robots` has no name or a bad one.
-    """
-    tls = {
-        "root_ca_certificate": str(credentials.authority),
-        "listen_certificate": str(credentials.certificate),
-        "listen_private_key": str(credentials.key),
-        "enable_mtls": True,
-        "close_link_on_expiration": True,
-    }
-    closed = {
-        "scouting/gossip/enabled": False,
-        "transport/link/tls": tls,
-        "access_control": access_control(robots),
-    }
-    return _config("router", [secured_endpoint(listen)], [], closed)
+def looker_config(endpoint: str) -> zenoh.Config:
+    """Settings of who looks at the open bus for a moment: a client that does not wait long for the router."""
+    return session_config(
+        "client", [], [endpoint], {"scouting/gossip/enabled": False, "connect/timeout_ms": 2_000}
+    )
 
 
-def _config(
+def session_config(
     mode: str, listen: list[str], connect: list[str], more: dict[str, object] | None = None
 ) -> zenoh.Config:
+    """What all sessions have in common, and `more` by path."""
     config = zenoh.Config()
     settings: dict[str, object] = {
         "mode": mode,

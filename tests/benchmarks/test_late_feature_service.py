@@ -20,7 +20,7 @@ from shared.messages.features import Features
 from shared.messages.maps import AddNode, MapRequest, Node
 from shared.messages.matching import MatchRequest
 from shared.topics import MAP, MATCH
-from shared.transport.session_config import router_config
+from shared.transport.router_config import router_config
 from tests.integration.gateway.conftest import free_port
 from tests.integration.map_store.conftest import START_S, Process
 

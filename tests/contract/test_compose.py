@@ -41,6 +41,8 @@ def schema(repository):
     depends_on = schema["definitions"]["service"]["properties"]["depends_on"]["oneOf"][1]
     (need,) = depends_on["patternProperties"].values()
     need["properties"]["required"] = {"type": "boolean"}
+    # The same of 2.21 and `start_interval`.
+    schema["definitions"]["healthcheck"]["properties"]["start_interval"] = {"type": "string"}
     return schema
 
 
@@ -204,11 +206,28 @@ def test_choices_reach_the_services(specs):
     assert specs["router"].environment["TOPNAV_ROUTER_LISTEN"] == "tcp/127.0.0.1:17447"
 
 
-def test_docker_publishes_the_gateway_only_and_only_on_loopback_and_requires_a_secret():
+def test_docker_publishes_the_gateway_only_and_only_on_loopback_and_needs_nothing_to_start():
     assert [name for name, service in SERVICES.items() if "ports" in service] == ["gateway"]
     assert SERVICES["gateway"]["ports"][0].startswith("${TOPNAV_PUBLISH:-127.0.0.1}:")
-    with pytest.raises(ValueError, match="TOPNAV_TOKEN is not set"):
-        load_compose(COMPOSE_FILE, {})
+    services = load_compose(COMPOSE_FILE, {}).services
+    gateway, map_store = services["gateway"].environment, services["map-store"].environment
+    assert gateway["GATEWAY_TOKEN"] == map_store["MAP_STORE_TOKEN"] == ""
+    assert gateway["GATEWAY_TOKEN_FILE"] == map_store["MAP_STORE_TOKEN_FILE"], "made at the first start"
+
+
+def test_the_example_means_to_docker_compose_what_it_means_to_the_launcher(repository):
+    """Compose takes all that follows a sign of equality, and more of it than python-dotenv does."""
+    for line in (repository / ".env.example").read_text(encoding="utf-8").splitlines():
+        assert not line or line.startswith("#") or re.fullmatch(r"\w+=[\w.,:/-]*", line), line
+
+
+@pytest.mark.parametrize("name", ["learned", "gpu"])
+def test_networks_are_installed_where_an_overlay_asks_for_them(schema, repository, name):
+    overlay = yaml.safe_load((repository / f"deploy/compose.{name}.yml").read_text(encoding="utf-8"))
+    assert list(Draft201909Validator(schema).iter_errors(overlay)) == []
+    ((service, features),) = overlay["services"].items()
+    assert (service, features["build"]["args"]["LEARNED"]) == ("features", "1")
+    assert features["image"] != SERVICES["features"]["image"]
 
 
 def test_the_example_environment_names_what_the_file_reads(repository):
@@ -223,7 +242,11 @@ def test_each_image_installs_one_extra_and_carries_one_services_code(name, repos
     build = SERVICES[name]["build"]
     text = (repository / build["dockerfile"]).read_text(encoding="utf-8")
     assert "FROM python:3.11-slim-trixie" in text
-    extras = {"router": [], "map-store": ["map-store,postgres"]}.get(name, [name])
+    extras = {
+        "router": [],
+        "map-store": ["map-store,postgres"],
+        "features": ["features", "learned"],  # the second where it is asked for
+    }.get(name, [name])
     assert re.findall(r"\.\[([\w,-]+)\]", text) == extras
     assert "ENTRYPOINT" not in text
     assert "CMD" not in text

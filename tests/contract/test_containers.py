@@ -63,7 +63,7 @@ def test_an_image_runs_as_a_user_of_its_own_who_owns_no_code(path: Path) -> None
     lines = instructions(path)
     users = [line for line in lines if line.startswith("USER")]
     assert users == ["USER topnav"]
-    assert any("useradd --system --uid 10001 topnav" in line for line in lines)
+    assert any("useradd --system --uid 10001 --gid 10001 topnav" in line for line in lines)
     after = lines[lines.index("USER topnav") + 1 :]
     assert all(line.startswith("ENV") for line in after), after
     assert not any("--chown" in line or "chmod" in line for line in lines)
@@ -111,6 +111,26 @@ def test_large_temporary_files_are_kept_on_the_volume(name: str) -> None:
     folder = re.search(r"TMPDIR=(\S+)", text)
     assert folder is not None
     assert folder[1] in writable(SERVICES[name])
+
+
+@pytest.mark.parametrize("path", DOCKERFILES, ids=lambda path: path.stem)
+def test_the_core_is_one_layer_for_all_and_no_page_is_part_of_an_image(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    core = "RUN touch README.md && pip install --no-cache-dir --constraint constraints.txt .\n"
+    assert core in text
+    assert "COPY pyproject.toml constraints.txt LICENSE ./" in text
+    assert "compileall" in text, "nothing can be compiled at run time"
+
+
+def test_no_image_of_a_stranger_is_taken_for_ours() -> None:
+    assert {service["pull_policy"] for service in SERVICES.values()} == {"build"}
+
+
+def test_all_health_checks_together_take_a_twentieth_of_a_core() -> None:
+    """One takes 0.07 s of processor time (`tests/unit/shared/test_health.py`)."""
+    checks = [service["healthcheck"] for service in SERVICES.values() if "healthcheck" in service]
+    assert sum(0.07 / float(check["interval"].removesuffix("s")) for check in checks) <= 0.05
+    assert all(check["start_interval"] == "1s" for check in checks), "and a start is noticed at once"
 
 
 def test_only_what_images_copy_reaches_the_builder() -> None:

@@ -2,8 +2,8 @@
 
 import zenoh
 
+from shared.transport.router_config import router_config
 from shared.transport.router_file import router_config_of_the_file, router_file
-from shared.transport.session_config import router_config
 
 
 def test_the_file_for_a_stock_router_says_what_ours_does(repository):

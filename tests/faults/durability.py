@@ -15,7 +15,7 @@ from typing import Any
 import zenoh
 
 from services.launcher.processes.free_ports import free_ports
-from shared.transport.session_config import router_config
+from shared.transport.router_config import router_config
 from tests.faults.flips import figures, flips
 from tests.faults.kills import Report, kill_often
 

@@ -22,7 +22,7 @@ import zenoh
 
 from services.launcher.processes.free_ports import free_ports
 from shared.bus import open_bus, wait_until
-from shared.transport.session_config import router_config
+from shared.transport.router_config import router_config
 
 PEERS = 7
 CAMERA_BYTES, CAMERA_PERIOD_S = 1_500_000, 0.15

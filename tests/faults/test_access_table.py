@@ -17,7 +17,7 @@ from shared.access.rules import QUESTIONS, STREAMS, Role
 from shared.bus import wait_until
 from shared.certificates.holders import Holder, another_robot
 from shared.certificates.issuing import make
-from shared.topics import alive_key, robot_key
+from shared.transport.keys import alive_key, robot_key
 from shared.transport.session_config import client_config
 from tests.faults.secured import SecuredBus
 

@@ -15,8 +15,9 @@ from shared.access.credentials import FILES, Credentials, credentials_in
 from shared.bus import UnreachableError, open_bus
 from shared.certificates.holders import everyone
 from shared.certificates.issuing import make
-from shared.topics import alive_key
-from shared.transport.session_config import client_config, peer_config, secured_router_config
+from shared.transport.keys import alive_key
+from shared.transport.router_config import secured_router_config
+from shared.transport.session_config import client_config, peer_config
 from tests.faults.secured import SecuredBus
 
 pytestmark = [pytest.mark.timeout(600)]

@@ -9,7 +9,8 @@ from typing import Any
 from services.gateway.live.hub import Hub
 from shared.bus import Bus
 from shared.messages.base import Message
-from shared.topics import COMMAND, ESTOP_STATE, EVENT, FRAME, HEADING, NAME, RANGES, STATUS, TRUTH, Topic
+from shared.topics import COMMAND, ESTOP_STATE, EVENT, FRAME, HEADING, RANGES, STATUS, TRUTH, Topic
+from shared.transport.keys import NAME
 
 PERIOD_S = 0.25
 """Chosen: the bus wakes the thread for whatever it carries; this is for what does not."""

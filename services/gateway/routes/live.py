@@ -10,7 +10,7 @@ from services.gateway.http.problems import counted
 from services.gateway.http.rates import address_of
 from services.gateway.live.outbox import Outbox
 from services.gateway.state import Gateway, gateway_of
-from shared.topics import NAME
+from shared.transport.keys import NAME
 from shared.web.problems import ProblemError
 
 router = APIRouter(tags=["live"])

@@ -9,7 +9,7 @@ from services.launcher.client.failure import ExperimentError
 from services.launcher.processes.supervisor import Launcher
 from services.launcher.terminal.output import wide_console
 from shared.bus import Bus, open_bus, wait_until
-from shared.topics import NAME
+from shared.transport.keys import NAME
 
 VIEWERS = ("map-store", "gateway")
 SPEAKERS = {"simulator", "planner", "drive", "features"}

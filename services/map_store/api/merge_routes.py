@@ -13,7 +13,7 @@ from services.map_store.merging.merge import Merge, ReadMap
 from services.map_store.merging.merges import Merges
 from services.map_store.merging.progress import MergeAnswer
 from services.map_store.store import MapStore
-from shared.topics import NAME
+from shared.transport.keys import NAME
 
 UNSIGNED = "gateway"
 """Who stands in the history where a request does not say: merges are asked for through the gateway."""

@@ -10,7 +10,7 @@ from services.map_store.errors import ConflictError, CorruptError, InvalidError,
 from services.map_store.integrity.seals import intact, sealed
 from services.map_store.storage import blobs
 from services.map_store.storage.tables import edges, maps, nodes, revisions
-from shared.topics import NAME
+from shared.transport.keys import NAME
 
 LISTED = 20
 """Names in an error: with their longest it still fits the 1000 characters of a problem's detail."""

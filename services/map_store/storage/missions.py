@@ -11,7 +11,8 @@ from services.map_store.storage.blobs import checksum
 from services.map_store.storage.database import Database
 from services.map_store.storage.tables import missions
 from shared.messages.maps import MissionRecord
-from shared.topics import MISSION_RECORD, NAME
+from shared.topics import MISSION_RECORD
+from shared.transport.keys import NAME
 from shared.wire import WireError, decode, encode
 
 log = logging.getLogger(__name__)

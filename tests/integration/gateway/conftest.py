@@ -14,7 +14,7 @@ from services.gateway.routes import estop
 from services.gateway.service import run
 from services.gateway.settings import GatewaySettings
 from shared.bus import Bus, open_bus, wait_until
-from shared.transport.session_config import router_config
+from shared.transport.router_config import router_config
 from tests.integration.gateway.corpus import saved
 from tests.integration.gateway.gateway_process import (
     ASK_S,

@@ -20,7 +20,7 @@ from shared.bus import Bus, open_bus, wait_until
 from shared.messages.maps import AddNode, MapDelta, MapReply, MapRequest
 from shared.queries import QueryError, RefusedError
 from shared.topics import MAP, MAP_DELTA, MAP_READ
-from shared.transport.session_config import router_config
+from shared.transport.router_config import router_config
 from tests.integration.map_store.conftest import START_S, Process
 from tests.postgres import PostgresServer
 from tests.unit.services.map_store.conftest import add

@@ -18,7 +18,7 @@ from shared.messages.maps import MapDelta, MapReply, MapRequest
 from shared.messages.missions import Event, MissionStatus
 from shared.queries import AbsentError, RefusedError, Requests, TimedOutError
 from shared.topics import COMMAND, EVENT, MAP, MAP_DELTA, STATUS
-from shared.transport.session_config import router_config
+from shared.transport.router_config import router_config
 from shared.wire import WireError
 
 SOON_S = 30.0

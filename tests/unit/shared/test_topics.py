@@ -2,7 +2,8 @@
 
 import pytest
 
-from shared.topics import COMMAND, FRAME, MAP, QUERIES, TOPICS, alive_key
+from shared.topics import COMMAND, FRAME, MAP, QUERIES, TOPICS
+from shared.transport.keys import alive_key
 
 
 def test_a_key_is_its_template_with_the_names_in_place():

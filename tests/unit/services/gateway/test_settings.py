@@ -1,9 +1,13 @@
 """Settings that would open the robot to the network are refused."""
 
+from pathlib import Path
+
 import pytest
-from pydantic import ValidationError
+from pydantic import SecretStr, ValidationError
 
 from services.gateway.settings import GatewaySettings
+from services.map_store.settings import MapStoreSettings
+from shared.settings import ServiceSettings
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "192.168.1.5", "::", "robot.lan"])
@@ -54,3 +58,40 @@ def test_the_environment_is_read_and_misspelt_names_are_errors(monkeypatch: pyte
 
 def test_the_token_does_not_show_in_logs() -> None:
     assert "secret" not in repr(GatewaySettings(token="secret"))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("settings", "prefix"), [(GatewaySettings, "GATEWAY_"), (MapStoreSettings, "MAP_STORE_")]
+)
+def test_a_refused_secret_stands_in_no_log(
+    monkeypatch: pytest.MonkeyPatch, settings: type[ServiceSettings], prefix: str
+) -> None:
+    monkeypatch.setenv(f"{prefix}HOST", "0.0.0.0")
+    monkeypatch.setenv(f"{prefix}TOKEN", "hunter2hunter2")
+    with pytest.raises(ValueError, match=f"{prefix}TOKEN must be a secret of at least 16") as refused:
+        settings.from_environment()
+    assert "hunter2" not in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_without_a_secret_one_is_made_that_gateway_and_map_store_share(tmp_path: Path) -> None:
+    file = tmp_path / "token"
+    gateway = GatewaySettings(host="0.0.0.0", token_file=file).with_kept_secret()
+    store = MapStoreSettings(host="0.0.0.0", token_file=file).with_kept_secret()
+    secret = file.read_text()
+    assert {gateway.token.get_secret_value(), gateway.map_store_token.get_secret_value()} == {secret}
+    assert store.token.get_secret_value() == secret
+
+
+def test_a_secret_that_was_chosen_stays_and_on_loopback_none_is_made(tmp_path: Path) -> None:
+    file, chosen = tmp_path / "token", SecretStr("3f" * 16)
+    gateway = GatewaySettings(host="0.0.0.0", token=chosen, map_store_token=chosen, token_file=file)
+    assert gateway.with_kept_secret().token == gateway.with_kept_secret().map_store_token == chosen
+    assert MapStoreSettings(host="0.0.0.0", token=chosen, token_file=file).with_kept_secret().token == chosen
+    named = GatewaySettings(host="0.0.0.0", tokens_file=tmp_path / "tokens.json", token_file=file)
+    assert named.with_kept_secret().token.get_secret_value() == "", (
+        "the tokens with names are those that count"
+    )
+    file.unlink()
+    assert GatewaySettings(token_file=file).with_kept_secret().token.get_secret_value() == ""
+    assert not file.exists()

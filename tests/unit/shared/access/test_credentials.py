@@ -9,7 +9,8 @@ from shared.access.credentials import CredentialsError, credentials_in, secured_
 from shared.certificates.holders import everyone
 from shared.certificates.issuing import make
 from shared.settings import ServiceSettings
-from shared.transport.session_config import peer_config, router_config
+from shared.transport.router_config import router_config
+from shared.transport.session_config import peer_config
 
 
 @pytest.fixture

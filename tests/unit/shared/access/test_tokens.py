@@ -2,6 +2,7 @@
 
 import json
 import stat
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -12,6 +13,7 @@ from shared.access.tokens import (
     digest_of,
     find,
     includes,
+    kept_secret,
     new_secret,
     read_tokens,
     write_tokens,
@@ -91,3 +93,30 @@ def test_chosen_secrets_must_be_long_and_from_no_example(secret):
     with pytest.raises(ValueError, match="TOPNAV_TOKEN must be a secret"):
         check_chosen(secret, "TOPNAV_TOKEN")
     check_chosen("x7" * 8, "TOPNAV_TOKEN")
+
+
+@pytest.mark.parametrize(
+    "secret", ["# an admin's, of 16 signs", "two words of a secret", '"in-quotes-in-a-file"']
+)
+def test_what_a_line_leaves_that_was_read_wrongly_is_no_secret(secret):
+    with pytest.raises(ValueError, match="without spaces, quotes and #") as refused:
+        check_chosen(secret, "TOPNAV_TOKEN")
+    assert secret not in str(refused.value), "what was refused is somebody's secret all the same"
+
+
+def test_a_secret_that_nobody_chose_is_made_once_for_all_who_ask(tmp_path):
+    file = tmp_path / "token"
+    with ThreadPoolExecutor(8) as pool:
+        (secret,) = set(pool.map(kept_secret, [file] * 32))
+    assert len(secret) == 64
+    assert kept_secret(file) == file.read_text() == secret
+    assert stat.S_IMODE(file.stat().st_mode) == 0o600
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_secret_that_cannot_be_kept_is_an_error_that_names_the_file(tmp_path):
+    with pytest.raises(ValueError, match=r"the secret in .*nowhere/token cannot be made or read"):
+        kept_secret(tmp_path / "nowhere" / "token")
+    (tmp_path / "token").write_text("short")
+    with pytest.raises(ValueError, match="must be a secret of at least 16"):
+        kept_secret(tmp_path / "token")
