@@ -2,6 +2,7 @@
 #   make demo    explore the apartment, then find a hidden robot from its picture (KEEP=1 leaves it running)
 #   make test    every test but those of tests/faults      make check   lint, types, unit tests: two minutes
 #                (WORKERS=0: in one process)
+#   make containers  the same stack by Docker Compose, as a newcomer runs it
 #   make faults  what dies, hangs, lies, floods or is cut off: deploy/FAULTS.md
 PYTHON ?= python3
 VENV ?= .venv
@@ -16,7 +17,7 @@ STAMP := $(VENV)/.installed
 INPUTS := pyproject.toml experiments/pyproject.toml constraints.txt deploy/packaging/opencv-shim/pyproject.toml
 SOURCES := services shared simulator experiments tests
 
-.PHONY: setup demo test faults check lint types bench fuzz sbom audit screenshots clean
+.PHONY: setup demo test faults check lint types containers bench fuzz sbom audit screenshots clean
 
 setup: $(STAMP)
 	@bash deploy/setup/vulkan.sh
@@ -49,6 +50,9 @@ lint: setup
 
 types: setup
 	$(BIN)/mypy
+
+containers:
+	@bash deploy/setup/containers.sh
 
 bench: setup
 	$(BIN)/topnav bench loop --json runs/bench/loop.json
