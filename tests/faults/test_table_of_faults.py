@@ -37,3 +37,10 @@ def test_a_row_says_what_is_guaranteed_and_names_tests_that_exist(case: int):
     assert tests, f"case {case} names no test"
     for path, name in tests:
         assert name in functions_of(REPOSITORY / path), f"case {case}: no {name} in {path}"
+
+
+def test_what_an_attack_found_names_tests_that_exist():
+    named = TEST.findall(TABLE.read_text(encoding="utf-8").partition("## Found by attack")[2])
+    assert len(named) > 15
+    for path, name in named:
+        assert name in functions_of(REPOSITORY / path), f"no {name} in {path}"
