@@ -39,7 +39,12 @@ def chromium() -> Iterator[Any]:
 def listen(page: Any, address: str, faults: list[str]) -> None:
     """Collect what a page complains about and what it fetches from elsewhere."""
     page.on("pageerror", lambda error: faults.append(str(error)))
-    page.on("console", lambda message: faults.append(message.text) if _is_fault(message) else None)
+    page.on(
+        "console",
+        lambda message: (
+            faults.append(f"{message.text} {message.location['url']}") if _is_fault(message) else None
+        ),
+    )
     page.on("request", lambda request: faults.append(request.url) if not _own(request.url, address) else None)
 
 

@@ -90,10 +90,10 @@ def check_chosen(secret: str, variable: str) -> None:
         ValueError: it is an example's placeholder, short, or has signs of a line that was read wrongly, such
             as a comment.
     """
-    if secret.lower() in PLACEHOLDERS or len(secret) < SHORTEST or set(secret) & set("# \t\"'"):
+    if secret.lower() in PLACEHOLDERS or len(secret) < SHORTEST or secret.startswith(("#", '"', "'")):
         raise ValueError(
             f"{variable} must be a secret of at least {SHORTEST} characters and none from an example, "
-            f"without spaces, quotes and #, got {len(secret)} characters: "
+            f"and not begin as a comment or a quotation does, got {len(secret)} characters: "
             "make one with 'openssl rand -hex 32'"
         )
 

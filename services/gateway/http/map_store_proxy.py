@@ -27,6 +27,9 @@ TIMEOUTS = httpx.Timeout(10.0, connect=2.0)
 """Seconds; chosen: twice what a question on the bus may take, GATEWAY_ASK_TIMEOUT_S."""
 STREAM_TIMEOUTS = httpx.Timeout(120.0, connect=2.0)
 """Seconds; chosen: the store answers an import once all of an archive is written."""
+KEPT = httpx.Limits(max_connections=100, max_keepalive_connections=20, keepalive_expiry=2.0)
+"""A connection is given up before the map store, which keeps one for five seconds, ends it: a request sent on
+it at that moment would be lost."""
 LEAST_BYTES_PER_S = 50_000
 """Of an archive on its way in: the longest one, GATEWAY_MAX_IMPORT_BYTES, takes three hours at it."""
 
@@ -42,11 +45,14 @@ def open_client(url: str, token: str, certs: Path | None = None) -> httpx.AsyncC
     headers = {"Authorization": f"Bearer {token}"} if token else {}
     credentials = credentials_in(certs)
     if credentials is None:
-        return httpx.AsyncClient(base_url=url, headers=headers, timeout=TIMEOUTS, trust_env=False)
+        return httpx.AsyncClient(
+            base_url=url, headers=headers, timeout=TIMEOUTS, limits=KEPT, trust_env=False
+        )
     return httpx.AsyncClient(
         base_url=secured_url(url),
         headers=headers,
         timeout=TIMEOUTS,
+        limits=KEPT,
         trust_env=False,
         verify=credentials.tls_context(ssl.Purpose.SERVER_AUTH),
         event_hooks={"request": [_expect_the_map_store]},

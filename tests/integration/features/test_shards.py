@@ -1,5 +1,6 @@
 """Several robots on several feature services: who takes whose frames, one answer each, and turns for all."""
 
+import statistics
 import threading
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -137,11 +138,13 @@ def test_a_robot_that_floods_the_service_leaves_the_others_their_turn(
     thread.start()
     try:
         assert wait_until(lambda: loud.answers.total() > 10, ANSWER_S)
-        before = loud.answers.total()
-        for _ in range(5):
+        between = []
+        for _ in range(7):
+            before = loud.answers.total()
             quiet.send_and_wait()
-        between = loud.answers.total() - before
+            between.append(loud.answers.total() - before)
     finally:
         enough.set()
         thread.join()
-    assert between <= 5 * 4, "one frame of each in turn, and what was on its way"
+    # A frame may get lost beside many; it is sent again after seconds, in which the other goes on.
+    assert statistics.median(between) <= 4, "one frame of each in turn, and what was on its way"
