@@ -26,10 +26,7 @@ def peer_config(endpoint: str, listen: str = "tcp/127.0.0.1:0") -> zenoh.Config:
     Raises:
         CredentialsError: the endpoint asks for TLS, and a peer without certificate has none.
     """
-    if endpoint.startswith("tls/"):
-        raise CredentialsError(
-            f"{endpoint} is a secured bus: set TOPNAV_CERTS to a folder of 'topnav certs', got none"
-        )
+    _refuse_tls(endpoint)
     return session_config("peer", [listen], [endpoint], {"scouting/gossip/autoconnect_strategy": ONE_DIALS})
 
 
@@ -47,10 +44,22 @@ def client_config(endpoint: str, credentials: Credentials) -> zenoh.Config:
 
 
 def looker_config(endpoint: str) -> zenoh.Config:
-    """Settings of who looks at the open bus for a moment: a client that does not wait long for the router."""
+    """Settings of who looks at the open bus for a moment: a client that does not wait long for the router.
+
+    Raises:
+        CredentialsError: as for `peer_config`.
+    """
+    _refuse_tls(endpoint)
     return session_config(
         "client", [], [endpoint], {"scouting/gossip/enabled": False, "connect/timeout_ms": 2_000}
     )
+
+
+def _refuse_tls(endpoint: str) -> None:
+    if endpoint.startswith("tls/"):
+        raise CredentialsError(
+            f"{endpoint} is a secured bus: set TOPNAV_CERTS to a folder of 'topnav certs', got none"
+        )
 
 
 def session_config(
