@@ -2,13 +2,16 @@
 
 import os
 from pathlib import Path
-from typing import Any, Self
+from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, ValidationError, field_validator
+from pydantic import BaseModel, BeforeValidator, ValidationError
 from pydantic_core import ErrorDetails
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 NESTED = "__"
+
+OptionalPath = Annotated[Path | None, BeforeValidator(lambda path: None if path == "" else path)]
+"""None also of a variable that Compose passes on without a value."""
 
 
 class ServiceSettings(BaseSettings):
@@ -26,14 +29,9 @@ class ServiceSettings(BaseSettings):
 
     endpoint: str = "tcp/127.0.0.1:7447"
     listen: str = "tcp/127.0.0.1:0"
-    certs: Path | None = None
+    certs: OptionalPath = None
     robot: str = "r1"
     log_level: str = "INFO"
-
-    @field_validator("certs", mode="before")
-    @classmethod
-    def _without_certificates(cls, path: object) -> object:
-        return None if path == "" else path  # a variable that Compose passes on without a value
 
     @classmethod
     def from_environment(cls) -> Self:

@@ -4,11 +4,11 @@ import logging
 from pathlib import Path
 from typing import Self
 
-from pydantic import Field, HttpUrl, SecretStr, field_validator, model_validator
+from pydantic import Field, HttpUrl, SecretStr, model_validator
 from pydantic_settings import SettingsConfigDict
 
 from shared.access.tokens import check_chosen, kept_secret
-from shared.settings import ServiceSettings
+from shared.settings import OptionalPath, ServiceSettings
 from shared.web.origins import is_loopback
 
 log = logging.getLogger(__name__)
@@ -64,8 +64,8 @@ class GatewaySettings(ServiceSettings):
     map_store_url: HttpUrl = HttpUrl("http://127.0.0.1:8001")
     map_store_token: SecretStr = SecretStr("")
     token: SecretStr = SecretStr("")
-    token_file: Path | None = None
-    tokens_file: Path | None = None
+    token_file: OptionalPath = None
+    tokens_file: OptionalPath = None
     guard_reading: bool | None = None
     estop_needs_token: bool = False
     allow_open: bool = False
@@ -99,11 +99,6 @@ class GatewaySettings(ServiceSettings):
     compute_timeout_s: float = Field(default=20.0, gt=0.0)
     runs_dir: Path = Path("data/runs")
     required_services: tuple[str, ...] = ("features", "map_store", "planner", "drive")
-
-    @field_validator("token_file", "tokens_file", mode="before")
-    @classmethod
-    def _empty_is_none(cls, path: object) -> object:
-        return None if path == "" else path  # a variable that Compose passes on without a value
 
     @model_validator(mode="after")
     def _closed_unless_asked(self) -> Self:

@@ -1,14 +1,13 @@
 """Settings of the map store."""
 
-from pathlib import Path
 from typing import Self
 
-from pydantic import Field, SecretStr, field_validator, model_validator
+from pydantic import Field, SecretStr, model_validator
 from pydantic_settings import SettingsConfigDict
 
 from shared.access.credentials import credentials_in
 from shared.access.tokens import check_chosen, kept_secret
-from shared.settings import ServiceSettings
+from shared.settings import OptionalPath, ServiceSettings
 from shared.web.origins import is_loopback
 
 
@@ -33,7 +32,7 @@ class MapStoreSettings(ServiceSettings):
     host: str = "127.0.0.1"
     port: int = Field(default=8001, ge=0, le=65_535)
     token: SecretStr = SecretStr("")
-    token_file: Path | None = None
+    token_file: OptionalPath = None
     allow_open: bool = False
     max_archive_bytes: int = Field(default=4_000_000_000, ge=1)
     compute_timeout_s: float = Field(default=20.0, gt=0.0)
@@ -53,11 +52,6 @@ class MapStoreSettings(ServiceSettings):
             )
         check_chosen(secret, "MAP_STORE_TOKEN")
         return self
-
-    @field_validator("token_file", mode="before")
-    @classmethod
-    def _empty_is_none(cls, path: object) -> object:
-        return None if path == "" else path
 
     def with_kept_secret(self) -> Self:
         """With the secret of `token_file` where one is needed and none was chosen.

@@ -8,7 +8,7 @@ from pydantic_settings import SettingsConfigDict
 from services.planner.heading.methods import MethodName
 from services.planner.profile_file import profile_of_file
 from services.planner.profiles import Profile, profile_named
-from shared.settings import ServiceSettings
+from shared.settings import OptionalPath, ServiceSettings
 
 
 class PlannerSettings(ServiceSettings):
@@ -27,10 +27,10 @@ class PlannerSettings(ServiceSettings):
     model_config = SettingsConfigDict(env_prefix="PLANNER_")
 
     profile: str = "default"
-    profile_file: Path | None = None
+    profile_file: OptionalPath = None
     heading_method: MethodName | None = None
     edge_window: NonNegativeInt | None = None
-    missions_folder: Path | None = None
+    missions_folder: OptionalPath = None
     heading_ttl_ms: PositiveInt = 350
     query_timeout_s: PositiveFloat = 5.0
     map_timeout_s: PositiveFloat = 5.0
@@ -41,11 +41,6 @@ class PlannerSettings(ServiceSettings):
         update = {name: value for name, value in given.items() if value is not None}
         named = profile_of_file(self.profile_file) if self.profile_file else profile_named(self.profile)
         return named.replaced(**update)
-
-    @field_validator("profile_file", "missions_folder", mode="before")
-    @classmethod
-    def _none_when_empty(cls, value: object) -> object:
-        return value or None
 
     @field_validator("profile_file")
     @classmethod
