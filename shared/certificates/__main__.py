@@ -1,6 +1,6 @@
 """`python -m shared.certificates FOLDER`: make what is missing there; the one-shot service of Docker Compose.
 
-`topnav certs` can do more.
+TOPNAV_ROUTER_HOST is a further name or address at which the router is reached. `topnav certs` can do more.
 """
 
 import datetime as dt
@@ -20,7 +20,8 @@ def main(arguments: list[str]) -> int:
         return 2
     try:
         holders = everyone(*robot_names(os.environ))
-        made = make(Path(arguments[0]), holders, dt.datetime.now(dt.UTC), keep=True)
+        hosts = tuple(host for host in [os.environ.get("TOPNAV_ROUTER_HOST")] if host)
+        made = make(Path(arguments[0]), holders, dt.datetime.now(dt.UTC), hosts, keep=True)
     except (ValueError, OSError) as error:
         sys.stderr.write(f"certificates: {error}\n")
         return 1

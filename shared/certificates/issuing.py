@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from shared.access.credentials import CERTIFICATE_FILE
+from shared.access.rules import Role
 from shared.certificates.authority import Authority, has_authority
 from shared.certificates.holders import (
     AUTHORITY,
@@ -26,7 +27,7 @@ def make(
         holders: who needs one.
         now: time with a time zone.
         hosts: further names at which the router is reached.
-        keep: leave those who have one alone.
+        keep: leave those who have one alone, except a router that is to be reached at one more of `hosts`.
 
     Raises:
         CertificatesError: one has a certificate already, or a name that is not a plain word.
@@ -34,7 +35,7 @@ def make(
     wanted = list(holders)
     for holder in wanted:
         _require_plain(holder.name)
-    there = [holder for holder in wanted if (folder / holder.name / CERTIFICATE_FILE).exists()]
+    there = [holder for holder in wanted if _is_there(folder, holder, hosts if keep else ())]
     if there and not keep:
         raise CertificatesError(
             f"{folder}: {', '.join(h.name for h in there)} have certificates; "
@@ -45,7 +46,8 @@ def make(
     authority = Authority.read(folder) if has_authority(folder) else Authority.made(folder, now)
     made = [holder for holder in wanted if holder not in there]
     for holder in made:
-        authority.issue(folder, holder, hosts, now)
+        known = hosts_of(read_certificate(path)) if (path := _certificate(folder, holder)).exists() else ()
+        authority.issue(folder, holder, tuple(dict.fromkeys((*known, *hosts))), now)
     return made
 
 
@@ -69,6 +71,18 @@ def renew(folder: Path, now: dt.datetime, hosts: tuple[str, ...] = ()) -> list[H
     return renewed
 
 
+def _certificate(folder: Path, holder: Holder) -> Path:
+    return folder / holder.name / CERTIFICATE_FILE
+
+
+def _is_there(folder: Path, holder: Holder, hosts: tuple[str, ...]) -> bool:
+    """Whether a certificate is there, and holds at these hosts where it is the router's."""
+    path = _certificate(folder, holder)
+    if not path.exists():
+        return False
+    return holder.role is not Role.ROUTER or set(hosts) <= set(hosts_of(read_certificate(path)))
+
+
 def _require_plain(name: str) -> None:
     words = name.replace("-", "").replace("_", "").split(".")
     if name == AUTHORITY or not all(word.isalnum() for word in words):
@@ -79,7 +93,7 @@ def _require_plain(name: str) -> None:
 
 def _require_same(folder: Path, holder: Holder) -> None:
     """What is kept must be what was asked for: another robot's certificate would be refused by the router."""
-    certificate = read_certificate(folder / holder.name / CERTIFICATE_FILE)
+    certificate = read_certificate(_certificate(folder, holder))
     found = holder_of(holder.name, certificate).common_name
     if found != holder.common_name:
         raise CertificatesError(

@@ -16,20 +16,13 @@ from services.launcher.compose.interpolate import interpolate_tree
 from services.launcher.compose.local import LocalMachine, local_process
 from services.launcher.processes.stack_settings import Ports, StackSettings
 from shared.certificates.holders import AUTHORITY, everyone
-from shared.settings import ServiceSettings
+from tests.contract import service_settings
+from tests.contract.service_settings import MODULES, settings_class
 
 RAW = yaml.safe_load(COMPOSE_FILE.read_text(encoding="utf-8"))
 TOKENS = yaml.safe_load(COMPOSE_FILE.with_name("deploy").joinpath("compose.tokens.yml").read_text("utf-8"))
 EVERYTHING = RAW["services"]
 SERVICES = {name: service for name, service in EVERYTHING.items() if "profiles" not in service}
-SETTINGS = {
-    "map-store": "services.map_store.settings",
-    "simulator": "simulator.service_settings",
-    "features": "services.features.settings",
-    "planner": "services.planner.settings",
-    "drive": "services.drive.settings",
-    "gateway": "services.gateway.settings",
-}
 VARIABLE = re.compile(r"\$\{(\w+)")
 
 
@@ -128,21 +121,24 @@ def test_each_command_names_a_module_that_is_there(name):
         assert importlib.util.find_spec(f"{module}.__main__") is not None
 
 
-@pytest.mark.parametrize("name", SETTINGS)
+@pytest.mark.parametrize("name", MODULES)
 def test_every_variable_of_a_service_is_one_of_its_settings(name, specs, monkeypatch):
-    module = importlib.import_module(SETTINGS[name])
-    classes = [
-        c
-        for c in vars(module).values()
-        if isinstance(c, type) and issubclass(c, ServiceSettings) and c is not ServiceSettings
-    ]
-    assert len(classes) == 1
-    for variable in [v for v in os.environ if v.startswith(classes[0].model_config["env_prefix"])]:
+    kind = settings_class(name)
+    for variable in [v for v in os.environ if v.startswith(kind.model_config["env_prefix"])]:
         monkeypatch.delenv(variable)
     for variable, value in specs[name].environment.items():
         monkeypatch.setenv(variable, value)
-    settings = classes[0].from_environment()
+    settings = kind.from_environment()
     assert settings.endpoint == "tcp/127.0.0.1:17447"
+
+
+def test_every_other_setting_reaches_its_container_where_somebody_sets_it():
+    assert service_settings.FILE.read_text(encoding="utf-8") == service_settings.text(), (
+        "write it anew: python -m tests.contract.service_settings"
+    )
+    passing = yaml.safe_load(service_settings.FILE.read_text(encoding="utf-8"))["services"]
+    for name in passing:
+        assert SERVICES[name]["extends"] == {"file": "deploy/compose.settings.yml", "service": name}
 
 
 def test_only_the_certificates_belong_to_a_profile_and_no_service_needs_them():

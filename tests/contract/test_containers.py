@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 import yaml
 
+from services.launcher.compose.interpolate import interpolate
+
 ROOT = Path(__file__).resolve().parents[2]
 SERVICES = yaml.safe_load((ROOT / "docker-compose.yml").read_text(encoding="utf-8"))["services"]
 DOCKERFILES = sorted((ROOT / "deploy/docker").glob("*.Dockerfile"))
@@ -90,8 +92,9 @@ def test_a_container_can_write_and_do_next_to_nothing(name: str) -> None:
     for unwanted in ("privileged", "cap_add", "devices", "user", "pid", "ipc", "userns_mode", "volumes_from"):
         assert unwanted not in service
     assert service.get("network_mode", "none") == "none"
-    sources = [str(mount).split(":")[0] for mount in service.get("volumes", [])]
-    assert all(re.fullmatch(r"[\w-]+", source) for source in sources), "named volumes only"
+    mounts = [interpolate(mount, {}).split(":") for mount in service.get("volumes", [])]
+    assert all(re.fullmatch(r"[\w-]+", mount[0]) for mount in mounts), "named volumes only, unless asked"
+    assert [mount[2] for mount in mounts if mount[0] == "files"] in ([], ["ro"])
 
 
 @pytest.mark.parametrize("name", SERVICES)

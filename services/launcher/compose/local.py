@@ -51,12 +51,14 @@ class LocalMachine:
     Attributes:
         python: interpreter of all services.
         data_dir: folder of the volumes.
+        root: of the Compose file, from which the folders that it mounts are counted.
         certs: folder of all certificates; None runs without, whatever volumes the Compose file has for them.
     """
 
     python: str
     data_dir: Path
     certs: Path | None = None
+    root: Path = Path()
 
 
 def local_process(name: str, service: Service, hosts: Collection[str], machine: LocalMachine) -> ProcessSpec:
@@ -69,7 +71,8 @@ def local_process(name: str, service: Service, hosts: Collection[str], machine: 
         machine: Python and data folder of this machine.
     """
     own_certs = service.environment.get(CERTIFICATE_VARIABLE)
-    mounts = _mounts([v for v in service.volumes if v.split(":")[1] != own_certs], machine.data_dir)
+    volumes = [v for v in service.volumes if v.split(":")[1] != own_certs]
+    mounts = _mounts(volumes, machine)
     environment = {key: _local_value(value, hosts, mounts) for key, value in service.environment.items()}
     if own_certs is not None:
         environment[CERTIFICATE_VARIABLE] = certificate_folder(machine.certs, name)
@@ -79,7 +82,7 @@ def local_process(name: str, service: Service, hosts: Collection[str], machine: 
         name=name,
         command=_with_python(service.command, machine.python),
         environment=environment,
-        data_folders=tuple(mounts.values()),
+        data_folders=tuple(machine.data_dir / v.split(":")[0] for v in volumes if not is_folder(v)),
         alive_as=test[len(LIVELINESS_TEST)] if by_token else None,
         check=None if by_token or not test or test[0] == "NONE" else _check_command(test, machine.python),
         check_interval_s=service.healthcheck.interval if service.healthcheck else 0.0,
@@ -105,13 +108,20 @@ def _check_command(test: tuple[str, ...], python: str) -> tuple[str, ...]:
     return _with_python(test[1:], python)
 
 
-def _mounts(volumes: Sequence[str], data_dir: Path) -> dict[str, Path]:
-    """Map the container path of each named volume to a folder under `data_dir`."""
+def _mounts(volumes: Sequence[str], machine: LocalMachine) -> dict[str, Path]:
+    """Where each path of the container is: of a volume below the data folder, of a mounted folder itself."""
     mounts = {}
     for volume in volumes:
         source, target = volume.split(":")[:2]
-        mounts[target] = data_dir / source
+        mounts[target] = (
+            machine.root / Path(source).expanduser() if is_folder(volume) else machine.data_dir / source
+        )
     return mounts
+
+
+def is_folder(volume: str) -> bool:
+    """Whether a folder of the machine is mounted, by Compose's rule, and not a named volume."""
+    return volume.startswith((".", "/", "~"))
 
 
 def _local_value(value: str, hosts: Collection[str], mounts: Mapping[str, Path]) -> str:

@@ -46,7 +46,8 @@ class Launcher:
         environment: set in every service last of all.
         secure: certificates, mTLS and access rules on the bus.
         only: run these services and what they depend on.
-        variables: what the Compose file interpolates; default: this process's environment.
+        variables: what the Compose file interpolates, and services are told beside what it says; by default
+            this process's environment.
         compose_file: which processes there are.
         timeout_s: how long the start may take.
         policy: back-off of restarts.
@@ -78,6 +79,7 @@ class Launcher:
         self._state = StateFolder(folder)
         self._started = ""
         self._liveliness = Liveliness()
+        self._variables = dict(variables or {})
         specs = self._specs(compose_file, variables, only)
         self._checks: list[CommandHealth] = []
         policy = policy or RestartPolicy()
@@ -201,7 +203,7 @@ class Launcher:
         compose = load_compose(compose_file, given)
         services = active_services(compose.services, only=only)
         self._stages = start_stages(services)
-        machine = LocalMachine(sys.executable, self.settings.data_dir, self.settings.certs)
+        machine = LocalMachine(sys.executable, self.settings.data_dir, self.settings.certs, self._root)
         return [local_process(name, service, compose.services, machine) for name, service in services.items()]
 
     def _health(self, spec: ProcessSpec) -> Health:
@@ -214,7 +216,8 @@ class Launcher:
         return check
 
     def _environment(self, spec: ProcessSpec) -> dict[str, str]:
-        return {**os.environ, **spec.environment, **self.settings.environment, "PYTHONPATH": str(self._root)}
+        own = {**spec.environment, **self.settings.environment, "PYTHONPATH": str(self._root)}
+        return {**os.environ, **self._variables, **own}
 
     def _spawn(self, spec: ProcessSpec) -> ChildProcess:
         for folder in spec.data_folders:

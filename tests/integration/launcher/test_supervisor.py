@@ -12,6 +12,7 @@ import pytest
 from services.launcher.processes import process
 from services.launcher.processes.restart import RestartPolicy
 from services.launcher.processes.runner import State
+from services.launcher.processes.running import variables_with_dotenv
 from services.launcher.processes.state import AlreadyRunningError, StateFolder
 from services.launcher.processes.supervisor import Launcher
 from services.launcher.processes.wait import LaunchError
@@ -237,3 +238,16 @@ def test_the_log_of_a_running_service_does_not_grow_without_bound(launch, monkey
     assert max(sizes) < 4_000_000, "a second's worth beyond the limit"
     assert min(sizes[1:]) < 100_000, "emptied while the service runs"
     assert stack.pid("a") == pid
+
+
+def test_what_env_says_of_a_services_own_settings_reaches_its_process(tmp_path):
+    tell = [
+        sys.executable,
+        "-c",
+        "import os, time; print(os.environ['DRIVE_SEED'], flush=True); time.sleep(600)",
+    ]
+    file = compose(tmp_path, drive=tell)
+    (tmp_path / ".env").write_text("DRIVE_SEED=77\n", encoding="utf-8")
+    variables = variables_with_dotenv(tmp_path)
+    with Launcher(tmp_path / "data", compose_file=file, variables=variables, timeout_s=SOON_S) as launcher:
+        assert wait_until(lambda: "77" in (launcher.logs / "drive.jsonl").read_text(encoding="utf-8"), SOON_S)

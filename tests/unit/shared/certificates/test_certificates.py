@@ -87,6 +87,17 @@ def test_what_is_missing_is_made_with_the_same_authority(folder):
     assert not any(found.faults for found in check(folder, NOW))
 
 
+def test_a_router_that_is_reached_at_one_more_host_gets_a_certificate_that_says_so(folder):
+    make(folder, everyone("r1"), NOW, ("10.0.0.1",), keep=True)
+    before = serial(folder, "drive")
+    made = make(folder, everyone("r1"), NOW, ("fleet.example",), keep=True)
+    assert [holder.name for holder in made] == ["router"]
+    hosts = hosts_of(read_certificate(folder / "router" / "certificate.pem"))
+    assert {"router", "10.0.0.1", "fleet.example"} <= set(hosts)
+    assert serial(folder, "drive") == before
+    assert make(folder, everyone("r1"), NOW, ("10.0.0.1",), keep=True) == []
+
+
 def test_a_kept_certificate_of_another_robot_is_refused(folder):
     with pytest.raises(
         CertificatesError, match=r"a certificate of drive\.r2 expected, found one of drive\.r1"

@@ -50,6 +50,14 @@ def test_a_named_volume_becomes_a_data_folder():
     assert spec.data_folders == (Path("/data/maps"),)
 
 
+def test_a_folder_of_the_machine_is_read_where_it_is_and_not_made(tmp_path):
+    machine = LocalMachine("python", Path("/data"), root=tmp_path)
+    mounted = {"volumes": ["./own:/files:ro", "maps:/maps"], "environment": {"WORLD": "/files/a.yaml"}}
+    spec = local_process("a", Service.model_validate({"command": ("x",), **mounted}), HOSTS, machine)
+    assert spec.environment == {"WORLD": str(tmp_path / "own" / "a.yaml")}
+    assert spec.data_folders == (Path("/data/maps"),)
+
+
 def test_the_liveliness_check_becomes_a_token_and_any_other_stays_a_command():
     by_token = translate(healthcheck={"test": ["CMD", "python", "-m", "shared.health", "map_store"]})
     assert (by_token.alive_as, by_token.check) == ("map_store", None)
