@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # What a newcomer does with Docker Compose, for real: `make containers`.
 #
-# Builds the images, starts the stack without any file, explores and drives to a picture over HTTP, ends every
-# container once, and starts it with .env.example and with the secured bus. DOCKER and CURL may be others, as those
-# of an engine in a namespace of its own. Exits with 0 and the reason where there is no engine.
+# Builds the images, starts the stack without any file, explores and drives to a picture over HTTP, once more with
+# another drive controller, and ends every container once. Then it starts the stack with .env.example, a folder of
+# worlds and a busy machine, on the secured bus, and with the robot on a host of its own. DOCKER and CURL may be
+# others, as those of an engine in a namespace of its own. Exits with 0 and the reason where there is no engine.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 read -ra docker <<<"${DOCKER:-docker}"
@@ -18,10 +19,21 @@ if ! "${docker[@]}" compose version >/dev/null 2>&1 || ! "${docker[@]}" info >/d
 fi
 
 compose() { "${docker[@]}" compose --env-file "${file:-/dev/null}" "$@"; }
+robot_host() { "${docker[@]}" compose --env-file /dev/null --project-name topnav-robot --file deploy/compose.robot.yml "$@"; }
+load() { # N busy loops beside the stack
+    [ -z "${loops:-}" ] || kill $loops 2>/dev/null || :
+    loops=""
+    for ((i = 0; i < $1; i++)); do
+        (while :; do :; done) &
+        loops+=" $!"
+    done
+}
 say() { printf '%s (%d s)\n' "$*" "$((SECONDS - began))"; began=$SECONDS; }
 finish() {
     status=$?
+    load 0
     [ "$status" -eq 0 ] || compose --profile secure logs --tail 20
+    robot_host down --volumes --timeout 5 >/dev/null 2>&1 || :
     compose --profile secure down --volumes --timeout 5 >/dev/null 2>&1 || :
     rm -rf "$folder"
     exit "$status"
@@ -51,14 +63,33 @@ ask "$robot/frame.jpg?width=1024" >"$folder/goal.jpg"
 sleep "$((${EXPLORE_S:-60} / 3))"
 ask --request POST "$robot/missions/cancel" >/dev/null
 say "explored: $(ask "$api/maps/flat" | cut -c 1-120)"
-ask --header 'Content-Type: image/jpeg' --data-binary @- "$robot/missions/goto?map=flat" <"$folder/goal.jpg" >/dev/null
-answer=""
-until [[ $answer == *'"done":true'* ]]; do
-    answer=$(ask "$robot/mission/wait?timeout_s=60")
-    [ "$((SECONDS - began))" -lt 300 ] || break
-done
-grep --quiet '"state":"succeeded"' <<<"$answer" || { echo "not arrived: $answer"; exit 1; }
+goto() {
+    ask --header 'Content-Type: image/jpeg' --data-binary @- "$robot/missions/goto?map=flat" <"$1" >/dev/null
+    answer="" until=$((SECONDS + 300))
+    while [[ $answer != *'"done":true'* ]] && [ "$SECONDS" -lt "$until" ]; do
+        answer=$(ask "$robot/mission/wait?timeout_s=60")
+    done
+    grep --quiet '"state":"succeeded"' <<<"$answer" || { echo "not arrived: $answer"; return 1; }
+}
+ask "$robot/frame.jpg?width=1024" >"$folder/other.jpg"
+goto "$folder/goal.jpg"
 say "at the picture"
+
+cat >"$folder/swap.yml" <<'END'
+services:
+  drive:
+    image: topnav/drive-swapped:0.1.0
+    build: !override
+      context: deploy/examples
+      dockerfile_inline: |
+        FROM topnav/drive:0.1.0
+        COPY swap_drive.py ./
+    command: [python, swap_drive.py, "tcp/router:7447", r1]
+END
+compose --file docker-compose.yml --file "$folder/swap.yml" up --detach --wait --build drive >"$folder/up.log" 2>&1 ||
+    { cat "$folder/up.log"; exit 1; }
+goto "$folder/other.jpg"
+say "at another picture with another drive controller"
 
 for one in "${services[@]}"; do
     compose kill "$one" >/dev/null 2>&1
@@ -68,11 +99,20 @@ ask "$api/maps/flat" >/dev/null
 say "every container was killed once and is back"
 compose down --volumes --timeout 5 >/dev/null 2>&1
 
-file=.env.example
+file=$folder/env
+cat .env.example - >"$file" <<'END'
+SIMULATOR_FRAME_RATE_HZ=3
+TOPNAV_FILES_DIR=./deploy/examples/worlds
+TOPNAV_WORLD=/var/lib/topnav/files/studio.yaml
+END
+load 16
 up
+load 0
 read_token
 ask "$api/robots" >/dev/null
-say "ready with .env.example"
+test "$(compose exec -T simulator printenv SIMULATOR_FRAME_RATE_HZ)" = 3
+test "$(compose exec -T simulator sh -c 'echo ${GATEWAY_TOKEN-none}')" = none
+say "ready with .env.example and a world of one's own, beside 16 busy loops"
 compose down --volumes --timeout 5 >/dev/null 2>&1
 
 file=/dev/null
@@ -85,3 +125,20 @@ until ask "$api/maps/flat" | grep --quiet '"nodes":[1-9]'; do
     sleep 1
 done
 say "a mission on the secured bus"
+compose --profile secure down --volumes --timeout 5 >/dev/null 2>&1
+
+export TOPNAV_ROUTER_HOST=172.17.0.1 # of this host as containers see it, on Docker's first bridge
+services_host() { compose --file docker-compose.yml --file deploy/compose.services.yml --profile secure "$@"; }
+services_host up --detach --wait --wait-timeout 180 >"$folder/up.log" 2>&1 || { cat "$folder/up.log"; exit 1; }
+mkdir "$folder/certs"
+services_host run --rm --no-deps --no-TTY certs tar -C /certs -c simulator drive | tar -x -C "$folder/certs"
+chmod 755 "$folder" # the containers' user looks in
+TOPNAV_ROBOT_CERTS=$folder/certs robot_host up --detach --wait --wait-timeout 180 >"$folder/up.log" 2>&1 ||
+    { cat "$folder/up.log"; robot_host logs --tail 20; exit 1; }
+read_token
+ask --json '{"action": "explore", "map": "flat"}' "$robot/missions" >/dev/null
+until ask "$api/maps/flat" | grep --quiet '"nodes":[1-9]'; do
+    [ "$((SECONDS - began))" -lt 120 ] || exit 1
+    sleep 1
+done
+say "a mission with the robot on a host of its own"
