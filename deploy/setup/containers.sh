@@ -128,10 +128,10 @@ say "a mission on the secured bus"
 compose --profile secure down --volumes --timeout 5 >/dev/null 2>&1
 
 export TOPNAV_ROUTER_HOST=172.17.0.1 # of this host as containers see it, on Docker's first bridge
-services_host() { compose --file docker-compose.yml --file deploy/compose.services.yml --profile secure "$@"; }
+services_host() { compose --progress quiet --file docker-compose.yml --file deploy/compose.services.yml --profile secure "$@"; }
 services_host up --detach --wait --wait-timeout 180 >"$folder/up.log" 2>&1 || { cat "$folder/up.log"; exit 1; }
 mkdir "$folder/certs"
-services_host run --rm --no-deps --no-TTY certs tar -C /certs -c simulator drive | tar -x -C "$folder/certs"
+services_host run --rm --no-deps --no-TTY certs tar -C /certs --numeric-owner -c simulator drive | tar -x -C "$folder/certs"
 chmod 755 "$folder" # the containers' user looks in
 TOPNAV_ROBOT_CERTS=$folder/certs robot_host up --detach --wait --wait-timeout 180 >"$folder/up.log" 2>&1 ||
     { cat "$folder/up.log"; robot_host logs --tail 20; exit 1; }
