@@ -1,5 +1,6 @@
 """Errors of an HTTP server as RFC 9457 problem documents: what was expected, what came, what to do next."""
 
+import json
 import logging
 from collections.abc import Awaitable, Callable, Mapping
 from http import HTTPStatus
@@ -43,6 +44,14 @@ class ProblemError(HTTPException):
         self.code, self.members = code, {**told, **extra}
 
 
+class ProblemResponse(JSONResponse):
+    """Problems repeat what came, and half a surrogate pair, which JSON may bring, has no encoding."""
+
+    def render(self, content: Any) -> bytes:
+        """JSON of any text."""
+        return json.dumps(content, ensure_ascii=False, separators=(",", ":")).encode(errors="replace")
+
+
 Translation = Callable[[Request, Any], ProblemError]
 Respond = Callable[[Request, ProblemError], JSONResponse]
 
@@ -62,7 +71,7 @@ def response(problem: ProblemError, **members: Any) -> JSONResponse:
         **members,
         **problem.members,
     }
-    return JSONResponse(
+    return ProblemResponse(
         document, problem.status_code, {**headers, **(problem.headers or {})}, media_type=MEDIA_TYPE
     )
 

@@ -132,11 +132,12 @@ async def _problem(answer: httpx.Response) -> Response:
     raise _nonsense(f"status {answer.status_code} with {kind[:80]}")
 
 
-def _headers(request: Request) -> dict[str, str]:
+def _headers(request: Request) -> httpx.Headers:
+    """Byte for byte as they came: the map store says what is wrong with them."""
     headers = {name: request.headers[name] for name in SENT_ON if name in request.headers}
     if name := person_of(request).name:
         headers[AUTHOR] = name
-    return headers
+    return httpx.Headers(headers, encoding="latin-1")
 
 
 def _nonsense(got: str) -> ProblemError:

@@ -56,6 +56,15 @@ def test_comparisons_are_of_the_revisions_that_were_asked_for(http: httpx.Client
     assert "revisions: 0 to 3" in missing.json()["detail"]
 
 
+@pytest.mark.parametrize("sent", [b"\xff", "\u00e4".encode()])
+def test_headers_that_are_not_ascii_are_the_map_stores_to_refuse(http: httpx.Client, sent: bytes) -> None:
+    answer = http.post("/api/maps/flat/undo", headers=[(b"x-topnav-author", sent)])
+    assert (answer.status_code, answer.headers["content-type"]) == (422, "application/problem+json")
+    assert "X-Topnav-Author" in answer.json()["detail"]
+    for name in (b"accept", b"if-match", b"if-none-match"):
+        assert http.get("/api/maps/flat", headers=[(name, sent)]).status_code == 200
+
+
 def test_the_author_of_a_write_reaches_the_history(http: httpx.Client) -> None:
     archive = http.get("/api/maps/flat/export").content
     http.delete("/api/maps/flat/edges/0/1", headers=ANNA)

@@ -51,6 +51,13 @@ def test_other_bodies_are_refused(http: TestClient, body: dict[str, Any]):
     assert http.post("/maps/flat/merge", json=body).status_code == 422
 
 
+def test_half_a_surrogate_pair_for_a_name_is_refused_and_told(http: TestClient):
+    """JSON can say it and UTF-8 cannot."""
+    headers = {"Content-Type": "application/json"}
+    answer = http.post("/maps/flat/merge", content=rb'{"other": "\ud800"}', headers=headers)
+    assert (answer.status_code, answer.json()["got"]) == (422, "?")
+
+
 @pytest.mark.parametrize("method", ["GET", "DELETE"])
 def test_a_map_that_none_was_merged_into_has_no_merge(http: TestClient, method: str):
     answer = http.request(method, "/maps/house/merge")
