@@ -70,7 +70,7 @@ def rename_map(
     new: Annotated[str, typer.Argument(help="Its new name.")],
     data_dir: options.DataDir = options.DATA_DIR,
 ) -> None:
-    """Give a map another name."""
+    """Give a map another name; an old one that begins with - goes behind --."""
     from services.launcher.client.maps import open_store
 
     with open_store(data_dir) as store:

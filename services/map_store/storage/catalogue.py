@@ -1,5 +1,6 @@
 """Maps by name: find, list, create, rename, delete. Every function works inside the caller's transaction."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
@@ -11,6 +12,9 @@ from services.map_store.integrity.seals import intact, sealed
 from services.map_store.storage import blobs
 from services.map_store.storage.tables import edges, maps, nodes, revisions
 from shared.transport.keys import NAME
+
+NEW_NAME = re.compile(r"(?!import\Z)[a-z0-9_][a-z0-9_-]{0,63}\Z")
+"""Commands take "--help" for an option; /maps/import is a path of REST. Maps of old may have such names."""
 
 LISTED = 20
 """Names in an error: with their longest it still fits the 1000 characters of a problem's detail."""
@@ -33,6 +37,16 @@ def check_name(name: str) -> str:
     """Return `name`, or raise InvalidError: the rule of the bus holds everywhere."""
     if not NAME.match(name):
         raise InvalidError(f"map name must match [a-z0-9_-]{{1,64}}, got {name[:80]!r}")
+    return name
+
+
+def check_new_name(name: str) -> str:
+    """Return `name`, or raise InvalidError: a map's new name cannot be mistaken for something else."""
+    if not NEW_NAME.match(check_name(name)):
+        raise InvalidError(
+            f"a map's new name must not begin with '-' nor be 'import', got {name!r}: commands and paths "
+            "would take it for something else; choose another, for an archive with --name (?name= over HTTP)"
+        )
     return name
 
 
@@ -79,7 +93,7 @@ def records(connection: Connection) -> list[MapRecord]:
 
 def create(connection: Connection, name: str, now_ns: int) -> MapRecord:
     """Make an empty map at revision 0."""
-    if exists(connection, check_name(name)):
+    if exists(connection, check_new_name(name)):
         raise ConflictError(f"map {name!r} exists already; read it, or delete it first")
     values = {"name": name, "revision": 0, "created_ns": now_ns, "changed_ns": now_ns}
     key = connection.execute(insert(maps).values(values)).inserted_primary_key
@@ -98,7 +112,7 @@ def save(connection: Connection, record: MapRecord) -> None:
 def rename(connection: Connection, name: str, new_name: str) -> MapRecord:
     """Give a map another name."""
     found = find(connection, name)
-    if exists(connection, check_name(new_name)):
+    if exists(connection, check_new_name(new_name)):
         raise ConflictError(f"map {new_name!r} exists already")
     renamed = replace(found, name=new_name)
     save(connection, renamed)

@@ -14,6 +14,7 @@ from services.launcher.client.failure import ExperimentError
 from services.launcher.commands.map import app
 from services.launcher.processes.state import AlreadyRunningError
 from services.launcher.processes.supervisor import Launcher
+from services.map_store.storage import catalogue
 from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
 from tests.faults.lived_maps import link, place
@@ -101,3 +102,18 @@ def test_an_export_replaces_nothing_but_an_archive(data_dir: Path, tmp_path: Pat
     )
     assert sorted(path.name for path in tmp_path.iterdir()) == ["data", "flat.zip", "notes.txt"]
     assert data_dir.exists()
+
+
+def test_a_map_of_old_that_is_called_like_an_option_goes_behind_two_dashes(
+    data_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(catalogue, "check_new_name", catalogue.check_name)
+    store = opened(data_dir)
+    store.rename("flat", "--help")
+    store.database.close()
+    file = tmp_path / "map.zip"
+    assert call("export", "--", "--help", file).output.startswith("--help: ")
+    assert call("rename", "--", "--help", "flat").output == "--help is now flat\n"
+    refused = call("rename", "--", "flat", "--help").exception
+    assert isinstance(refused, ExperimentError)
+    assert "must not begin with '-'" in str(refused)

@@ -6,6 +6,8 @@ import pytest
 from fastapi.testclient import TestClient
 
 from services.map_store.api.app import MAX_BODY_BYTES
+from services.map_store.errors import InvalidError
+from services.map_store.storage import catalogue
 from services.map_store.store import MapStore
 from tests.unit.services.map_store.conftest import add, app_of, features
 from tests.unit.services.map_store.test_store import damage
@@ -106,6 +108,33 @@ def test_what_cannot_be_done_is_a_problem(client: TestClient, method: str, path:
 def test_names_outside_the_rule_never_reach_the_store(client: TestClient, name: str):
     for path in (f"/maps/{name}", f"/maps/{name}/nodes", f"/maps/{name}/export"):
         problem(client.get(path), 422)
+
+
+@pytest.mark.parametrize("name", ["--help", "-", "-x", "import"])
+def test_no_map_gets_a_name_that_an_option_or_a_path_has(client: TestClient, store: MapStore, name: str):
+    told = problem(client.post("/maps", json={"name": name}), 422)
+    assert told.startswith(f"a map's new name must not begin with '-' nor be 'import', got {name!r}")
+    assert problem(client.patch("/maps/flat", json={"name": name}), 422) == told
+    archive = client.get("/maps/flat/export").content
+    assert problem(client.post("/maps/import", params={"name": name}, content=archive), 422) == told
+    with pytest.raises(InvalidError, match="must not begin"):
+        store.create(name)
+    assert [record.name for record in store.summaries()] == ["flat"]
+
+
+@pytest.mark.parametrize("name", ["--help", "-", "import"])
+def test_a_map_of_old_that_has_such_a_name_is_read_exported_and_renamed(
+    client: TestClient, store: MapStore, monkeypatch: pytest.MonkeyPatch, name: str
+):
+    with monkeypatch.context() as before:
+        before.setattr(catalogue, "check_new_name", catalogue.check_name)
+        store.rename("flat", name)
+    assert client.get(f"/maps/{name}").json()["nodes"] == 3
+    archive = client.get(f"/maps/{name}/export").content
+    assert "choose another" in problem(client.post("/maps/import", content=archive), 422)
+    assert client.post("/maps/import", params={"name": "copy"}, content=archive).status_code == 201
+    assert store.transact(name, [add(7)]) == 3
+    assert client.patch(f"/maps/{name}", json={"name": "house"}).json()["name"] == "house"
 
 
 @pytest.mark.parametrize(
