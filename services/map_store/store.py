@@ -18,6 +18,7 @@ from services.map_store.storage.contents import Contents
 from services.map_store.storage.database import Database
 from services.map_store.storage.graph import Graph, Step, added_by, apply
 from services.map_store.storage.graphs import Graphs
+from services.map_store.storage.missions import follow_rename
 from services.map_store.storage.operations import prepare
 from shared.messages.maps import MapDelta, Operation
 
@@ -86,10 +87,13 @@ class MapStore:
             deltas.append(MapDelta(map=name, revision=revision, reset=True))
 
     def rename(self, name: str, new_name: str) -> None:
-        """Give a map another name; followers of both are told to read again."""
+        """Give a map another name, also in the missions in it; followers of both are told to read again."""
         with self._write() as (connection, deltas):
             found = catalogue.rename(connection, name, new_name)
-            deltas += [MapDelta(map=each, revision=found.revision, reset=True) for each in (name, new_name)]
+            follow_rename(connection, name, new_name)
+            # In this order: who follows to the new name, which may be gone again, finds no reset there.
+            deltas.append(MapDelta(map=new_name, revision=found.revision, reset=True))
+            deltas.append(MapDelta(map=name, revision=found.revision, reset=True, renamed_to=new_name))
 
     def transact(
         self,

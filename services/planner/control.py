@@ -133,6 +133,11 @@ class MissionControl:
         """A map changed: follow, if it is this one and somebody else did it. One gone ends the mission."""
         if self.map is None or delta.map != self.map.name:
             return
+        if delta.renamed_to:
+            log.info("map %s is called %s now", self.map.name, delta.renamed_to)
+            self.map.name = delta.renamed_to
+            self._record = self._record.model_copy(update={"map": delta.renamed_to})
+            return
         if delta.revision <= self.map.revision and not delta.reset:
             return
         try:
@@ -141,15 +146,19 @@ class MissionControl:
             if error.code != "missing":
                 raise
             if self.state in ("running", "paused"):
-                kind: FailureKind = "goal_not_in_map" if self._has_goal() else "lost"
-                self._finish("failed", kind, f"the map is gone: {error}")
+                self._lose_map(error)
 
     def _go_on(self) -> None:
-        """Go on with the mission of a planner before; one of a kind that is not known here has failed."""
+        """Go on with the mission of a planner before; one that cannot go on has failed."""
         try:
             self._begin(self._record, create=False)
         except MissionError as error:
             self._finish("failed", "service_lost", f"cannot go on after a restart: {error}")
+            return
+        except RefusedError as error:
+            if error.code != "missing":
+                raise
+            self._lose_map(error)
             return
         self.state = "paused" if self._record.paused else "running"
         self._reason = "taken over after a restart"
@@ -170,6 +179,10 @@ class MissionControl:
             shown = self._kinds[self._record.action].shown
             return tuple(EventValue(name=name, value=values[name]) for name in shown if name in values)
         return ()
+
+    def _lose_map(self, error: RefusedError) -> None:
+        kind: FailureKind = "goal_not_in_map" if self._has_goal() else "lost"
+        self._finish("failed", kind, f"the map is gone: {error}")
 
     def _has_goal(self) -> bool:
         return self._record.goal is not None or "goal_node" in _parameters(self._record)

@@ -155,7 +155,8 @@ class MapDelta(Message):
     """The operations that led from revision - 1 to revision. A gap means: read the map again.
 
     Attributes:
-        reset: the map was replaced, deleted or undone: read it again whatever revision you hold.
+        reset: the map was replaced, deleted, renamed or undone: read it again whatever revision you hold.
+        renamed_to: its new name, under which it is the same; "" where it keeps its name.
     """
 
     SCHEMA: ClassVar[str] = "map_delta.v1"
@@ -164,6 +165,7 @@ class MapDelta(Message):
     map: Name
     revision: int = Field(ge=0)
     reset: bool = False
+    renamed_to: str = Field(default="", pattern=r"^[a-z0-9_-]{0,64}$")
     author: str = ""
     operations: tuple[Operation, ...] = Field(default=(), fail_fast=True)
 

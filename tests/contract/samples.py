@@ -282,7 +282,15 @@ def mapped() -> tuple[Message, ...]:
             edges=(edge(),),
             features=(maps.NodeFeatures(node_id=1, features=features()),),
         ),
-        maps.MapDelta(**AT, map="flat", revision=5, reset=True, author="planner", operations=operations()),
+        maps.MapDelta(
+            **AT,
+            map="flat",
+            revision=5,
+            reset=True,
+            renamed_to="house",
+            author="planner",
+            operations=operations(),
+        ),
         mission(),
         maps.MissionRecordRequest(**AT, action="save", record=mission()),
     )

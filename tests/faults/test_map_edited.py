@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+import httpx
 import pytest
 
 from services.launcher.client.experimenter import Experimenter
@@ -90,6 +91,28 @@ def test_a_mission_to_a_place_that_is_deleted_ends_and_says_so(stack, client):
     ended = goto(client, goal, lambda _: delete(stack, goal))
     assert (ended.state, ended.failure) == ("failed", "goal_not_in_map")
     assert str(goal) in ended.reason
+
+
+def test_a_mission_in_a_map_that_is_renamed_goes_on_in_it(stack, client):
+    """Twice at once: the planner may hear of both only when the first new name is gone again."""
+    steps = []
+
+    def edit(status):
+        steps.append(status.step)
+        for old, new in (("small", "hall"), ("hall", "house")):
+            url = f"{stack.gateway_url}/api/maps/{old}"
+            httpx.patch(url, json={"name": new}, timeout=60.0, trust_env=False).raise_for_status()
+
+    try:
+        ended = goto(client, farthest(stack), edit)
+        assert ended.state == "succeeded" or ended.failure not in ("goal_not_in_map", ""), ended.reason
+        assert ended.map == "house"
+        assert ended.step > steps[0] + 1
+        assert (
+            httpx.get(f"{stack.gateway_url}/api/robots/r1/mission", trust_env=False).json()["map"] == "house"
+        )
+    finally:
+        httpx.patch(f"{stack.gateway_url}/api/maps/house", json={"name": "small"}, trust_env=False)
 
 
 def test_a_mission_in_a_map_that_is_deleted_ends_and_says_so(stack, client):

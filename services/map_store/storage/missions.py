@@ -65,6 +65,14 @@ class MissionStore:
         return record
 
 
+def follow_rename(connection: Connection, name: str, new_name: str) -> None:
+    """Have the missions in a map be missions in the map of its new name: a planner may be away just now."""
+    for row in connection.execute(select(missions)).all():
+        record = stored_record(row)
+        if record is not None and record.map == name:
+            _write(connection, record.model_copy(update={"map": new_name}))
+
+
 def sound(row: Row[Any]) -> bool:
     """Whether a row and the record in it say what was written."""
     record = stored_record(row)

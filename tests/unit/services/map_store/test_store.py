@@ -16,8 +16,9 @@ from services.map_store.errors import (
 from services.map_store.integrity.seals import sealed
 from services.map_store.storage import tables
 from services.map_store.storage.database import Database
+from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
-from shared.messages.maps import DeleteEdge, DeleteNode, Edge, Node, PutEdge, UpdateNode
+from shared.messages.maps import DeleteEdge, DeleteNode, Edge, MissionRecord, Node, PutEdge, UpdateNode
 from shared.wire import encode
 from tests.unit.services.map_store.conftest import Told, add, features
 
@@ -156,7 +157,19 @@ def test_renaming_keeps_everything_and_resets_followers_of_both_names(store: Map
     told.clear()
     store.rename("flat", "house")
     assert [summary.name for summary in store.summaries()] == ["house"]
-    assert [(delta.map, delta.reset) for delta in told] == [("flat", True), ("house", True)]
+    assert [(delta.map, delta.reset, delta.renamed_to) for delta in told] == [
+        ("house", True, ""),
+        ("flat", True, "house"),
+    ]
+
+
+def test_a_mission_is_in_its_map_under_the_new_name(store: MapStore):
+    missions = MissionStore(store.database)
+    missions.save(MissionRecord(robot="r1", action="explore", map="flat", step=7))
+    missions.save(MissionRecord(robot="r2", action="explore", map="loft"))
+    store.rename("flat", "house")
+    assert [missions.claim(robot).map for robot in ("r1", "r2")] == ["house", "loft"]
+    assert missions.claim("r1").step == 7
 
 
 def test_deleting_a_map_frees_only_blobs_that_no_other_map_uses(store: MapStore):

@@ -6,8 +6,9 @@ from services.planner.control import MissionControl
 from services.planner.mission_kinds import MissionError, mission_kinds
 from services.planner.profiles import DEFAULT
 from services.planner.settings import PlannerSettings
-from shared.messages.maps import MapReply, MapRequest, MissionRecord, MissionRecordRequest, Node
+from shared.messages.maps import MapDelta, MapReply, MapRequest, MissionRecord, MissionRecordRequest, Node
 from shared.messages.missions import MissionRequest
+from shared.queries import RefusedError
 
 
 class Store:
@@ -15,18 +16,22 @@ class Store:
 
     def __init__(self, record):
         self.record = record
+        self.map = record.map
 
-    def ask(self, _query, request, _timeout_s, **_names):
+    def ask(self, _query, request, _timeout_s, **names):
         if isinstance(request, MissionRecordRequest):
             if request.action == "save":
                 self.record = request.record
             return self.record
         assert isinstance(request, MapRequest)
-        return MapReply(map="flat", revision=1, nodes=(Node(node_id=0),))
+        if names["map"] != self.map:
+            raise RefusedError(f"no map {names['map']!r}", "missing")
+        return MapReply(map=self.map, revision=1, nodes=(Node(node_id=0),))
 
 
-def control_of(**record):
+def control_of(gone=False, **record):
     store = Store(MissionRecord(robot="r1", epoch=4, mission_id="m", map="flat", **record))
+    store.map = "" if gone else "flat"
     control = MissionControl(PlannerSettings(), DEFAULT, mission_kinds(), store)
     control.claim()
     return control, store
@@ -36,6 +41,23 @@ def test_a_mission_is_gone_on_with_after_a_restart():
     control, _ = control_of(action="explore")
     assert (control.state, control.status().action) == ("running", "explore")
     assert {figure.name for figure in control.status().figures} == {"nodes", "edges", "open_directions"}
+
+
+def test_a_mission_whose_map_went_while_no_planner_ran_has_failed():
+    control, store = control_of(gone=True, action="explore")
+    assert (control.state, control.status().failure) == ("failed", "lost")
+    assert (store.record.action, store.record.ended_action) == ("", "explore")
+
+
+@pytest.mark.parametrize("action", ["pause", "cancel"])
+def test_a_mission_goes_on_in_its_map_under_another_name(action: str):
+    control, store = control_of(action="explore")
+    store.map = "house"
+    for map_name, renamed_to in (("loft", "attic"), ("flat", "house")):
+        control.follow_store(MapDelta(map=map_name, revision=1, reset=True, renamed_to=renamed_to))
+    assert (control.state, control.status().map) == ("running", "house")
+    control.follow_store(MapDelta(map="house", revision=2, reset=True))
+    assert control.handle(MissionRequest(action=action)).map == store.record.map == "house"
 
 
 def test_a_mission_of_a_kind_that_is_not_known_here_has_failed_and_stays_readable():
