@@ -117,4 +117,5 @@ def play_run(plan: RunPlan, files: MapFiles, folder: str) -> dict[str, Any]:
 def _store(stack: Stack) -> httpx.Client:
     if stack.launcher is None:
         raise ExperimentError("suites start stacks of their own: stop the one in this folder first")
-    return store_client(stack.launcher.map_store_url, stack.launcher.certs)
+    launcher = stack.launcher
+    return store_client(launcher.map_store_url, launcher.certs, launcher.settings.data_dir)

@@ -121,7 +121,7 @@ class GatewaySettings(ServiceSettings):
         Raises:
             ValueError: it cannot be.
         """
-        if self.loopback or self.token_file is None:
+        if self.token_file is None or (self.loopback and self.tokens_file is None):
             return self
         secret, chosen = SecretStr(kept_secret(self.token_file)), {}
         if not self.token.get_secret_value() and self.tokens_file is None:

@@ -18,8 +18,9 @@ class MapStoreSettings(ServiceSettings):
         database_url: sqlite:///relative/file, sqlite:////absolute/file or postgresql://user:password@host/database.
         host, port: where REST listens; port 0 takes any free one.
         token: bearer token that writes over REST need, off loopback reading as well; empty = none.
-        token_file: where a secret is kept that is made when it is missing, for reachable addresses without
-            `token`.
+        token_file: where a secret is kept that is made when it is missing, without `token` for reachable
+            addresses, and beside `tokens_file`.
+        tokens_file: that of the gateway, not read here: where people need tokens, so do writes on loopback.
         allow_open: listen on a reachable address without a token all the same, as in a network of
             containers of which no port is published.
         max_archive_bytes: largest archive that may be imported, packed and unpacked.
@@ -33,6 +34,7 @@ class MapStoreSettings(ServiceSettings):
     port: int = Field(default=8001, ge=0, le=65_535)
     token: SecretStr = SecretStr("")
     token_file: OptionalPath = None
+    tokens_file: OptionalPath = None
     allow_open: bool = False
     max_archive_bytes: int = Field(default=4_000_000_000, ge=1)
     compute_timeout_s: float = Field(default=20.0, gt=0.0)
@@ -59,7 +61,8 @@ class MapStoreSettings(ServiceSettings):
         Raises:
             ValueError: it can be neither read nor made.
         """
-        if self.loopback or self.token_file is None or self.token.get_secret_value():
+        trusted = self.loopback and self.tokens_file is None
+        if trusted or self.token_file is None or self.token.get_secret_value():
             return self
         return self.model_copy(update={"token": SecretStr(kept_secret(self.token_file))})
 

@@ -3,8 +3,9 @@
 import os
 import ssl
 import sys
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from contextlib import contextmanager
+from http import HTTPStatus
 from pathlib import Path
 
 import httpx
@@ -17,6 +18,7 @@ from services.launcher.processes.stack_settings import StackSettings
 from services.launcher.processes.state import StateFolder
 from services.launcher.processes.supervisor import Launcher
 from shared.access.credentials import MAP_STORE_HOST, credentials_in
+from shared.access.tokens import kept_secret
 from shared.messages.maps import MapReply, MapRequest
 from shared.queries import RefusedError
 from shared.topics import MAP
@@ -28,6 +30,8 @@ REST_TIMEOUT_S = 120.0
 """Checking or importing a large map is one request."""
 
 SERVICE = "map-store"
+KEPT_SECRET = Path("token/token")
+"""In a data folder: MAP_STORE_TOKEN_FILE of docker-compose.yml there."""
 
 
 def read_map(stack: Stack, name: str) -> MapReply | None:
@@ -68,19 +72,26 @@ def open_store(data_dir: Path) -> Iterator[httpx.Client]:
     running = StateFolder(data_dir.resolve()).read()
     with one_line_errors():
         if running is not None:
-            with store_client(running.map_store_url, running.certs) as client:
+            with store_client(running.map_store_url, running.certs, data_dir) as client:
                 yield client
             return
-        with Launcher(data_dir, only=[SERVICE]) as launcher, store_client(launcher.map_store_url) as client:
+        with (
+            Launcher(data_dir, only=[SERVICE]) as launcher,
+            store_client(launcher.map_store_url, data_dir=data_dir) as client,
+        ):
             yield client
 
 
-def store_client(url: str, certs: Path | None = None) -> httpx.Client:
-    """A client of a map store; on a secured stack it shows the certificate in the folder `certs`."""
+def store_client(url: str, certs: Path | None = None, data_dir: Path | None = None) -> httpx.Client:
+    """A client of a map store; on a secured stack it shows the certificate in the folder `certs`.
+
+    It has the secret that the map store of a stack in `data_dir` may have made, which its owner can read.
+    """
     credentials = credentials_in(certs)
     client = httpx.Client(
         base_url=url,
         headers=token_header(),
+        auth=_Secrets(data_dir) if data_dir is not None else None,
         timeout=REST_TIMEOUT_S,
         trust_env=False,
         verify=credentials.tls_context(ssl.Purpose.SERVER_AUTH) if credentials else True,
@@ -88,6 +99,23 @@ def store_client(url: str, certs: Path | None = None) -> httpx.Client:
     if credentials:
         client.event_hooks = {"request": [_expect_the_map_store]}
     return client
+
+
+class _Secrets(httpx.Auth):
+    """The secret of a data folder, which may be of an earlier start, then the one that is in force now."""
+
+    def __init__(self, data_dir: Path) -> None:
+        self._path = data_dir / KEPT_SECRET
+
+    def auth_flow(self, request: httpx.Request) -> Generator[httpx.Request, httpx.Response, None]:
+        """Send the request, a second time where the first secret is not taken."""
+        chosen = request.headers.get("authorization")
+        if self._path.exists():
+            request.headers["authorization"] = f"Bearer {kept_secret(self._path)}"
+        answer = yield request
+        if answer.status_code == HTTPStatus.UNAUTHORIZED and chosen is not None:
+            request.headers["authorization"] = chosen
+            yield request
 
 
 def post_archive(store: httpx.Client, archive: bytes, name: str | None) -> str:

@@ -17,6 +17,7 @@ from services.launcher.processes.supervisor import Launcher
 from services.map_store.storage import catalogue
 from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
+from shared.access.tokens import Token, digest_of, new_secret, write_tokens
 from tests.faults.lived_maps import link, place
 from tests.unit.services.map_store.test_store import damage
 
@@ -117,3 +118,25 @@ def test_a_map_of_old_that_is_called_like_an_option_goes_behind_two_dashes(
     refused = call("rename", "--", "flat", "--help").exception
     assert isinstance(refused, ExperimentError)
     assert "must not begin with '-'" in str(refused)
+
+
+def test_where_people_have_tokens_the_map_store_takes_writes_of_the_gateway_and_the_owner_only(
+    data_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    """The owner's shell may have a token of the gateway, which is none of the map store."""
+    secret, file = new_secret(), tmp_path / "tokens.json"
+    write_tokens(file, [Token(name="anna", role="admin", sha256=digest_of(secret))])
+    monkeypatch.setenv("TOPNAV_TOKENS_FILE", str(file))
+    monkeypatch.delenv("TOPNAV_TOKEN", raising=False)
+    with Launcher(data_dir, only=["gateway"]) as launcher:
+        rename, anna = {"json": {"name": "house"}}, {"Authorization": f"Bearer {secret}"}
+        with httpx.Client(base_url=launcher.map_store_url, trust_env=False, timeout=30.0) as rest:
+            for header in ({"X-Topnav-Author": "anna"}, anna):
+                refused = rest.patch("/maps/flat", headers=header, **rename)
+                assert (refused.status_code, rest.get("/maps/flat").status_code) == (401, 200)
+        through = f"{launcher.gateway_url}/api/maps/flat"
+        assert httpx.patch(through, headers=anna, trust_env=False, timeout=30.0, **rename).status_code == 200
+        monkeypatch.setenv("TOPNAV_TOKEN", secret)
+        assert call("rename", "house", "hall").output == "house is now hall\n"
+    monkeypatch.delenv("TOPNAV_TOKENS_FILE")
+    assert call("rename", "hall", "flat").output == "hall is now flat\n"

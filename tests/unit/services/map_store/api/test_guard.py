@@ -1,9 +1,12 @@
 """Who may use REST: tokens, names of this machine, pages of others; addresses that need a token to start."""
 
+from pathlib import Path
+
 import pytest
 from fastapi.testclient import TestClient
 from pydantic import ValidationError
 
+from services.gateway.settings import GatewaySettings
 from services.map_store.settings import MapStoreSettings
 from services.map_store.store import MapStore
 from shared.web.origins import LOOPBACK_NAMES
@@ -45,3 +48,18 @@ def test_a_reachable_address_needs_a_token_or_an_explicit_wish(host: str):
         MapStoreSettings(host=host, token="change-me")
     assert not MapStoreSettings(host=host, token=SECRET).loopback
     assert not MapStoreSettings(host=host, allow_open=True).loopback
+
+
+def test_on_loopback_a_secret_is_made_where_people_need_tokens_and_one_that_was_chosen_stays(tmp_path: Path):
+    kept = {"token_file": tmp_path / "token"}
+    tokens = {"tokens_file": tmp_path / "tokens.json"}
+    assert not MapStoreSettings(**kept).with_kept_secret().token.get_secret_value()
+    assert (
+        MapStoreSettings(**kept, **tokens, token=SECRET).with_kept_secret().token.get_secret_value() == SECRET
+    )
+    assert not kept["token_file"].exists()
+    made = MapStoreSettings(**kept, **tokens).with_kept_secret().token.get_secret_value()
+    assert made == kept["token_file"].read_text()
+    gateway = GatewaySettings(**kept, **tokens).with_kept_secret()
+    assert gateway.map_store_token.get_secret_value() == made
+    assert not gateway.token.get_secret_value(), "the secret is none of a person"
