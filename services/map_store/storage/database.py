@@ -48,6 +48,8 @@ class Database:
         try:
             self.inspect()
             if not self.damage:
+                with self.read() as connection:
+                    migration.refuse_later(connection)
                 with self.write() as connection:
                     migration.prepare(connection)
             with self.read() as connection:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
-from sqlalchemy import Column, Connection, Table, func, insert, select, text, update
+from sqlalchemy import Column, Connection, Table, func, insert, inspect, select, text, update
 from sqlalchemy.schema import CreateColumn
 
 from services.map_store.errors import CorruptError, UnavailableError
@@ -17,12 +17,20 @@ SEALED = (tables.maps, tables.revisions, tables.nodes, tables.edges, tables.miss
 RECORDS: dict[str, type[BaseModel]] = {"nodes": Node, "edges": Edge}
 
 
-def prepare(connection: Connection) -> None:
-    """Make or migrate the tables, all in the caller's transaction.
+def refuse_later(connection: Connection) -> None:
+    """Look before anything is written.
 
     Raises:
-        UnavailableError: they are of a later version.
+        UnavailableError: tables of a later version.
     """
+    if inspect(connection).has_table(tables.about.name):
+        versions = _versions(connection)
+        if max(versions, default=0) > tables.VERSION:
+            raise _of_another_version(versions)
+
+
+def prepare(connection: Connection) -> None:
+    """Make or migrate the tables, all in the caller's transaction."""
     tables.metadata.create_all(connection)
     versions = _versions(connection)
     if not versions:
@@ -42,12 +50,16 @@ def require(connection: Connection) -> None:
     """
     versions = _versions(connection)
     if versions != [tables.VERSION]:
-        raise UnavailableError(
-            f"tables of version {tables.VERSION} expected, got {versions}; export the maps with the version "
-            "that wrote them and import them here"
-        )
+        raise _of_another_version(versions)
     if connection.execute(select(tables.about.c.seal)).scalar_one() != _about_seal(connection):
         raise CorruptError("the description of the tables is damaged; restore a backup")
+
+
+def _of_another_version(versions: Sequence[int]) -> UnavailableError:
+    return UnavailableError(
+        f"tables of version {tables.VERSION} expected, got {versions}; export the maps with the version "
+        "that wrote them and import them here"
+    )
 
 
 def _versions(connection: Connection) -> Sequence[int]:

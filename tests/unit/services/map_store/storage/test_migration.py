@@ -6,7 +6,7 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
-from sqlalchemy import text
+from fastapi.testclient import TestClient
 
 from services.map_store.errors import CorruptError, UnavailableError
 from services.map_store.integrity.check import check
@@ -16,10 +16,13 @@ from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
 from shared.messages.maps import Edge
 from shared.wire import encode
-from tests.unit.services.map_store.conftest import add, features
+from tests.unit.services.map_store.conftest import add, app_of, features
 
 STORED = Path(__file__).parent / "data"
-"""Maps "flat" (five revisions, one of them an undo) and "loft", and a mission of robot r1, by version."""
+"""Maps "flat" (five revisions, one of them an undo) and "loft", and a mission of robot r1, by version.
+
+Names end with the commit whose own code wrote the file: dd495c3 is the first that kept maps.
+"""
 
 
 def copy_of(version: int | str, folder: Path) -> Path:
@@ -28,7 +31,7 @@ def copy_of(version: int | str, folder: Path) -> Path:
     return copy
 
 
-@pytest.fixture(params=[1, 2, "3_sealed"])
+@pytest.fixture(params=["1_dd495c3", 1, 2, "3_sealed", "3_a2174e2"])
 def file(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
     """A copy of a stored database; the one of this version was sealed by an earlier program."""
     return copy_of(request.param, tmp_path)
@@ -60,6 +63,19 @@ def test_maps_histories_and_missions_are_there_and_sound(file: Path):
     assert history == [(5, "rest", 4), (4, "rest", None)]
     mission = MissionStore(store.database).claim("r1")
     assert (mission.epoch, mission.mission_id, mission.step) == (2, "m-1", 12)
+
+
+def test_pictures_are_read_and_an_export_is_imported_as_the_same_map(file: Path):
+    client = TestClient(app_of(opened(file)))
+    assert client.get("/check").json() == {"damage": []}
+    pictures = [client.get(f"/maps/flat/nodes/{number}/thumbnail").content for number in range(3)]
+    assert pictures == [features(number).thumbnail for number in range(3)]
+    archive = client.get("/maps/flat/export").content
+    assert client.post("/maps/import", params={"name": "copy"}, content=archive).status_code == 201
+    for part in ("nodes", "edges"):
+        flat, copy = (client.get(f"/maps/{name}/{part}").json() for name in ("flat", "copy"))
+        assert [one | {"revision": 0} for one in flat] == [one | {"revision": 0} for one in copy]
+    assert client.get("/maps/copy/nodes/2/thumbnail").content == pictures[2]
 
 
 def test_it_is_written_undone_and_opened_again(file: Path):
@@ -113,10 +129,16 @@ def test_a_migration_that_fails_leaves_the_old_tables(first: Path, monkeypatch: 
     assert check(opened(first).database) == []
 
 
-def test_a_later_version_is_refused(file: Path):
-    store = opened(file)
-    with store.database.write() as connection:
-        connection.execute(text(f"UPDATE about SET version = {tables.VERSION + 1}"))
-    store.database.close()
-    with pytest.raises(UnavailableError, match=r"tables of version 3 expected, got \[4\]"):
+@pytest.mark.parametrize("change", ["", "ALTER TABLE answers RENAME TO replies"], ids=["same", "renamed"])
+def test_a_later_version_is_refused_without_a_byte_written(file: Path, change: str):
+    opened(file).database.close()
+    with closing(sqlite3.connect(file)) as connection, connection:
+        connection.execute(f"UPDATE about SET version = {tables.VERSION + 1}")
+        connection.execute(change)
+    before = file.read_bytes(), file.stat().st_mtime_ns
+    with pytest.raises(
+        UnavailableError, match=r"tables of version 3 expected, got \[4\]; export the maps with"
+    ):
         opened(file)
+    assert (file.read_bytes(), file.stat().st_mtime_ns) == before
+    assert list(file.parent.iterdir()) == [file]
