@@ -34,7 +34,7 @@ from services.gateway.routes import (
     session,
 )
 from services.gateway.settings import GatewaySettings
-from services.gateway.state import Gateway
+from services.gateway.state import STRANGERS, Gateway
 from shared.bus import Bus
 from shared.web.openapi import describe
 
@@ -55,7 +55,8 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
         hub = Hub(metrics, settings.max_robots, log.take)
         secret = settings.map_store_token.get_secret_value()
         store = open_client(str(settings.map_store_url), secret, settings.certs)
-        gateway = Gateway(settings, metrics, Asker(bus, metrics), hub, log, store)
+        askers = (Asker(bus, metrics), Asker(bus, metrics), Asker(bus, metrics, STRANGERS))
+        gateway = Gateway(settings, metrics, *askers, hub, log, store)
         app.state.gateway = gateway
         bridge = Bridge(bus, hub, asyncio.get_running_loop(), settings.robot, settings.max_robots)
         bridge.start()
@@ -65,7 +66,8 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
         finally:
             beat.cancel()
             bridge.stop()
-            gateway.asker.close()
+            for asker in askers:
+                asker.close()
             gateway.pictures.shutdown(wait=False, cancel_futures=True)
             await gateway.store.aclose()
 

@@ -9,13 +9,12 @@ from services.gateway.settings import GatewaySettings
 from shared.bus import Bus
 from shared.web.crowding import RESERVE, ConnectionLimits
 from shared.web.server import serving
+from shared.web.sockets import SparingSocketProtocol
 
 GRACE_S = 1
 """For requests under way: with the rest of the shutdown less than the 2 s in which a signal must end it."""
 LOOK_S = 0.5
 """How soon a server that ended by itself is noticed."""
-MAX_SOCKET_MESSAGE_BYTES = 4096
-"""Of a WebSocket's reader, of whom nothing is expected."""
 UNREAD_S = 30.0
 """Like GATEWAY_UPLOAD_TIMEOUT_S: who takes nothing for that long has gone."""
 OTHER_FILES = 256
@@ -47,8 +46,7 @@ def run(settings: GatewaySettings, bus: Bus, stop: threading.Event) -> None:
         stop=stop,
         grace_s=GRACE_S,
         loop="asyncio",
-        ws="websockets-sansio",
-        ws_max_size=MAX_SOCKET_MESSAGE_BYTES,
+        ws=SparingSocketProtocol,
         ws_per_message_deflate=False,  # a compressor for each reader costs more than it saves
         backlog=MAX_WAITING_CONNECTIONS,
         proxy_headers=bool(settings.proxies),

@@ -22,11 +22,18 @@ from shared.messages.estop import EStopState
 T = TypeVar("T")
 
 
+STRANGERS = 4
+"""Questions asked at once about robots that nobody heard of: each takes as long as an absent service does."""
+
+
 @dataclass
 class Gateway:
     """Settings and everything that lives as long as the application.
 
     Attributes:
+        asker: asks what pages and scripts want to know.
+        stop_asker: asks drive to stop a robot: that waits behind no other question.
+        strange_asker: asks about names that no robot was heard of, so that these hold up nobody else.
         missions: record of those that ended.
         store: client of the map store's REST interface.
         pictures: the one thread that decodes and encodes pictures: a large one needs 200 MB while it decodes.
@@ -37,6 +44,8 @@ class Gateway:
     settings: GatewaySettings
     metrics: Metrics
     asker: Asker
+    stop_asker: Asker
+    strange_asker: Asker
     hub: Hub
     missions: MissionLog
     store: httpx.AsyncClient
@@ -49,6 +58,11 @@ class Gateway:
         self.imports = Slots("imports", chosen.max_imports, chosen.max_imports)
         self.comparisons = Slots("comparisons", chosen.max_comparisons, chosen.max_comparisons_per_client)
         self.sockets = Slots("sockets", chosen.max_sockets, chosen.max_sockets_per_client)
+
+    def asker_for(self, robot: str) -> Asker:
+        """Who asks about a robot."""
+        known = robot == self.settings.robot or self.hub.knows(robot)
+        return self.asker if known else self.strange_asker
 
     async def work(self, job: Callable[[], T]) -> T:
         """Run a picture job on its thread."""

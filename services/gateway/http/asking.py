@@ -18,16 +18,22 @@ R = TypeVar("R", bound=Message)
 
 THREADS = 16
 """Questions asked at once; chosen: each waits on a thread, and several consoles ask few."""
-MAX_WAITING = 3 * THREADS
-"""Questions on their way; more are refused at once instead of piling up behind a service that hangs."""
+WAITING = 3
+"""For each thread: more questions are refused at once instead of piling up behind a service that hangs."""
 
 
 class Asker:
-    """Asks on threads; raises `ProblemError` where the bus raises its own errors."""
+    """Asks on threads; raises `ProblemError` where the bus raises its own errors.
 
-    def __init__(self, bus: Bus, metrics: Metrics) -> None:
-        self._bus, self._metrics = bus, metrics
-        self._pool = ThreadPoolExecutor(THREADS, thread_name_prefix="ask")
+    Args:
+        bus: to ask on.
+        metrics: what to count in.
+        threads: questions asked at once; three times as many may be on their way.
+    """
+
+    def __init__(self, bus: Bus, metrics: Metrics, threads: int = THREADS) -> None:
+        self._bus, self._metrics, self._most = bus, metrics, WAITING * threads
+        self._pool = ThreadPoolExecutor(threads, thread_name_prefix="ask")
         self._waiting = 0
         self._closed = threading.Event()
 
@@ -37,8 +43,8 @@ class Asker:
         Raises:
             ProblemError: 503 absent or busy, 504 too slow, 409 refused (422 for good), 502 answered nonsense.
         """
-        if self._waiting >= MAX_WAITING:
-            expected, got = f"at most {MAX_WAITING} questions on their way", str(self._waiting)
+        if self._waiting >= self._most:
+            expected, got = f"at most {self._most} questions on their way", str(self._waiting)
             raise ProblemError(503, "gateway_busy", expected, got, "wait a second and try again")
         self._waiting += 1
         try:

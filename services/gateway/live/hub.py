@@ -84,10 +84,10 @@ class Hub:
         """Store what the bus brought, in the order it came."""
         for message in messages:
             robot = str(getattr(message, "robot", ""))
-            view = self.view(robot)
-            if view is None:
+            if not self._has_room(robot):
                 self._metrics.robots_ignored.inc()
                 continue
+            view = self.robots.setdefault(robot, RobotView())
             view.seen_s = time.monotonic()
             self._store(robot, view, message)
 
@@ -103,17 +103,16 @@ class Hub:
             for outbox in view.outboxes:
                 outbox.offer_newest("services", text)
 
-    def view(self, robot: str) -> RobotView | None:
-        """The robot's view, made on first sight; None when there are too many robots."""
-        if robot not in self.robots and len(self.robots) < self._max_robots:
-            self.robots[robot] = RobotView()
-        return self.robots.get(robot)
+    def knows(self, robot: str) -> bool:
+        """Whether a robot of this name was ever heard of."""
+        view = self.robots.get(robot)
+        return view is not None and view.seen_s > 0.0
 
     def join(self, robot: str) -> Outbox | None:
         """Follow a robot: first what is known, then the news. None when there are too many robots."""
-        view = self.view(robot)
-        if view is None:
+        if not self._has_room(robot):
             return None
+        view = self.robots.setdefault(robot, RobotView())
         outbox = Outbox()
         outbox.offer_newest("services", _text("services", self.services))
         for kind in NEWEST.values():
@@ -125,9 +124,14 @@ class Hub:
         return outbox
 
     def leave(self, robot: str, outbox: Outbox) -> None:
-        """Stop following."""
-        if robot in self.robots:
-            self.robots[robot].outboxes.discard(outbox)
+        """Stop following. A name that only followers ever said takes no robot's place."""
+        view = self.robots[robot]
+        view.outboxes.discard(outbox)
+        if not view.outboxes and not self.knows(robot):
+            del self.robots[robot]
+
+    def _has_room(self, robot: str) -> bool:
+        return self.knows(robot) or sum(map(self.knows, self.robots)) < self._max_robots
 
     def _store(self, robot: str, view: RobotView, message: Message) -> None:
         if (kind := NEWEST.get(type(message))) is not None:

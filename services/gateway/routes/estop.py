@@ -113,8 +113,11 @@ def _signed(who: str, token: str) -> str:
 
 
 async def _ask(gateway: Gateway, robot: str, request: EStopRequest) -> EStopState:
+    asker = gateway.asker_for(robot)
+    if request.action == "engage" and asker is gateway.asker:
+        asker = gateway.stop_asker
     try:
-        return await gateway.asker.ask("drive", ESTOP, request, TIMEOUT_S, robot=robot)
+        return await asker.ask("drive", ESTOP, request, TIMEOUT_S, robot=robot)
     except ProblemError as problem:
         if problem.code == "service_absent" and robot != gateway.settings.robot:
             known(gateway, robot)  # a robot nobody heard of is a better reason than a missing drive service

@@ -82,7 +82,7 @@ async def show_live_matches(
 
 async def _matches(gateway: Gateway, robot: str, question: MatchRequest, picture: str) -> Matches:
     timeout_s = gateway.settings.compute_timeout_s
-    reply = await gateway.asker.ask("features", MATCH, question, timeout_s, robot=robot)
+    reply = await gateway.asker_for(robot).ask("features", MATCH, question, timeout_s, robot=robot)
     match = next((found for found in reply.results if found.node_id in question.node_ids), None)
     if match is None:
         expected = f"matches of node {question.node_ids[0]}"

@@ -77,7 +77,7 @@ async def check_goal(
     goal = await goal_of(request, gateway, robot)
     question = MatchRequest(map=map_name, features=goal.features, best_k=BEST_K, with_matches=False)
     timeout_s = gateway.settings.compute_timeout_s
-    reply = await gateway.asker.ask("features", MATCH, question, timeout_s, robot=robot)
+    reply = await gateway.asker_for(robot).ask("features", MATCH, question, timeout_s, robot=robot)
     return _answer(robot, goal, reply)
 
 

@@ -136,7 +136,7 @@ async def wait(
     """Answer when the mission ends, or after `timeout_s` with `done` false: then ask again."""
     deadline_s = time.monotonic() + timeout_s
     while True:
-        view = gateway.hub.view(robot) or RobotView()  # of too many robots nothing is heard
+        view = gateway.hub.robots.get(robot) or RobotView()
         news = view.changed  # from before the question: an end may be told while it is answered
         status = await _ask_patiently(gateway, robot, deadline_s)
         done = _ended(status, mission_id)
@@ -168,7 +168,7 @@ async def _ask_patiently(gateway: Gateway, robot: str, deadline_s: float) -> Mis
         try:
             return await _ask(gateway, robot, MissionRequest(action="status"))
         except ProblemError as problem:
-            gone = problem.status_code in (503, 504) and robot in gateway.hub.robots
+            gone = problem.status_code in (503, 504)
             if not gone or time.monotonic() + 0.5 > deadline_s:
                 raise
         await asyncio.sleep(0.5)
@@ -198,7 +198,7 @@ async def _ask(gateway: Gateway, robot: str, wish: MissionRequest) -> MissionSta
 async def _ask_planner(gateway: Gateway, robot: str, query: Query[Q, R], question: Q) -> R:
     timeout_s = gateway.settings.ask_timeout_s
     try:
-        return await gateway.asker.ask("planner", query, question, timeout_s, robot=robot)
+        return await gateway.asker_for(robot).ask("planner", query, question, timeout_s, robot=robot)
     except ProblemError as problem:
         if problem.code == "service_absent" and robot != gateway.settings.robot:
             known(gateway, robot)  # a robot nobody heard of is a better reason than a missing planner

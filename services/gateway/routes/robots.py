@@ -100,12 +100,11 @@ def known(gateway: Gateway, robot: str) -> RobotView:
     Raises:
         ProblemError: 404, never heard of it.
     """
-    view = gateway.hub.robots.get(robot)
-    if view is None or view.seen_s == 0.0:
-        names = sorted(name for name, other in gateway.hub.robots.items() if other.seen_s > 0.0)
+    if not gateway.hub.knows(robot):
+        names = sorted(filter(gateway.hub.knows, gateway.hub.robots))
         expected = f"one of {names}" if names else "a robot that was heard of"
         raise ProblemError(404, "unknown_robot", expected, robot, "see /api/robots")
-    return view
+    return gateway.hub.robots[robot]
 
 
 def _facts(robot: str, view: RobotView) -> dict[str, Any]:

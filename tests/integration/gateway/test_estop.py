@@ -5,6 +5,7 @@ import socket
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import httpx
@@ -19,6 +20,7 @@ from tests.integration.gateway.gateway_process import WAIT_S, sees
 from tests.integration.gateway.standins import Peer
 
 PATH = "/api/robots/e1/estop"
+FLOOD, SOON_S = 80, 1.0
 
 
 @pytest.fixture(scope="module")
@@ -129,6 +131,21 @@ def test_clearing_needs_a_name(clear: httpx.Client, who: str | None) -> None:
 def test_a_robot_nobody_heard_of_is_named(http: httpx.Client) -> None:
     answer = http.post("/api/robots/nobody/estop")
     assert (answer.status_code, answer.json()["got"]) == (404, "nobody")
+
+
+@pytest.mark.parametrize("method", ["GET", "POST"])
+def test_questions_about_robots_that_nobody_heard_of_hold_up_no_stop(
+    clear: httpx.Client, gateway: str, method: str
+) -> None:
+    """Each takes a place for as long as an absent service is waited for."""
+    with ThreadPoolExecutor(FLOOD) as pool, httpx.Client(base_url=gateway, timeout=WAIT_S) as other:
+        flood = [pool.submit(other.request, method, f"/api/robots/z{n}/estop") for n in range(FLOOD)]
+        time.sleep(0.3)
+        began_s = time.monotonic()
+        assert clear.post(PATH).json()["engaged"]
+        assert time.monotonic() - began_s < SOON_S
+        assert clear.get(PATH).json()["engaged"]
+        assert {one.result().status_code for one in flood} <= {404, 503}
 
 
 def test_without_drive_it_says_so(http: httpx.Client) -> None:

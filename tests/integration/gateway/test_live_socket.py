@@ -1,5 +1,6 @@
 """The WebSocket: news, origin, limits, and readers that do not read."""
 
+import contextlib
 import json
 import socket
 import time
@@ -18,6 +19,10 @@ from tests.integration.gateway.conftest import serve_gateway
 from tests.integration.gateway.gateway_process import WAIT_S
 
 ROBOT = "w1"
+SOCKETS, SOON_S = 3, 1.0
+FIRST_BYTES = {"texts": 0x81, "continuations": 0x00, "pings": 0x89}
+"""Of frames: the final bit and the opcode (RFC 6455, 5.2)."""
+HALF_TEXT = bytes([0x01, 0x80, 0, 0, 0, 0])
 DROPPED_S = 90.0
 """So long until a deaf reader is dropped, on a machine that forgets about us now and then."""
 
@@ -154,6 +159,29 @@ def test_a_reader_that_stops_reading_is_dropped_and_blocks_nobody(small: str, ro
             read_up_to(live, events, Event(seq=10**6, robot=ROBOT, kind="after"))
     finally:
         deaf.close()
+
+
+@pytest.mark.parametrize("kind", FIRST_BYTES)
+def test_a_flood_of_tiny_frames_ends_its_connections_and_holds_up_nobody(small: str, kind: str) -> None:
+    tiny = bytes([FIRST_BYTES[kind], 0x80, 0, 0, 0, 0]) * 80_000  # masked, as a client's must be, and empty
+    with contextlib.ExitStack() as stack:
+        floods = [stack.enter_context(opened(small)) for _ in range(SOCKETS)]
+        for flood in floods:
+            flood.socket.settimeout(SOON_S)
+            with contextlib.suppress(TimeoutError, ConnectionError):
+                flood.socket.sendall((HALF_TEXT if kind == "continuations" else b"") + tiny)
+        began_s = time.monotonic()
+        assert httpx.get(f"{small}/healthz", timeout=WAIT_S).status_code == 200
+        assert time.monotonic() - began_s < SOON_S
+        for flood in floods:
+            with pytest.raises(ConnectionClosed):
+                next_of(flood, "nothing of this kind")
+
+
+def test_pings_and_pongs_of_a_patient_reader_are_welcome(small: str) -> None:
+    with connect(url(small, "quiet"), proxy=None, open_timeout=WAIT_S) as live:
+        for _ in range(20):
+            assert live.ping().wait(WAIT_S)
 
 
 def test_long_messages_of_a_reader_end_its_connection(small: str) -> None:

@@ -79,5 +79,19 @@ def test_who_left_is_forgotten() -> None:
     mine = hub()
     outbox = mine.join("r1")
     assert outbox is not None
+    mine.take([Heading(robot="r1")])
     mine.leave("r1", outbox)
     assert mine.robots["r1"].outboxes == set()
+
+
+def test_names_that_only_followers_said_take_no_robots_place() -> None:
+    mine = hub(max_robots=2)
+    followed = [(name, mine.join(name)) for name in ("a", "b", "c")]
+    mine.take([Heading(robot="r1"), Heading(robot="r2")])
+    assert mine.knows("r1")
+    assert mine.knows("r2")
+    assert mine.join("d") is None, "there are as many robots as there may be"
+    for name, outbox in followed:
+        assert outbox is not None
+        mine.leave(name, outbox)
+    assert set(mine.robots) == {"r1", "r2"}
