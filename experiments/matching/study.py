@@ -1,5 +1,6 @@
 """All combinations on all pictures and conditions, and the table of times."""
 
+import logging
 import os
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -15,6 +16,8 @@ from services.features.networks.runtime import WeightsError
 from services.features.pipeline.extraction import extract
 from services.features.pipeline.pipeline import Pipeline
 from services.features.pipeline.plugins import CLASSIC
+
+log = logging.getLogger(__name__)
 
 THESIS_RATIO = {
     "superpoint": 1.12 / 0.16,
@@ -34,7 +37,8 @@ def pipeline_with_weights(descriptor: str, representation: str, matcher: str) ->
     """The combination, or None where its trained weights are not here: nothing is measured without them."""
     try:
         return Pipeline(profile_of(descriptor, representation, matcher))
-    except (WeightsError, ValueError, ImportError):
+    except (WeightsError, ValueError, ImportError) as error:
+        log.warning("%s is left out: %s", descriptor, error)
         return None
 
 

@@ -32,6 +32,7 @@ NOT_SET = {
     "MAP_STORE_TOKEN_FILE",
     "PLANNER_MISSIONS_FOLDER",
     "PLANNER_PROFILE_FILE",
+    "TOPNAV_DOWNLOAD_WEIGHTS",
     "TOPNAV_NON_COMMERCIAL",
 }
 """Empty or chance by default in Compose, or for a secret that nobody chose, which a cluster has: left out."""

@@ -11,5 +11,5 @@ class HardNet(PatchNetwork):
     """128 numbers per patch."""
 
     def _build(self, *, trained: bool) -> torch.nn.Module:
-        with loading("hardnet"):
+        with loading("hardnet", trained=trained):
             return kf.HardNet(pretrained=trained)

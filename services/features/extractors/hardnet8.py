@@ -11,5 +11,5 @@ class HardNet8(PatchNetwork):
     """128 numbers per patch."""
 
     def _build(self, *, trained: bool) -> torch.nn.Module:
-        with loading("hardnet8"):
+        with loading("hardnet8", trained=trained):
             return kf.HardNet8(pretrained=trained)

@@ -11,5 +11,5 @@ class SosNet(PatchNetwork):
     """128 numbers per patch."""
 
     def _build(self, *, trained: bool) -> torch.nn.Module:
-        with loading("sosnet"):
+        with loading("sosnet", trained=trained):
             return kf.SOSNet(pretrained=trained)

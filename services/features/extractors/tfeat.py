@@ -11,5 +11,5 @@ class TFeat(PatchNetwork):
     """128 numbers per patch."""
 
     def _build(self, *, trained: bool) -> torch.nn.Module:
-        with loading("tfeat"):
+        with loading("tfeat", trained=trained):
             return kf.TFeat(pretrained=trained)

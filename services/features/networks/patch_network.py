@@ -30,10 +30,10 @@ class PatchNetwork(ABC):
         self._detector = _detector(profile, trained=trained).to(self._device).eval()
         self._steps: list[torch.nn.Module] = []
         if profile.affnet:
-            with loading("affnet"):
+            with loading("affnet", trained=trained):
                 self._steps.append(kf.LAFAffNetShapeEstimator(pretrained=trained))
         if not profile.upright:
-            with loading("orinet"):
+            with loading("orinet", trained=trained):
                 self._steps.append(kf.LAFOrienter(PATCH_PX, angle_detector=kf.OriNet(pretrained=trained)))
         for step in self._steps:
             step.to(self._device).eval()
@@ -73,7 +73,7 @@ class PatchNetwork(ABC):
 def _detector(profile: Profile, *, trained: bool) -> torch.nn.Module:
     count = CANDIDATES * profile.keypoints
     if profile.detector == "keynet":
-        with loading("keynet"):
+        with loading("keynet", trained=trained):
             return kf.KeyNetDetector(pretrained=trained, num_features=count)
     response = kf.CornerGFTT() if profile.detector == "gftt" else kf.CornerHarris(HARRIS_K)
     return kf.MultiResolutionDetector(response, num_features=count)

@@ -9,6 +9,8 @@ import numpy as np
 import numpy.typing as npt
 import torch
 
+from services.features.networks.cache import path_of
+from services.features.networks.catalogue import find_model
 from services.features.pipeline.interfaces import Image
 from shared.geometry.sphere import EquirectGrid
 
@@ -17,6 +19,8 @@ WIDTH_PX, HEIGHT_PX = 800, 400
 
 NON_COMMERCIAL = "TOPNAV_NON_COMMERCIAL"
 """Variable by which somebody says that the use is not commercial."""
+DOWNLOAD = "TOPNAV_DOWNLOAD_WEIGHTS"
+"""Variable by which somebody asks for weights that are missing; `topnav models pull` sets it."""
 
 
 class WeightsError(RuntimeError):
@@ -35,9 +39,14 @@ def device_named(name: str) -> torch.device:
 
 
 @contextmanager
-def loading(what: str) -> Iterator[None]:
-    """Turn whatever a library raises while it loads weights into one line that says what to do."""
+def loading(what: str, *, trained: bool = True) -> Iterator[None]:
+    """Turn whatever a library raises while it loads weights into one line that says what to do.
+
+    Libraries download what is missing. That is for those who ask for it: without network it takes minutes.
+    """
     try:
+        if trained and not path_of(find_model(what)).exists() and not _is_set(DOWNLOAD):
+            raise FileNotFoundError("they are not here")
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # kornia tells every retry; one line will do
             yield
@@ -49,13 +58,17 @@ def loading(what: str) -> Iterator[None]:
         ) from error
 
 
+def _is_set(variable: str) -> bool:
+    return os.environ.get(variable, "").lower() in ("1", "true", "yes")
+
+
 def require_consent(model: str) -> None:
     """Refuse weights whose licence forbids commercial use unless the environment says that this is none.
 
     Raises:
         ValueError: it does not; the text names the licence and the variable.
     """
-    if os.environ.get(NON_COMMERCIAL, "").lower() not in ("1", "true", "yes"):
+    if not _is_set(NON_COMMERCIAL):
         raise ValueError(
             f"the weights of {model} are licensed by Magic Leap for non-commercial research only: "
             f"set {NON_COMMERCIAL}=1 if that is your use, or choose another pipeline, for example aliked-n16"

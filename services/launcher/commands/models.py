@@ -70,9 +70,10 @@ def verify(names: Names = None) -> None:
 
 def _load(model: "TrainedModel") -> None:
     from services.features.networks.loaders import load
-    from services.features.networks.runtime import NON_COMMERCIAL, WeightsError
+    from services.features.networks.runtime import DOWNLOAD, NON_COMMERCIAL, WeightsError
     from services.launcher.client.failure import ExperimentError
 
+    os.environ[DOWNLOAD] = "1"
     if not model.commercial:
         os.environ[NON_COMMERCIAL] = "1"
     try:

@@ -1,6 +1,7 @@
 """Learned plugins: shapes with random weights, quality with trained ones where they are to be had."""
 
 import shutil
+import socket
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import pytest
 torch = pytest.importorskip("torch")
 
 from services.features.networks.catalogue import MODELS  # noqa: E402
-from services.features.networks.runtime import WeightsError, device_named  # noqa: E402
+from services.features.networks.runtime import DOWNLOAD, WeightsError, device_named  # noqa: E402
 from services.features.pipeline.extraction import extract  # noqa: E402
 from services.features.pipeline.interfaces import Profile, Runtime  # noqa: E402
 from services.features.pipeline.named_pipelines import LIGHTGLUE, combined  # noqa: E402
@@ -110,8 +111,19 @@ def test_non_commercial_weights_need_consent(monkeypatch):
         create_matcher(combined("superpoint", "equirectangular", "superglue"), "euclidean", Runtime())
 
 
+def test_weights_that_are_missing_are_not_downloaded_unasked(monkeypatch, tmp_path):
+    """Nobody answers at this proxy: whoever tried would wait for minutes."""
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        monkeypatch.setenv("TORCH_HOME", str(tmp_path))
+        monkeypatch.setenv("https_proxy", f"http://127.0.0.1:{silent.getsockname()[1]}")
+        monkeypatch.delenv(DOWNLOAD, raising=False)
+        with pytest.raises(WeightsError, match="topnav models pull aliked-t16"):
+            Pipeline(combined("aliked-t16", "equirectangular", "mutual_ratio"))
+
+
 def test_weights_that_are_not_to_be_had_are_named_with_what_to_do(monkeypatch, tmp_path):
     monkeypatch.setenv("TORCH_HOME", str(tmp_path))
+    monkeypatch.setenv(DOWNLOAD, "1")
     monkeypatch.setenv("https_proxy", "http://127.0.0.1:9")
     with pytest.raises(WeightsError, match="topnav models pull aliked-t16"):
         Pipeline(combined("aliked-t16", "equirectangular", "mutual_ratio"))
