@@ -4,7 +4,8 @@ FROM python:3.11-slim-trixie
 WORKDIR /app
 COPY pyproject.toml constraints.txt LICENSE ./
 # The core is the same layer in every image. The README belongs to the package and not to what runs.
-RUN touch README.md && pip install --no-cache-dir --constraint constraints.txt .
+RUN touch README.md && pip install --no-cache-dir --constraint constraints.txt . \
+    && rm -r /usr/local/lib/python3.11/site-packages/numpy/*/tests
 RUN pip install --no-cache-dir --constraint constraints.txt '.[certs]'
 
 COPY shared shared

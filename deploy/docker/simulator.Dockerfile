@@ -9,7 +9,8 @@ RUN apt-get update \
 WORKDIR /app
 COPY pyproject.toml constraints.txt LICENSE ./
 # The core is the same layer in every image. The README belongs to the package and not to what runs.
-RUN touch README.md && pip install --no-cache-dir --constraint constraints.txt .
+RUN touch README.md && pip install --no-cache-dir --constraint constraints.txt . \
+    && rm -r /usr/local/lib/python3.11/site-packages/numpy/*/tests
 COPY deploy/packaging/opencv-shim deploy/packaging/opencv-shim
 RUN pip install --no-cache-dir --constraint constraints.txt ./deploy/packaging/opencv-shim '.[simulator]'
 
