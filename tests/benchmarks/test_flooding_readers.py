@@ -1,4 +1,4 @@
-"""Does a robot drive on while many have the gateway compare pictures? Headings a second beside so many readers.
+"""Does a robot drive on while many have the gateway compare pictures? Headings a second beside readers.
 
 On one machine the readers take processor time as well. Never gates on how fast it was.
 """
