@@ -32,13 +32,17 @@ class Merges:
             if self.running is not None:
                 return None
             merge = Merge(self._store, self._match, base, other, author)
-            thread = threading.Thread(target=merge.run, name="merge", daemon=True)
-            self._running = merge, thread
             self._last.pop(base.name, None)
             self._last[base.name] = merge
             while len(self._last) > KEPT:
                 del self._last[next(iter(self._last))]
-            thread.start()
+            thread = threading.Thread(target=merge.run, name="merge", daemon=True)
+            try:
+                thread.start()
+                self._running = merge, thread
+            except RuntimeError as error:  # no memory or no thread left: the next merge may find some
+                reason = f"the merge got no thread ({error}): nothing was written; try again later"
+                merge.progress.end("failed", reason)
         return merge
 
     def last(self, map_name: str) -> Merge | None:

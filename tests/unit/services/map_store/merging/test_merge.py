@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Callable, Mapping
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -204,6 +205,22 @@ def test_a_store_that_stops_ends_its_merge(maps: MapStore):
     gate.opened.set()
     assert merge.progress.answer.state == "refused"
     assert maps.summary("hall").revision == 1
+
+
+def test_a_merge_that_gets_no_thread_has_failed_and_the_next_one_may_begin(maps: MapStore):
+    merges = Merges(maps, matches)
+    hall, wing = ReadMap.newest(maps, "hall"), ReadMap.newest(maps, "wing")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(threading.Thread, "start", Mock(side_effect=RuntimeError("can't start new thread")))
+        refused = merges.start(hall, wing, "anna")
+    assert refused is not None
+    assert refused is merges.last("hall")
+    assert refused.progress.answer.state == "failed"
+    assert "can't start new thread" in refused.progress.answer.reason
+    merges.close()
+    merge = merges.start(hall, wing, "anna")
+    assert merge is not None
+    assert wait_until(lambda: merge.progress.answer.state == "done", END_S)
 
 
 def test_what_is_being_written_cannot_be_cancelled(maps: MapStore, monkeypatch: pytest.MonkeyPatch):
