@@ -66,8 +66,8 @@ def answer_map(store: MapStore, name: str, request: MapRequest) -> MapReply:
         )
         return MapReply(map=name, revision=revision)
     if request.action == "read_features":
-        revision, features = store.contents.features(name, request.node_ids)
-        return MapReply(map=name, revision=revision, features=features)
+        found, features = store.contents.features(name, request.node_ids)
+        return MapReply(map=name, revision=found.revision, features=features)
     revision, graph = store.graph(name)
     nodes = tuple(stored.node for stored in graph.nodes.values())
     return MapReply(map=name, revision=revision, nodes=nodes, edges=tuple(graph.edges.values()))

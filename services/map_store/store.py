@@ -54,9 +54,14 @@ class MapStore:
 
     def graph(self, name: str) -> tuple[int, Graph]:
         """The newest revision and its graph."""
+        found, graph = self.recorded_graph(name)
+        return found.revision, graph
+
+    def recorded_graph(self, name: str) -> tuple[MapRecord, Graph]:
+        """The map's record and the graph that belongs to it."""
         with self.database.read() as connection:
             found = catalogue.find(connection, name)
-            return found.revision, self._graphs.get(connection, found)
+            return found, self._graphs.get(connection, found)
 
     def revisions(self, name: str, before: int, limit: int) -> list[Revision]:
         """The newest `limit` revisions older than `before`, newest first."""
@@ -142,15 +147,23 @@ class MapStore:
             deltas.append(MapDelta(map=name, revision=entry.revision, author=author, reset=True))
         return entry.revision, undone
 
-    def add_stored(self, name: str, steps: tuple[Step, ...], author: str, base_revision: int) -> int:
-        """Apply steps whose blobs are kept for another map; all or none. Returns the new revision."""
+    def add_stored(self, base: MapRecord, steps: tuple[Step, ...], author: str) -> int:
+        """Apply steps whose blobs are kept for another map to `base` as it was read; all or none.
+
+        Returns the new revision; ConflictError when the map has changed or is another one of that name.
+        """
         with self._write() as (connection, deltas):
-            found = catalogue.find(connection, name)
-            _check_base(name, found.revision, base_revision)
+            found = catalogue.find(connection, base.name)
+            if found.map_id != base.map_id:
+                raise ConflictError(
+                    f"map {base.name!r} is another one than was read, it was deleted or renamed meanwhile; "
+                    "read it again and decide anew"
+                )
+            _check_base(found.name, found.revision, base.revision)
             names = {sha256 for stored in added_by(steps) for sha256 in stored.blobs}
             blobs.share(connection, found.map_id, names)
             entry, _ = self._commit(connection, found, steps, author)
-            deltas.append(MapDelta(map=name, revision=entry.revision, author=author, reset=True))
+            deltas.append(MapDelta(map=found.name, revision=entry.revision, author=author, reset=True))
         return entry.revision
 
     def restore(

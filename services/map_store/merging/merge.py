@@ -8,6 +8,7 @@ from typing import Self
 
 from services.map_store.errors import MapError
 from services.map_store.merging.progress import CancelledError, MergeAnswer, Progress
+from services.map_store.storage.catalogue import MapRecord
 from services.map_store.storage.graph import AddStoredNode, Graph, Step
 from services.map_store.store import MapStore
 from shared.mapgraph.merging.candidates import Candidate, MergeRefusedError
@@ -34,19 +35,23 @@ Matcher = Callable[[MatchRequest], MatchReply]
 
 @dataclass(frozen=True)
 class ReadMap:
-    """One revision of a map: as it is stored, and as merging reads it."""
+    """One revision of a map: its record, as it is stored, and as merging reads it."""
 
-    name: str
-    revision: int
+    record: MapRecord
     stored: Graph
     graph: SightGraph
 
     @classmethod
     def newest(cls, store: MapStore, name: str) -> Self:
         """The newest revision; raises MapError."""
-        revision, stored = store.graph(name)
+        record, stored = store.recorded_graph(name)
         nodes = [node.node for node in stored.nodes.values()]
-        return cls(name, revision, stored, SightGraph(nodes, stored.edges.values()))
+        return cls(record, stored, SightGraph(nodes, stored.edges.values()))
+
+    @property
+    def name(self) -> str:
+        """What the map is called."""
+        return self.record.name
 
 
 class Merge:
@@ -82,7 +87,7 @@ class Merge:
         chosen = choose(self._base.graph, self._other.graph, self._match_all())
         steps = self._steps(chosen)
         self.progress.advance(state="writing", cross_edges=len(chosen))
-        self._store.add_stored(self._base.name, steps, self._author, self._base.revision)
+        self._store.add_stored(self._base.record, steps, self._author)
         self.progress.end("done")
 
     def _match_all(self) -> dict[int, tuple[NodeMatch, ...]]:
@@ -97,8 +102,8 @@ class Merge:
 
     def _features(self, node_ids: list[int]) -> dict[int, Features]:
         name = self._other.name
-        revision, found = self._store.contents.features(name, node_ids)
-        if revision != self._other.revision:
+        record, found = self._store.contents.features(name, node_ids)
+        if record != self._other.record:
             raise MergeRefusedError(f"map {name!r} was changed while it was read: try again")
         features = {part.node_id: part.features for part in found}
         if missing := sorted(set(node_ids) - features.keys()):
@@ -109,7 +114,7 @@ class Merge:
 
     def _matches(self, features: Features) -> tuple[NodeMatch, ...]:
         """The best matches of one node with the base map as it was read."""
-        name, revision = self._base.name, self._base.revision
+        name, revision = self._base.name, self._base.record.revision
         wish = MatchRequest(
             map=name, map_revision=revision, features=features, best_k=BEST_K, with_matches=False
         )

@@ -8,6 +8,7 @@ from sqlalchemy import Connection
 
 from services.map_store.errors import CorruptError, InvalidError, MissingError
 from services.map_store.storage import blobs, catalogue
+from services.map_store.storage.catalogue import MapRecord
 from services.map_store.storage.database import Database
 from services.map_store.storage.graph import Graph, StoredNode
 from services.map_store.storage.graphs import Graphs
@@ -27,8 +28,8 @@ class Contents:
         self._database, self._graphs = database, graphs
         self._seen_damaged: set[str] = set()
 
-    def features(self, name: str, node_ids: Sequence[int]) -> tuple[int, tuple[NodeFeatures, ...]]:
-        """The revision and the features of `node_ids`, of all nodes when empty.
+    def features(self, name: str, node_ids: Sequence[int]) -> tuple[MapRecord, tuple[NodeFeatures, ...]]:
+        """The map's record and the features of `node_ids`, of all nodes when empty.
 
         A node whose features are damaged is logged and left out: the others stay of use.
         """
@@ -50,7 +51,7 @@ class Contents:
                 except CorruptError as error:
                     log.error("map %s: node %d is left out: %s", name, stored.node_id, error)
                     self._seen_damaged.add(stored.features)
-        return found.revision, tuple(answers)
+        return found, tuple(answers)
 
     def read(self, name: str, stored: StoredNode, kind: Kind) -> bytes:
         """Bytes of one blob of a node, b"" when it has no thumbnail; CorruptError names map and node."""

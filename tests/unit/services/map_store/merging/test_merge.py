@@ -86,12 +86,21 @@ def test_pictures_outlive_the_map_they_came_from_and_an_undo_takes_all_back(maps
     assert (dict(after.nodes), dict(after.edges)) == (dict(before.nodes), dict(before.edges))
 
 
+def replaced(store: MapStore, name: str) -> None:
+    """Another map takes a map's name and comes to the same revision with the same nodes."""
+    poses = HALL if name == "hall" else WING
+    store.delete(name)
+    fill(store, name, poses, 5_000)
+
+
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
         (lambda store: store.transact("hall", [DeleteNode(node_id=0)]), "'hall' is at revision 2, not 1"),
         (lambda store: store.transact("wing", [DeleteNode(node_id=2)]), "'wing' was changed while it was"),
         (lambda store: store.delete("wing"), "no map 'wing'"),
+        (lambda store: replaced(store, "hall"), "'hall' is another one than was read"),
+        (lambda store: replaced(store, "wing"), "'wing' was changed while it was"),
     ],
 )
 def test_a_map_that_changes_meanwhile_is_left_alone(
