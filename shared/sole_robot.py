@@ -6,6 +6,7 @@ import time
 import uuid
 
 from shared.bus import Bus
+from shared.queries import MEETING_S
 from shared.transport.keys import robot_key
 
 log = logging.getLogger(__name__)
@@ -18,22 +19,35 @@ class TakenError(RuntimeError):
 class SoleRobot:
     """Says on the bus that this process is robot `robot`, and notices when another one says so too.
 
-    A holder's name begins with the time of its start, so that both sides agree who was first. A process that
-    was killed is forgotten at once, one that hangs or was cut off after the bus's lease.
+    A holder's name begins with "running" once it is the robot, before that with "starting"; the least name
+    wins. So who starts gives way to who runs, and the random rest decides only between two that have not
+    heard of each other while they started. No clock has a say: that of another machine may be wrong.
+    A process that was killed is forgotten at once, one that hangs or was cut off after the bus's lease.
     """
 
     def __init__(self, bus: Bus, robot: str) -> None:
-        self._robot, self._me = robot, f"{time.time_ns():020d}-{uuid.uuid4().hex[:8]}"
+        self._bus, self._robot, self._id = bus, robot, uuid.uuid4().hex
+        self._began_s = time.monotonic()
         self._others: set[str] = set()
         self._lock = threading.Lock()
         bus.watch_tokens(robot_key(robot, "*"), self._changed)
-        bus.declare_token(robot_key(robot, self._me))
+        self._say("starting")
 
-    def require(self) -> None:
-        """Do nothing while this process is the robot.
+    def claim(self) -> None:
+        """Become the robot, once there was time to hear of others.
 
         Raises:
-            TakenError: another one is, and has been for longer.
+            TakenError: as for `require`.
+        """
+        time.sleep(max(0.0, self._began_s + MEETING_S - time.monotonic()))
+        self.require()
+        self._say("running")
+
+    def require(self) -> None:
+        """Do nothing while no other process comes first.
+
+        Raises:
+            TakenError: another one is the robot.
         """
         with self._lock:
             first = min(self._others, default=self._me)
@@ -43,9 +57,13 @@ class SoleRobot:
                 "stop that one, or give this one another name (TOPNAV_ROBOT)"
             )
 
+    def _say(self, stage: str) -> None:
+        self._me = f"{stage}-{self._id}"
+        self._bus.declare_token(robot_key(self._robot, self._me))
+
     def _changed(self, key: str, alive: bool) -> None:
         holder = key.rpartition("/")[2]
-        if holder == self._me:
+        if holder.endswith(self._id):
             return
         with self._lock:
             (self._others.add if alive else self._others.discard)(holder)

@@ -193,7 +193,7 @@ def run(settings: SimulatorSettings, world: WorldFile, bus: Bus, stop: threading
     simulation = Simulation(world, settings.simulation(), settings.seed)
     ports = Ports(bus, settings.robot, settings.state_dir)
     loop = (LockstepLoop if settings.lockstep else RealTimeLoop)(simulation, settings, ports)
-    sole.require()
+    sole.claim()
     bus.announce("simulator")
     log.info("world %s, %s", settings.world, "lockstep" if settings.lockstep else "real time")
     # The first picture builds the shaders, about half a second: requests can wait for that, clocks cannot.
