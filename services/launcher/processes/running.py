@@ -20,7 +20,7 @@ from shared.inbox import wait_until
 from shared.lifecycle import JsonFormatter, stop_on_signals
 
 STOP_S = 30.0
-"""What a launcher that came up too late may take to stop: longer than the grace of any service."""
+"""What a launcher that gave up may take to stop its services and say why: longer than the grace of any."""
 
 LOOK_S = 1.0
 """Chosen: a launcher that can no longer do its work ends so soon."""
@@ -103,7 +103,8 @@ def start_detached(settings: StackSettings, compose_file: Path, timeout_s: float
         state = folder.read()
         return state if state and state.launcher_pid == child.pid and state.healthy else None
 
-    wait_until(lambda: child.poll() is not None or up() is not None, timeout_s, 0.1)
+    # It counts the time itself: whoever ended it first would read of services that stop, not of what failed.
+    wait_until(lambda: child.poll() is not None or up() is not None, timeout_s + STOP_S, 0.1)
     if (state := up()) is not None:
         return state
     child.send_signal(signal.SIGTERM)

@@ -46,7 +46,8 @@ def require_healthy(
             )
         if time.monotonic() > deadline_s:
             states = ", ".join(f"{name} {now[name].state.value}" for name in waiting)
-            raise LaunchError(f"not healthy after {timeout_s:.0f} s: {states}; {hint(waiting[0], logs)}")
+            failed = min(waiting, key=lambda n: (now[n].last_exit is None, now[n].state is State.WAITING))
+            raise LaunchError(f"not healthy after {timeout_s:.0f} s: {states}; {hint(failed, logs)}")
         time.sleep(PERIOD_S)
 
 
