@@ -43,11 +43,12 @@ def role_for(method: str, path: str) -> Role | None:
 
     Args:
         method: of the request.
-        path: of its route, with names in braces.
+        path: of its route, with names in braces; a final slash changes nothing.
 
     Returns:
         None: nobody is asked for a token.
     """
+    path = path.removesuffix("/")
     if (method, path) in ANYBODY:
         return None
     if method in READS or (method, path) in VIEWER:

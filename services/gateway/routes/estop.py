@@ -21,7 +21,10 @@ TIMEOUT_S = 2.0
 """Chosen: drive answers within one of its steps; a person waits no longer before they press again."""
 LONGEST_WHO, LONGEST_WHY = 64, 400
 """Characters, as `EStopRequest` has them."""
-STOP_PATH = re.compile(r"/api/robots/[^/]+/estop")
+PATH = "/api/robots/{robot}/estop"
+SLASHED = PATH + "/"
+"""Answered as well: a redirect stops no robot of whoever does not follow it, as curl does not."""
+STOP_PATH = re.compile(r"/api/robots/[^/]+/estop/?")
 """Served however many connections there are."""
 BODY_S = 0.25
 """Chosen: a stop waits no longer for its reason, which usually comes with the head."""
@@ -62,13 +65,15 @@ class EStopAnswer(BaseModel):
     warning: str = ""
 
 
-@router.get("/api/robots/{robot}/estop")
+@router.get(PATH)
+@router.get(SLASHED, include_in_schema=False)
 async def show_estop(robot: RobotPath, gateway: GatewayDep) -> EStopAnswer:
     """Whether the emergency stop is engaged, by whom and why."""
     return _answer(await _ask(gateway, robot, EStopRequest(action="status")))
 
 
-@router.post("/api/robots/{robot}/estop", openapi_extra=json_body(Engage, required=False))
+@router.post(PATH, openapi_extra=json_body(Engage, required=False))
+@router.post(SLASHED, include_in_schema=False)
 async def engage_estop(request: Request, robot: RobotPath, gateway: GatewayDep) -> EStopAnswer:
     """Stop the robot now; it stands until a person clears the stop, whatever restarts."""
     wish, warning = await _reason(request)
@@ -81,7 +86,8 @@ async def engage_estop(request: Request, robot: RobotPath, gateway: GatewayDep) 
     return _answer(state, warning)
 
 
-@router.delete("/api/robots/{robot}/estop", openapi_extra=json_body(Clear, required=False))
+@router.delete(PATH, openapi_extra=json_body(Clear, required=False))
+@router.delete(SLASHED, include_in_schema=False)
 async def clear_estop(request: Request, robot: RobotPath, gateway: GatewayDep, who: Who = "") -> EStopAnswer:
     """Let the robot go: `who` names the person who saw that it may. A paused mission stays paused."""
     wish = Clear()

@@ -129,7 +129,8 @@ def test_while_one_address_holds_all_it_may_busy_a_stop_is_heard_and_nothing_els
             sender = stack.enter_context(contextlib.closing(opened(narrow)))
             sender.sendall(head + b"Content-Length: 100\r\n\r\n{")
         assert wait_until(lambda: status(narrow, "GET", "/healthz") == 429, MUST_END_S)
-        assert status(narrow, "POST", "/api/robots/r1/estop") == 503, "heard: there is no drive service here"
+        for path in ("/api/robots/r1/estop", "/api/robots/r1/estop/"):
+            assert status(narrow, "POST", path) == 503, "heard: there is no drive service here"
         assert served(narrow, "127.0.0.2")
 
 

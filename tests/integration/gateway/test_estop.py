@@ -72,6 +72,13 @@ def test_a_stop_needs_no_body_and_no_reason_is_too_long_for_it(clear: httpx.Clie
     assert clear.post(PATH, json={"why": "x" * 1000}).json()["why"] == "x" * 400
 
 
+def test_a_final_slash_is_no_redirect(clear: httpx.Client) -> None:
+    assert clear.post(f"{PATH}/", follow_redirects=False).json()["engaged"]
+    assert clear.get(f"{PATH}/", follow_redirects=False).json()["engaged"]
+    gone = clear.delete(f"{PATH}/", params={"who": "anna"}, follow_redirects=False)
+    assert not gone.json()["engaged"]
+
+
 FORM = "application/x-www-form-urlencoded"
 ODD_BODIES = [
     pytest.param(b"", FORM, "", "gateway", id="curl -d ''"),

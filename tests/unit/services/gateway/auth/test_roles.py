@@ -78,6 +78,11 @@ def test_what_nobody_decided_is_for_admins(method: str) -> None:
     assert role_for(method, "/api/new") == "admin"
 
 
+def test_a_final_slash_changes_no_role() -> None:
+    for method, path in ANYBODY | OPERATOR | ADMIN | VIEWER:
+        assert role_for(method, f"{path}/") == role_for(method, path)
+
+
 def test_an_operation_without_security_stays_as_it_is() -> None:
     plain = {"paths": {"/healthz": {"get": {"responses": {"200": {}}}}}}
     assert with_roles(plain) == plain
