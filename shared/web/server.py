@@ -63,15 +63,16 @@ def serving(
         **(_secured(credentials) if credentials else {}),
     )
     server = uvicorn.Server(config)
+    place = f"[{host}]" if ":" in host else host  # RFC 3986, 3.2.2: else an IPv6 address ends in a port
     thread = threading.Thread(target=_run, args=(server,), name="http", daemon=True)
     thread.start()
     try:
         wait_until(lambda: server.started or not thread.is_alive() or stop.is_set(), START_S)
         if server.started:
             bound = server.servers[0].sockets[0].getsockname()[1]
-            log.info("serving on %s://%s:%d", "https" if credentials else "http", host, bound)
+            log.info("serving on %s://%s:%d", "https" if credentials else "http", place, bound)
         elif not stop.is_set():
-            raise RuntimeError(f"no HTTP on {host}:{port}: see the log; is the port taken?")
+            raise RuntimeError(f"no HTTP on {place}:{port}: see the log; is the port taken?")
         yield thread
     finally:
         server.should_exit = True

@@ -1,8 +1,10 @@
 """A server beside a service's own loop: answers while the block runs, says when it cannot start."""
 
+import re
 import socket
 import threading
 import time
+from contextlib import suppress
 
 import httpx
 import pytest
@@ -47,6 +49,21 @@ def test_a_taken_port_is_an_error(app: Starlette) -> None:
             serving(app, HOST, port, LIMITS, stop=threading.Event(), grace_s=1),
         ):
             pass
+
+
+def has_ipv6() -> bool:
+    """Whether this machine has the loopback address ::1: containers often do not."""
+    with suppress(OSError), socket.create_server(("::1", 0), family=socket.AF_INET6):
+        return True
+    return False
+
+
+@pytest.mark.skipif(not has_ipv6(), reason="no IPv6 here")
+def test_an_ipv6_address_stands_in_brackets_in_what_is_logged(
+    app: Starlette, caplog: pytest.LogCaptureFixture
+) -> None:
+    with caplog.at_level("INFO"), serving(app, "::1", 0, LIMITS, stop=threading.Event(), grace_s=1):
+        assert re.search(r"serving on http://\[::1\]:\d+$", caplog.text, re.MULTILINE)
 
 
 def test_who_is_told_to_stop_while_it_starts_does_not_wait() -> None:
