@@ -1,17 +1,23 @@
 """Settings read from the environment: typed, frozen, and a misspelt name is an error."""
 
 import os
+import sys
 from pathlib import Path
 from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, BeforeValidator, ValidationError
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ValidationError
 from pydantic_core import ErrorDetails
 from pydantic_settings import BaseSettings, SettingsConfigDict
+
+from shared.transport.keys import check_robot
 
 NESTED = "__"
 
 OptionalPath = Annotated[Path | None, BeforeValidator(lambda path: None if path == "" else path)]
 """None also of a variable that Compose passes on without a value."""
+
+
+RobotName = Annotated[str, AfterValidator(check_robot)]
 
 
 class ServiceSettings(BaseSettings):
@@ -30,7 +36,7 @@ class ServiceSettings(BaseSettings):
     endpoint: str = "tcp/127.0.0.1:7447"
     listen: str = "tcp/127.0.0.1:0"
     certs: OptionalPath = None
-    robot: str = "r1"
+    robot: RobotName = "r1"
     log_level: str = "INFO"
 
     @classmethod
@@ -56,6 +62,15 @@ class ServiceSettings(BaseSettings):
             return cls(**shared)
         except ValidationError as error:
             raise ValueError("; ".join(_told(prefix, fault) for fault in error.errors())) from None
+
+    @classmethod
+    def of_service(cls, service: str) -> Self:
+        """Read the environment; a service whose settings are wrong ends with one line and exit code 2."""
+        try:
+            return cls.from_environment()
+        except ValueError as error:
+            sys.stderr.write(f"{service}: {error}\n")
+            sys.exit(2)
 
 
 def _told(prefix: str, fault: ErrorDetails) -> str:

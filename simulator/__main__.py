@@ -13,7 +13,7 @@ from simulator.world.world_file import WorldFileError, load_world
 
 def main() -> None:
     """Run the simulator until a signal; a bad world file or a taken name ends it with one line."""
-    settings = SimulatorSettings.from_environment()
+    settings = SimulatorSettings.of_service("simulator")
     try:
         world = load_world(settings.world)
     except WorldFileError as error:

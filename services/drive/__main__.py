@@ -9,7 +9,7 @@ from shared.lifecycle import run_service
 
 def main() -> None:
     """Run the drive service until a signal."""
-    settings = DriveSettings.from_environment()
+    settings = DriveSettings.of_service("drive")
     run_service("drive", settings, partial(run, settings))
 
 

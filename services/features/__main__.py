@@ -12,7 +12,7 @@ def main() -> None:
     from services.features.settings import FeaturesSettings
     from shared.lifecycle import run_service
 
-    settings = FeaturesSettings.from_environment()
+    settings = FeaturesSettings.of_service("features")
     run_service("features", settings, lambda bus, stop: run(settings, bus, stop))
 
 

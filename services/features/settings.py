@@ -10,7 +10,7 @@ from services.features.pipeline.interfaces import Profile, Runtime
 from services.features.pipeline.named_pipelines import find_profile
 from shared.access.credentials import credentials_in
 from shared.settings import ServiceSettings
-from shared.transport.keys import NAME
+from shared.transport.keys import check_robot
 
 
 class FeaturesSettings(ServiceSettings):
@@ -62,13 +62,16 @@ class FeaturesSettings(ServiceSettings):
             return names
         return tuple(name.strip() for name in names.split(",")) if names.strip() else ()
 
+    @field_validator("robots")
+    @classmethod
+    def _each_once(cls, names: tuple[str, ...]) -> tuple[str, ...]:
+        for name in names:
+            if names.count(check_robot(name)) > 1:
+                raise ValueError(f"every robot must be named once, got {name!r} again")
+        return names
+
     @model_validator(mode="after")
     def _may_serve(self) -> Self:
-        for name in self.robots:
-            if not NAME.match(name) or self.robots.count(name) > 1:
-                raise ValueError(
-                    f"FEATURES_ROBOTS must name every robot once, by [a-z0-9_-]{{1,64}}, got {name!r}"
-                )
         if len(self.robots) > 1 and credentials_in(self.certs) is not None:
             raise ValueError(
                 f"FEATURES_ROBOTS names {len(self.robots)} robots and a certificate is for one: on the "

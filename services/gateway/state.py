@@ -8,6 +8,7 @@ from typing import Annotated, TypeVar
 
 import httpx
 from fastapi import Depends, Path, Query
+from pydantic import AfterValidator
 from starlette.requests import HTTPConnection
 
 from services.gateway.http.asking import Asker
@@ -18,6 +19,7 @@ from services.gateway.live.hub import Hub
 from services.gateway.live.mission_log import MissionLog
 from services.gateway.settings import GatewaySettings
 from shared.messages.estop import EStopState
+from shared.transport.keys import check_robot
 
 T = TypeVar("T")
 
@@ -77,7 +79,9 @@ def gateway_of(connection: HTTPConnection) -> Gateway:
 
 
 GatewayDep = Annotated[Gateway, Depends(gateway_of)]
-RobotPath = Annotated[str, Path(pattern=r"^[a-z0-9_-]{1,64}$", description="name of a robot")]
+RobotPath = Annotated[
+    str, Path(pattern=r"^[a-z0-9_-]{1,64}$", description="name of a robot"), AfterValidator(check_robot)
+]
 MapPath = Annotated[str, Path(pattern=r"^[a-z0-9_-]{1,64}$", description="name of a map")]
 NodePath = Annotated[int, Path(ge=0, lt=2**63, description="number of a node")]
 NodeQuery = Annotated[int, Query(ge=0, lt=2**63, description="number of a node")]

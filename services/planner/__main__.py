@@ -9,7 +9,7 @@ from shared.lifecycle import run_service
 
 def main() -> None:
     """Run the planner until a signal."""
-    settings = PlannerSettings.from_environment()
+    settings = PlannerSettings.of_service("planner")
     run_service("planner", settings, partial(run, settings))
 
 

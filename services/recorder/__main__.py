@@ -12,7 +12,7 @@ from shared.lifecycle import run_service
 
 def main() -> None:
     """Record until a signal."""
-    settings = RecorderSettings.from_environment()
+    settings = RecorderSettings.of_service("recorder")
 
     def loop(bus: Bus, stop: threading.Event) -> None:
         with RecordingWriter(settings.file) as writer:

@@ -10,7 +10,7 @@ from typing import Any
 
 from shared import topics
 from shared.topics import Query, Topic
-from shared.transport.keys import NAME
+from shared.transport.keys import check_robot
 
 
 class Role(Enum):
@@ -39,15 +39,31 @@ class Role(Enum):
         Raises:
             ValueError: not a robot's name.
         """
-        if not NAME.match(robot):
-            raise ValueError(f"a robot's name must match [a-z0-9_-]{{1,64}}, got {robot[:80]!r}")
+        check_robot(robot)
         return f"{self.value}.{robot}" if self.of_one_robot else self.value
 
 
 def robot_names(variables: Mapping[str, str]) -> tuple[str, ...]:
-    """Robots of a stack: TOPNAV_ROBOTS, else TOPNAV_ROBOT; the first is that of the stack's own services."""
-    given = variables.get("TOPNAV_ROBOTS") or variables.get("TOPNAV_ROBOT") or "r1"
-    return tuple(name.strip() for name in given.split(","))
+    """Robots of a stack: TOPNAV_ROBOTS, else TOPNAV_ROBOT; the first is that of the stack's own services.
+
+    Raises:
+        ValueError: one of the variables that name robots, also those of the features, names something else.
+    """
+    one = _checked("TOPNAV_ROBOT", [variables.get("TOPNAV_ROBOT") or "r1"])
+    several, _ = (_listed(variables, name) for name in ("TOPNAV_ROBOTS", "TOPNAV_FEATURES_ROBOTS"))
+    return several or one
+
+
+def _listed(variables: Mapping[str, str], variable: str) -> tuple[str, ...]:
+    given = variables.get(variable, "").strip()
+    return _checked(variable, [name.strip() for name in given.split(",")] if given else [])
+
+
+def _checked(variable: str, names: Iterable[str]) -> tuple[str, ...]:
+    try:
+        return tuple(check_robot(name) for name in names)
+    except ValueError as error:
+        raise ValueError(f"{variable}: {error}") from None
 
 
 @dataclass(frozen=True)

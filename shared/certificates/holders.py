@@ -7,7 +7,7 @@ from cryptography import x509
 from cryptography.x509.oid import NameOID
 
 from shared.access.rules import Role
-from shared.transport.keys import NAME
+from shared.transport.keys import is_robot
 
 AUTHORITY = "authority"
 """Folder of the private key that signs all others. No service ever needs it: keep it off the robot."""
@@ -70,7 +70,7 @@ def holder_of(name: str, certificate: x509.Certificate) -> Holder:
     role, _, robot = common_name.partition(".")
     if role in {known.value for known in Role}:
         holder = Holder(name, Role(role), robot or "r1")
-        if NAME.match(holder.robot) and holder.common_name == common_name:
+        if is_robot(holder.robot) and holder.common_name == common_name:
             return holder
     roles = ", ".join(known.value for known in Role)
     raise CertificatesError(f"{name}: a common name of one of {roles} expected, got {common_name[:80]!r}")

@@ -4,13 +4,33 @@ import re
 
 NAME = re.compile(r"[a-z0-9_-]{1,64}\Z")
 """Names of robots, maps and services: without the signs that mean something in key expressions and paths."""
-"""Names of robots, maps and services: without the signs that mean something in key expressions and paths."""
+RESERVED = ("alive", "features", "maps", "missions")
+"""No robots: topnav/missions/estop would stop one called missions and be the record of one called estop."""
+
+
+def is_robot(name: str) -> bool:
+    """Whether a robot may be called so."""
+    return NAME.match(name) is not None and name not in RESERVED
+
+
+def check_robot(name: str) -> str:
+    """Return a robot's name as it is, or raise ValueError."""
+    if not is_robot(name):
+        raise ValueError(
+            "a robot's name must match [a-z0-9_-]{1,64}, as r1 does, and be none of "
+            f"{', '.join(RESERVED)}, which begin keys of no robot; got {name[:80]!r}"
+        )
+    return name
 
 
 def fill(template: str, names: dict[str, str]) -> str:
     """Put checked names into a key template."""
     for label, name in names.items():
-        if name != "*" and not NAME.match(name):
+        if name == "*":
+            continue
+        if label == "robot":
+            check_robot(name)
+        elif not NAME.match(name):
             raise ValueError(f"{label} must match [a-z0-9_-]{{1,64}}, got {name[:80]!r}")
     return template.format(**names)
 

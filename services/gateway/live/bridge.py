@@ -10,7 +10,7 @@ from services.gateway.live.hub import Hub
 from shared.bus import Bus
 from shared.messages.base import Message
 from shared.topics import COMMAND, ESTOP_STATE, EVENT, FRAME, HEADING, RANGES, STATUS, TRUTH, Topic
-from shared.transport.keys import NAME
+from shared.transport.keys import is_robot
 
 PERIOD_S = 0.25
 """Chosen: the bus wakes the thread for whatever it carries; this is for what does not."""
@@ -93,7 +93,7 @@ class Bridge:
         return messages
 
     def _follow(self, robot: str) -> None:
-        if robot not in self._followed and len(self._followed) < self._max_robots and NAME.match(robot):
+        if robot not in self._followed and len(self._followed) < self._max_robots and is_robot(robot):
             self._followed[robot] = self._subscribed(NEWEST, robot)
 
     def _subscribed(self, topics: Iterable[Topic[Any]], robot: str) -> tuple[Inbox, ...]:

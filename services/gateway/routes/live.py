@@ -10,7 +10,7 @@ from services.gateway.http.problems import counted
 from services.gateway.http.rates import address_of
 from services.gateway.live.outbox import Outbox
 from services.gateway.state import Gateway, gateway_of
-from shared.transport.keys import NAME
+from shared.transport.keys import RESERVED, is_robot
 from shared.web.problems import ProblemError
 
 router = APIRouter(tags=["live"])
@@ -54,8 +54,8 @@ async def live(socket: WebSocket, robot: str) -> None:
 
 
 def _check_name(robot: str) -> None:
-    if not NAME.match(robot):
-        expected = "a robot's name of a-z, 0-9, _ and -"
+    if not is_robot(robot):
+        expected = f"a robot's name of a-z, 0-9, _ and -, none of {', '.join(RESERVED)}"
         raise ProblemError(422, "invalid_request", expected, repr(robot[:80]), "see /api/robots")
 
 

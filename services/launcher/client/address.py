@@ -22,14 +22,14 @@ class Address:
 
 
 def find_address(endpoint: str | None, data_dir: Path) -> Address | None:
-    """The stack at `endpoint`, else the one that runs in `data_dir`; None when none runs there.
-
-    A stack elsewhere is joined with the certificate in TOPNAV_CERTS, if that is set.
-    """
+    """The stack at `endpoint`, else the one that runs in `data_dir`; None when none runs there."""
     running = StateFolder(data_dir.resolve()).read()
     if running is not None and endpoint in (None, running.endpoint):
         return Address(running.endpoint, running.certs)
-    if endpoint is None:
-        return None
+    return None if endpoint is None else address_at(endpoint)
+
+
+def address_at(endpoint: str) -> Address:
+    """A stack elsewhere: joined with the certificate in TOPNAV_CERTS, if that is set."""
     own = os.environ.get("TOPNAV_CERTS")
     return Address(endpoint, Path(own) if own else None)

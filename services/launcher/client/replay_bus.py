@@ -9,7 +9,7 @@ from services.launcher.client.failure import ExperimentError
 from services.launcher.processes.supervisor import Launcher
 from services.launcher.terminal.output import wide_console
 from shared.bus import Bus, open_bus, wait_until
-from shared.transport.keys import NAME
+from shared.transport.keys import is_robot
 
 VIEWERS = ("map-store", "gateway")
 SPEAKERS = {"simulator", "planner", "drive", "features"}
@@ -49,9 +49,9 @@ def new_names(remap: list[str]) -> dict[str, str]:
         ExperimentError: a text that is no pair of robots' names.
     """
     names = {old: new for old, _, new in (text.partition("=") for text in remap)}
-    wrong = [f"{old}={new}" for old, new in names.items() if not (NAME.match(old) and NAME.match(new))]
+    wrong = [f"{old}={new}" for old, new in names.items() if not (is_robot(old) and is_robot(new))]
     if wrong:
-        raise ExperimentError(f"--remap expects old=new in lower-case letters and digits, got {wrong[0]!r}")
+        raise ExperimentError(f"--remap expects old=new, two names that robots may have, got {wrong[0]!r}")
     return names
 
 

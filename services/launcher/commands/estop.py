@@ -1,6 +1,7 @@
 """`topnav estop`: stop a robot at once; only a person lets it go again."""
 
 import getpass
+import os
 from datetime import datetime
 from typing import TYPE_CHECKING, Annotated
 
@@ -40,15 +41,16 @@ def estop(
 
     With --clear end the stop, with --status look.
     """
-    from services.launcher.client.address import Address, find_address
+    from services.launcher.client.address import address_at, find_address
     from shared.queries import AbsentError, RefusedError, TimedOutError
     from shared.settings import ServiceSettings
     from shared.topics import ESTOP
 
+    _check_robot(robot)
     request = _request(why, clear, who.strip(), status)
-    # The router of the stack that runs in the folder, else the usual one: a stop does not ask for settings.
-    usual = ServiceSettings.from_environment()
-    address = find_address(endpoint, data_dir) or Address(usual.endpoint, usual.certs)
+    # The router of the stack that runs in the folder, else the usual one: no other setting keeps from a stop.
+    usual = os.environ.get("TOPNAV_ENDPOINT") or ServiceSettings.model_fields["endpoint"].default
+    address = find_address(endpoint, data_dir) or address_at(usual)
     try:
         with address.open() as bus:
             state = bus.ask(ESTOP, request, TIMEOUT_S, robot=robot)
@@ -60,6 +62,15 @@ def estop(
         raise typer.Exit(UNKNOWN) from None
     typer.echo(_sentence(state))
     raise typer.Exit(ENGAGED if status and state.engaged else 0)
+
+
+def _check_robot(robot: str) -> None:
+    from shared.transport.keys import check_robot
+
+    try:
+        check_robot(robot)
+    except ValueError as error:
+        raise typer.BadParameter(f"--robot: {error}") from None
 
 
 def _request(why: str, clear: bool, who: str, status: bool) -> "EStopRequest":

@@ -12,7 +12,7 @@ from services.map_store.storage.database import Database
 from services.map_store.storage.tables import missions
 from shared.messages.maps import MissionRecord
 from shared.topics import MISSION_RECORD
-from shared.transport.keys import NAME
+from shared.transport.keys import check_robot
 from shared.wire import WireError, decode, encode
 
 log = logging.getLogger(__name__)
@@ -113,5 +113,7 @@ def _write(connection: Connection, record: MissionRecord) -> None:
 
 
 def _check_robot(robot: str) -> None:
-    if not NAME.match(robot):
-        raise InvalidError(f"robot name must match [a-z0-9_-]{{1,64}}, got {robot[:80]!r}")
+    try:
+        check_robot(robot)
+    except ValueError as error:
+        raise InvalidError(str(error)) from None

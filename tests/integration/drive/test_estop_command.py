@@ -41,6 +41,20 @@ def test_engage_status_and_clear(start, topnav_estop):
     assert topnav_estop("--status").exit_code == 0
 
 
+@pytest.mark.parametrize("robot", ["*", "r1/**", "missions"])
+def test_what_is_no_robot_is_refused(topnav_estop, robot):
+    answer = topnav_estop("--robot", robot)
+    assert answer.exit_code == 2
+    assert "--robot: a robot's name must match" in answer.output
+
+
+def test_a_stop_asks_for_no_setting_that_it_does_not_need(router_endpoint, tmp_path, monkeypatch):
+    monkeypatch.setenv("TOPNAV_ENDPOINT", router_endpoint)
+    monkeypatch.setenv("TOPNAV_ROBOT", "*")
+    answer = CliRunner().invoke(app, ["--data-dir", str(tmp_path)])
+    assert "no drive service answers" in answer.output
+
+
 @pytest.mark.parametrize("words", [[], ["--status"], ["--clear", "--who", "anna"]])
 def test_without_a_drive_service_it_says_what_stops_the_robot(topnav_estop, words):
     answer = topnav_estop(*words)

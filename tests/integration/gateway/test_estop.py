@@ -16,6 +16,7 @@ from services.gateway.http.rates import RateLimits
 from services.gateway.live.bridge import Bridge
 from shared.bus import Bus, wait_until
 from shared.estop.sides import EStopServer
+from shared.transport.keys import RESERVED
 from tests.integration.gateway.gateway_process import WAIT_S, sees
 from tests.integration.gateway.standins import Peer
 
@@ -153,6 +154,16 @@ def test_questions_about_robots_that_nobody_heard_of_hold_up_no_stop(
         assert time.monotonic() - began_s < SOON_S
         assert clear.get(PATH).json()["engaged"]
         assert {one.result().status_code for one in flood} <= {404, 503}
+
+
+@pytest.mark.parametrize("name", RESERVED)
+@pytest.mark.parametrize("method", ["GET", "POST", "DELETE"])
+def test_a_name_that_no_robot_may_have_is_refused_with_the_reason(
+    http: httpx.Client, method: str, name: str
+) -> None:
+    answer = http.request(method, f"/api/robots/{name}/estop")
+    assert (answer.status_code, answer.json()["title"]) == (422, "invalid request")
+    assert f"which begin keys of no robot; got '{name}'" in answer.json()["detail"]
 
 
 def test_without_drive_it_says_so(http: httpx.Client) -> None:

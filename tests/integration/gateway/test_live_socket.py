@@ -104,7 +104,7 @@ def test_the_gateways_own_page_is_welcome(small: str) -> None:
         assert next_of(live, "services") is not None
 
 
-@pytest.mark.parametrize("robot", ["A", "..%5cx", "%00", "a%0a", "x" * 65])
+@pytest.mark.parametrize("robot", ["A", "..%5cx", "%00", "a%0a", "x" * 65, "missions"])
 def test_bad_names_are_refused(small: str, robot: str) -> None:
     with pytest.raises(InvalidStatus) as caught:
         connect(url(small, robot), proxy=None, open_timeout=WAIT_S)

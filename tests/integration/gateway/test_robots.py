@@ -58,6 +58,24 @@ def test_other_robots_are_found_by_what_they_say(http: httpx.Client, robot_bus: 
     assert listed["r3"]["ranges"]["distances_m"] == [1.0] * 12
 
 
+def test_whoever_calls_itself_what_no_robot_may_keeps_nobody_from_being_heard(
+    http: httpx.Client, robot_bus: Bus
+) -> None:
+    events, frames = robot_bus.publisher(EVENT, robot="r5"), robot_bus.publisher(FRAME, robot="r5")
+
+    def heard() -> bool:
+        events.put(Event(robot="missions", kind="here"))
+        return any(entry["robot"] == "missions" for entry in http.get("/api/robots").json())
+
+    def arrived() -> bool:
+        events.put(Event(robot="r5", kind="here"))
+        frames.put(frame("r5", 7))
+        return http.get("/api/robots/r5").json().get("frame") is not None
+
+    assert wait_until(heard, WAIT_S)
+    assert wait_until(arrived, WAIT_S)
+
+
 def test_the_truth_is_shown_only_where_asked_for(http: httpx.Client, robot_bus: Bus) -> None:
     publisher = robot_bus.publisher(TRUTH, robot="r4")
     truth = Truth(robot="r4", world="flat", pose=Pose(x_m=1.0, y_m=2.0, yaw_rad=0.5))

@@ -23,3 +23,12 @@ def test_a_detached_start_that_runs_out_of_time_names_the_service_that_fails_and
     with pytest.raises(LaunchError, match=reason):
         start_detached(settings, compose(tmp_path, **services), START_S)
     assert not StateFolder(settings.data_dir).owned()
+
+
+@pytest.mark.parametrize("variable", ["TOPNAV_ROBOT", "TOPNAV_ROBOTS", "TOPNAV_FEATURES_ROBOTS"])
+def test_what_is_no_robot_s_name_is_told_before_anything_starts(tmp_path, monkeypatch, variable):
+    monkeypatch.setenv(variable, "*")
+    settings = StackSettings(tmp_path / "data")
+    with pytest.raises(LaunchError, match=rf"did not come up: {variable}: a robot's name must .*got '\*'"):
+        start_detached(settings, compose(tmp_path, drive=SLEEP), START_S)
+    assert {path.name for path in StateFolder(settings.data_dir).logs.iterdir()} == {"launcher.log"}

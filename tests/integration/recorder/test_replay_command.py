@@ -77,7 +77,12 @@ def test_a_recorded_robot_is_not_mixed_with_a_living_one(recording, router_endpo
 
 
 @pytest.mark.parametrize(
-    ("words", "message"), [(["--remap", "r1"], "old=new"), (["--without", "pictures"], "got pictures")]
+    ("words", "message"),
+    [
+        (["--remap", "r1"], "old=new"),
+        (["--remap", "r1=maps"], "old=new"),
+        (["--without", "pictures"], "got pictures"),
+    ],
 )
 def test_wrong_options_are_one_line(recording, words, message):
     process = topnav("replay", recording, *words)

@@ -117,9 +117,9 @@ def test_putting_on_a_closed_bus_is_an_error_and_closing_twice_is_none(router_en
 
 def test_publishers_and_subscribers_check_names(here: Bus):
     for name in ("a/b", "R1", "", "r1/**"):
-        with pytest.raises(ValueError, match="robot must match"):
+        with pytest.raises(ValueError, match="a robot's name must match"):
             here.publisher(COMMAND, robot=name)
-        with pytest.raises(ValueError, match="robot must match"):
+        with pytest.raises(ValueError, match="a robot's name must match"):
             here.subscribe(COMMAND, robot=name)
 
 

@@ -1,5 +1,11 @@
 """Settings: from the environment, frozen, and a misspelt name is an error that lists the right ones."""
 
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 from pydantic import BaseModel, Field
 from pydantic_settings import SettingsConfigDict
@@ -60,6 +66,42 @@ def test_bad_values_are_refused(monkeypatch: pytest.MonkeyPatch, name: str, valu
     monkeypatch.setenv(name, value)
     with pytest.raises(ValueError, match="ARM_RATE_HZ: Input should be"):
         ArmSettings.from_environment()
+
+
+BAD_NAMES = ["", "*", "r1/**", "r 1", "\u00e9", "R1", "missions"]
+
+
+@pytest.mark.parametrize("name", BAD_NAMES)
+def test_what_is_no_robot_s_name_is_refused_with_the_variable(monkeypatch: pytest.MonkeyPatch, name: str):
+    for variable in ("TOPNAV_ROBOT", "ARM_ROBOT"):
+        monkeypatch.setenv(variable, name)
+        with pytest.raises(ValueError, match=rf"^{variable}: a robot's name must .*got '{re.escape(name)}'$"):
+            ArmSettings.from_environment()
+
+
+def test_a_service_with_wrong_settings_ends_with_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.setenv("TOPNAV_ROBOT", "*")
+    with pytest.raises(SystemExit) as caught:
+        ArmSettings.of_service("arm")
+    assert caught.value.code == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("arm: TOPNAV_ROBOT: a robot's name must match")
+
+
+SERVICES = ("drive", "features", "gateway", "map_store", "planner", "recorder")
+
+
+@pytest.mark.parametrize("module", [*(f"services.{name}" for name in SERVICES), "simulator"])
+def test_every_service_with_wrong_settings_ends_with_one_line(module: str, tmp_path: Path, repository: Path):
+    environment = os.environ | {"TOPNAV_ROBOT": "*", "PYTHONPATH": str(repository)}
+    command = [sys.executable, "-m", module]
+    ended = subprocess.run(
+        command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+    )
+    assert (ended.returncode, len(ended.stderr.splitlines())) == (2, 1), ended.stderr
+    assert "TOPNAV_ROBOT: a robot's name must match" in ended.stderr
 
 
 def test_settings_are_frozen():

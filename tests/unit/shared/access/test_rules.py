@@ -1,6 +1,7 @@
 """The access table: every stream has owners, the code keeps to it, and it says what the security rests on."""
 
 import ast
+import re
 
 import pytest
 
@@ -121,3 +122,15 @@ def test_robots_are_named_by_the_list_or_else_by_the_one():
     assert robot_names({"TOPNAV_ROBOTS": "r1, r2", "TOPNAV_ROBOT": "r9"}) == ("r1", "r2")
     assert robot_names({"TOPNAV_ROBOTS": "", "TOPNAV_ROBOT": "r9"}) == ("r9",)
     assert robot_names({}) == ("r1",)
+
+
+@pytest.mark.parametrize("variable", ["TOPNAV_ROBOTS", "TOPNAV_ROBOT", "TOPNAV_FEATURES_ROBOTS"])
+@pytest.mark.parametrize("name", ["*", "r1/**", "R1", "maps"])
+def test_a_variable_that_names_no_robot_is_told(variable: str, name: str):
+    with pytest.raises(ValueError, match=rf"^{variable}: a robot's name must .*; got '{re.escape(name)}'$"):
+        robot_names({"TOPNAV_ROBOTS": "r1", variable: name})
+
+
+def test_a_robot_has_one_name():
+    with pytest.raises(ValueError, match=r"^TOPNAV_ROBOT: .*; got 'r1,r2'"):
+        robot_names({"TOPNAV_ROBOT": "r1,r2"})

@@ -57,7 +57,12 @@ def test_a_damaged_record_is_lost_but_its_epoch_is_not(database: Database):
 
 
 @pytest.mark.parametrize(
-    "record", [MissionRecord.model_construct(robot="../r"), MissionRecord(robot="r", epoch=2**63)]
+    "record",
+    [
+        MissionRecord.model_construct(robot="../r"),
+        MissionRecord(robot="maps"),
+        MissionRecord(robot="r", epoch=2**63),
+    ],
 )
 def test_records_that_cannot_be_kept_are_refused(database: Database, record: MissionRecord):
     with pytest.raises(InvalidError):
