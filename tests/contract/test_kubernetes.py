@@ -206,8 +206,13 @@ def test_services_lead_to_the_ports_that_the_processes_are_told_to_serve():
     for name, service in services.items():
         assert service["spec"]["selector"] == DEPLOYMENTS[name]["spec"]["selector"]["matchLabels"]
         assert container(DEPLOYMENTS[name])["ports"][0]["containerPort"] == ports[name]
-    for deployment in DEPLOYMENTS.values():
-        assert variables(deployment)["TOPNAV_ENDPOINT"] == f"tcp/router:{ports['router']}"
+    for name, deployment in DEPLOYMENTS.items():
+        assert variables(deployment)["TOPNAV_ENDPOINT"] == f"tcp/{router_host(name)}:{ports['router']}"
+
+
+def router_host(name):
+    """Where a pod finds the router: itself by loopback, as its Service leads nowhere until it is ready."""
+    return "127.0.0.1" if name == "router" else "router"
 
 
 def test_no_secret_is_kept_here_and_secrets_come_from_secrets():
@@ -265,7 +270,7 @@ def test_on_the_secured_bus_every_pod_has_a_certificate_and_only_its_own():
     deployments = [one for one in objects if one["kind"] == "Deployment"]
     secrets = []
     for one in deployments:
-        assert variables(one)["TOPNAV_ENDPOINT"] == "tls/router:7447"
+        assert variables(one)["TOPNAV_ENDPOINT"] == f"tls/{router_host(one['metadata']['name'])}:7447"
         (mount,) = [m for m in container(one)["volumeMounts"] if m["name"] == "certs"]
         assert mount == {"name": "certs", "mountPath": variables(one)["TOPNAV_CERTS"], "readOnly": True}
         (secret,) = [v["secret"] for v in pods(one)["volumes"] if v["name"] == "certs"]

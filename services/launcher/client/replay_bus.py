@@ -56,8 +56,14 @@ def new_names(remap: list[str]) -> dict[str, str]:
 
 
 def _refuse_mixing(bus: Bus, robots: set[str]) -> None:
-    if robots and wait_until(lambda: bool(SPEAKERS & set(bus.alive())), LOOK_FOR_S):
-        alive = ", ".join(sorted(SPEAKERS & set(bus.alive()))) or "services"
+    found: set[str] = set()
+
+    def look() -> bool:
+        found.update(SPEAKERS & set(bus.alive()))
+        return bool(found)
+
+    if robots and wait_until(look, LOOK_FOR_S):
+        alive = ", ".join(sorted(found))
         raise ExperimentError(
             f"{alive} live here: a replay of {', '.join(sorted(robots))} would mix with them and may move a "
             f"robot. Use another --data-dir, or --remap {min(robots)}=ghost"
