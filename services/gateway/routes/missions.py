@@ -32,6 +32,8 @@ router = APIRouter(tags=["missions"])
 TERMINAL = frozenset({"idle", "succeeded", "failed", "cancelled"})
 ASK_AGAIN_S = 5.0
 """While waiting, the status is also asked for: the last message may have been lost with a process."""
+UNHEARD_S = 0.5
+"""Of a robot that said nothing yet there are no news to wait for: it is asked so often."""
 
 Seed = Annotated[int, Field(ge=0, lt=2**63)]
 Steps = Annotated[int, Field(ge=1, le=1_000_000)]
@@ -136,13 +138,16 @@ async def wait(
     """Answer when the mission ends, or after `timeout_s` with `done` false: then ask again."""
     deadline_s = time.monotonic() + timeout_s
     while True:
-        view = gateway.hub.robots.get(robot) or RobotView()
-        news = view.changed  # from before the question: an end may be told while it is answered
+        view = gateway.hub.robots.get(robot)
+        news = view.changed if view else None  # from before the question: an end may be told meanwhile
         status = await _ask_patiently(gateway, robot, deadline_s)
         done = _ended(status, mission_id)
         left_s = deadline_s - time.monotonic()
         if done or left_s <= 0.0:
             return WaitAnswer(done=done, mission=_facts(status))
+        if view is None or news is None:
+            await asyncio.sleep(min(left_s, UNHEARD_S))
+            continue
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(min(left_s, ASK_AGAIN_S)):
                 await _next_end(view, news, mission_id)
