@@ -4,7 +4,8 @@
 # Builds the images, starts the stack without any file, explores and drives to a picture over HTTP, once more with
 # another drive controller, and ends every container once. Then it starts the stack with .env.example, a folder of
 # worlds and a busy machine, on the secured bus, and with the robot on a host of its own. DOCKER and CURL may be
-# others, as those of an engine in a namespace of its own. Exits with 0 and the reason where there is no engine.
+# others, as those of an engine in a namespace of its own. CI_FULL builds the image with torch as well. Exits with 0
+# and the reason where there is no engine.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 read -ra docker <<<"${DOCKER:-docker}"
@@ -49,6 +50,10 @@ robot=$api/robots/r1
 
 compose --profile secure build --quiet
 say "built"
+if [ -n "${CI_FULL:-}" ]; then
+    compose --file docker-compose.yml --file deploy/compose.learned.yml build --quiet features
+    say "built features with torch"
+fi
 "${docker[@]}" images --format '{{.Repository}} {{.Size}}' 'topnav/*' | sort
 
 up
