@@ -43,10 +43,28 @@ trap finish EXIT
 began=$SECONDS
 
 ask() { "${curl[@]}" --silent --show-error --fail-with-body --max-time 100 --header "Authorization: Bearer $token" "$@"; }
-up() { compose "$@" up --detach --wait --wait-timeout 180 >"$folder/up.log" 2>&1 || { cat "$folder/up.log"; return 1; }; }
+up_by() { # COMMAND: what runs Compose
+    "$@" up --detach --wait --wait-timeout 180 >"$folder/up.log" 2>&1 || { cat "$folder/up.log"; return 1; }
+}
+up() { up_by compose "$@"; }
 read_token() { token=$(compose exec -T gateway cat /var/lib/topnav/token/token); }
 api=http://127.0.0.1:8000/api
 robot=$api/robots/r1
+goto() {
+    ask --header 'Content-Type: image/jpeg' --data-binary @- "$robot/missions/goto?map=flat" <"$1" >/dev/null
+    answer="" until=$((SECONDS + 300))
+    while [[ $answer != *'"done":true'* ]] && [ "$SECONDS" -lt "$until" ]; do
+        answer=$(ask "$robot/mission/wait?timeout_s=60")
+    done
+    grep --quiet '"state":"succeeded"' <<<"$answer" || { echo "not arrived: $answer"; return 1; }
+}
+explores() { # a mission that maps: until the first node is there
+    ask --json '{"action": "explore", "map": "flat"}' "$robot/missions" >/dev/null
+    until ask "$api/maps/flat" | grep --quiet '"nodes":[1-9]'; do
+        [ "$((SECONDS - began))" -lt 120 ] || return 1
+        sleep 1
+    done
+}
 
 compose --profile secure build --quiet
 say "built"
@@ -68,14 +86,6 @@ ask "$robot/frame.jpg?width=1024" >"$folder/goal.jpg"
 sleep "$((${EXPLORE_S:-60} / 3))"
 ask --request POST "$robot/missions/cancel" >/dev/null
 say "explored: $(ask "$api/maps/flat" | cut -c 1-120)"
-goto() {
-    ask --header 'Content-Type: image/jpeg' --data-binary @- "$robot/missions/goto?map=flat" <"$1" >/dev/null
-    answer="" until=$((SECONDS + 300))
-    while [[ $answer != *'"done":true'* ]] && [ "$SECONDS" -lt "$until" ]; do
-        answer=$(ask "$robot/mission/wait?timeout_s=60")
-    done
-    grep --quiet '"state":"succeeded"' <<<"$answer" || { echo "not arrived: $answer"; return 1; }
-}
 ask "$robot/frame.jpg?width=1024" >"$folder/other.jpg"
 goto "$folder/goal.jpg"
 say "at the picture"
@@ -124,26 +134,18 @@ file=/dev/null
 export TOPNAV_BUS=tls
 up --profile secure
 read_token
-ask --json '{"action": "explore", "map": "flat"}' "$robot/missions" >/dev/null
-until ask "$api/maps/flat" | grep --quiet '"nodes":[1-9]'; do
-    [ "$((SECONDS - began))" -lt 120 ] || exit 1
-    sleep 1
-done
+explores
 say "a mission on the secured bus"
 compose --profile secure down --volumes --timeout 5 >/dev/null 2>&1
 
 export TOPNAV_ROUTER_HOST=172.17.0.1 # of this host as containers see it, on Docker's first bridge
 services_host() { compose --progress quiet --file docker-compose.yml --file deploy/compose.services.yml --profile secure "$@"; }
-services_host up --detach --wait --wait-timeout 180 >"$folder/up.log" 2>&1 || { cat "$folder/up.log"; exit 1; }
+up_by services_host
 mkdir "$folder/certs"
 services_host run --rm --no-deps --no-TTY certs tar -C /certs --numeric-owner -c simulator drive | tar -x -C "$folder/certs"
 chmod 755 "$folder" # the containers' user looks in
-TOPNAV_ROBOT_CERTS=$folder/certs robot_host up --detach --wait --wait-timeout 180 >"$folder/up.log" 2>&1 ||
-    { cat "$folder/up.log"; robot_host logs --tail 20; exit 1; }
+export TOPNAV_ROBOT_CERTS=$folder/certs
+up_by robot_host || { robot_host logs --tail 20; exit 1; }
 read_token
-ask --json '{"action": "explore", "map": "flat"}' "$robot/missions" >/dev/null
-until ask "$api/maps/flat" | grep --quiet '"nodes":[1-9]'; do
-    [ "$((SECONDS - began))" -lt 120 ] || exit 1
-    sleep 1
-done
+explores
 say "a mission with the robot on a host of its own"

@@ -50,8 +50,8 @@ def robot_names(variables: Mapping[str, str]) -> tuple[str, ...]:
         ValueError: one of the variables that name robots, also those of the features, names something else.
     """
     one = _checked("TOPNAV_ROBOT", [variables.get("TOPNAV_ROBOT") or "r1"])
-    several, _ = (_listed(variables, name) for name in ("TOPNAV_ROBOTS", "TOPNAV_FEATURES_ROBOTS"))
-    return several or one
+    _listed(variables, "TOPNAV_FEATURES_ROBOTS")  # not of the stack, but read before anything is started
+    return _listed(variables, "TOPNAV_ROBOTS") or one
 
 
 def _listed(variables: Mapping[str, str], variable: str) -> tuple[str, ...]:

@@ -11,7 +11,6 @@ import os
 import select
 import struct
 import subprocess
-import sys
 import threading
 import time
 from collections.abc import Sequence
@@ -21,8 +20,6 @@ from typing import Any, Self
 
 import numpy as np
 
-OWN_NETWORK = "TOPNAV_OWN_NETWORK"
-"""Set in the process that runs in the first host's network."""
 ADDRESSES = ("10.77.0.1", "10.77.0.2")
 CLONE_NEWNET = 0x40000000  # linux/sched.h
 TUNSETIFF, IFF_TUN, IFF_NO_PI = 0x400454CA, 0x0001, 0x1000  # linux/if_tun.h
@@ -95,18 +92,6 @@ class SlowLink:
                 _, _, far, packet = heapq.heappop(waiting)
                 if not self._cut.is_set():
                     os.write(far, packet)
-
-
-def in_own_network(module: str, arguments: Sequence[str]) -> None:
-    """Run `python -m module` again in a network of its own, unless this process is in one.
-
-    Raises:
-        OSError: the system does not allow that.
-    """
-    if not os.environ.get(OWN_NETWORK):
-        user = [] if os.geteuid() == 0 else ["--user", "--map-root-user"]
-        command = ["unshare", *user, "--net", sys.executable, "-m", module, *arguments]
-        os.execvpe(command[0], command, os.environ | {OWN_NETWORK: "1"})
 
 
 def _network(pid: int) -> Path:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from experiments.soak.network import enter_own_network
 from services.launcher.client.mission import TERMINAL, MissionClient
 from shared.bus import Bus
 from shared.messages.features import Features
@@ -20,7 +21,7 @@ from shared.messages.missions import MissionRequest
 from shared.messages.simulation import Truth
 from shared.topics import COMMAND, FEATURES, STATUS, TRUTH
 from tests.faults.hosts import TwoHosts
-from tests.faults.slow_link import SlowLink, in_own_network
+from tests.faults.slow_link import SlowLink
 from tests.faults.speedometer import speeds_in
 
 MAP, ROBOT = "flat", "r1"
@@ -28,6 +29,7 @@ MOVING_MPS, STILL_MPS = 0.1, 0.03
 CUT_S, BETWEEN_S = 3.0, 6.0
 """A cut lasts longer than a heading, a command and the lease of a session do."""
 MISSION_S = 400.0
+NO_NETWORK = "this user may not have a network of its own"
 
 
 @dataclass
@@ -121,7 +123,8 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, help="kept: certificates, logs, maps")
     parser.add_argument("--json", type=Path)
     chosen = parser.parse_args()
-    in_own_network("tests.faults.two_hosts", sys.argv[1:])
+    if not enter_own_network("tests.faults.two_hosts"):
+        sys.exit(NO_NETWORK)
     report = Report(chosen.delay_s, chosen.loss)
     with tempfile.TemporaryDirectory() as spare:
         folder = chosen.folder or Path(spare)

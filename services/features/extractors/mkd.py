@@ -16,5 +16,5 @@ class Mkd(PatchNetwork):
         if not trained:
             raw = kf.MKDDescriptor(PATCH_PX, whitening=None)
             return torch.nn.Sequential(raw, torch.nn.AdaptiveAvgPool1d(WIDTH))
-        with loading("mkd", trained=trained):
+        with loading("mkd"):
             return kf.MKDDescriptor(PATCH_PX, output_dims=WIDTH)

@@ -82,7 +82,7 @@ def local_process(name: str, service: Service, hosts: Collection[str], machine: 
         name=name,
         command=_with_python(service.command, machine.python),
         environment=environment,
-        data_folders=tuple(machine.data_dir / v.split(":")[0] for v in volumes if not is_folder(v)),
+        data_folders=tuple(machine.data_dir / v.split(":")[0] for v in volumes if not _is_folder(v)),
         alive_as=test[len(LIVELINESS_TEST)] if by_token else None,
         check=None if by_token or not test or test[0] == "NONE" else _check_command(test, machine.python),
         check_interval_s=service.healthcheck.interval if service.healthcheck else 0.0,
@@ -114,12 +114,12 @@ def _mounts(volumes: Sequence[str], machine: LocalMachine) -> dict[str, Path]:
     for volume in volumes:
         source, target = volume.split(":")[:2]
         mounts[target] = (
-            machine.root / Path(source).expanduser() if is_folder(volume) else machine.data_dir / source
+            machine.root / Path(source).expanduser() if _is_folder(volume) else machine.data_dir / source
         )
     return mounts
 
 
-def is_folder(volume: str) -> bool:
+def _is_folder(volume: str) -> bool:
     """Whether a folder of the machine is mounted, by Compose's rule, and not a named volume."""
     return volume.startswith((".", "/", "~"))
 

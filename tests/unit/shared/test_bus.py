@@ -5,7 +5,7 @@ import os
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -25,22 +25,6 @@ SOON_S = 30.0
 PROBE = "probe"
 
 pytestmark = pytest.mark.usefixtures("patient_sessions")
-
-
-@pytest.fixture
-def here(router_endpoint: str) -> Iterator[Bus]:
-    """One peer."""
-    with open_bus(router_endpoint) as bus:
-        yield bus
-
-
-@pytest.fixture
-def there(router_endpoint: str, here: Bus) -> Iterator[Bus]:
-    """Another peer that sees the first."""
-    here.announce("here")
-    with open_bus(router_endpoint) as bus:
-        assert wait_until(lambda: bus.alive("here") == ["here"], SOON_S)
-        yield bus
 
 
 def linked(send: Callable[[], None], inbox: Inbox) -> None:

@@ -1,7 +1,6 @@
 """Two processes of one robot's name: whoever runs stays, whatever clocks say; a dead one is forgotten."""
 
 import time
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
@@ -14,22 +13,6 @@ NEWCOMERS = (-3600, 0, 3600) * 3
 """How far the clocks of some that start are ahead; random ids alone would refuse all in one of ten runs."""
 
 pytestmark = pytest.mark.usefixtures("patient_sessions")
-
-
-@pytest.fixture
-def here(router_endpoint: str) -> Iterator[Bus]:
-    """The bus of a robot that runs."""
-    with open_bus(router_endpoint) as bus:
-        yield bus
-
-
-@pytest.fixture
-def there(router_endpoint: str, here: Bus) -> Iterator[Bus]:
-    """Another bus that sees the first."""
-    here.announce("here")
-    with open_bus(router_endpoint) as bus:
-        assert wait_until(lambda: bus.alive("here") == ["here"], SOON_S)
-        yield bus
 
 
 def refused(robot: SoleRobot) -> bool:
