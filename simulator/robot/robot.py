@@ -109,6 +109,8 @@ def _build(
         link.collision_groups = [1, 1, ROBOT_GROUP, 7]
     builder.set_initial_pose(flat_pose(x_m, y_m, yaw_rad))
     articulation = builder.build(fix_root_link=False)
+    # Until the first step only the root is where it belongs; this puts legs and wheels below it.
+    articulation.set_qpos(articulation.get_qpos())
     for joint in articulation.active_joints:
         joint.set_friction(0.0)
         if joint.name.startswith("steer"):
