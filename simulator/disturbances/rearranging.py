@@ -16,7 +16,8 @@ from simulator.world.changes import Changes, at_pose, changed_world, item_names
 from simulator.world.contents import expand, placed
 from simulator.world.footprints import Footprints, clearance_m, footprints
 from simulator.world.freespace import BODY_BAND_M, FreeSpace, free_space
-from simulator.world.world_file import Item, WorldFile
+from simulator.world.items import Item
+from simulator.world.world_file import WorldFile
 
 # All chosen: what a household changes within a week.
 LARGEST_M = 1.3  # of what one person pushes

@@ -42,7 +42,7 @@ class Sunlight:
 def bake(
     vertices: FloatArray, normals: FloatArray, parts: tuple[Part, ...], lights: tuple[Light, ...],
     ambient: tuple[float, float, float], occlusion: float, rng: np.random.Generator,
-    sun: Sunlight | None = None,
+    sun: Sunlight | None = None, alike: bool = False,
 ) -> FloatArray:  # fmt: skip
     """Light at each vertex as a factor for gamma-encoded texture values.
 
@@ -58,6 +58,7 @@ def bake(
         occlusion: 0 to 1.
         rng: places the light samples.
         sun: parallel light with hard shadows.
+        alike: whether all lamps are sampled at the same points, so that equal rooms are lit equally.
 
     Returns:
         (n, 3) factors, about 0.2 to 1.3.
@@ -67,9 +68,9 @@ def bake(
     start, facing = vertices[first], normals[first]
     grid = _FilledGrid(parts, vertices)
     total = np.zeros((len(start), 3), np.float32)
-    for light in lights:
-        offsets = rng.uniform(-0.45, 0.45, (SAMPLES, 3)) * np.array(light.size_m)
-        for point in np.array(light.centre_m) + offsets:
+    samples = [rng.uniform(-0.45, 0.45, (SAMPLES, 3)) for _ in lights]
+    for light, shares in zip(lights, samples[:1] * len(lights) if alike else samples, strict=True):
+        for point in np.array(light.centre_m) + shares * np.array(light.size_m):
             total += _direct(start, facing, grid, light, point.astype(np.float32)) / SAMPLES
     if sun is not None:
         total += _sunlit(start, facing, grid, sun)

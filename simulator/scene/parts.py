@@ -65,6 +65,7 @@ class Part:
         geometry: triangles of a mesh, around its centre.
         outline_m: corners of a hull around its centre, convex, counter-clockwise from above.
         grain_m: how densely a box carries light; None leaves it to its size.
+        texture_at_m: the place that decides which region of a tiled texture is shown; None: its centre.
     """
 
     shape: Shape
@@ -82,6 +83,7 @@ class Part:
     geometry: Geometry | None = None
     outline_m: tuple[tuple[float, float], ...] = ()
     grain_m: float | None = None
+    texture_at_m: Vec3 | None = None
 
 
 @dataclass(frozen=True)

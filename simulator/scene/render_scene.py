@@ -131,7 +131,7 @@ class RenderScene:
         entity = sapien.Entity()
         body = render.RenderBodyComponent()
         viewpoints = _viewpoints(world, self._settings.height_m)
-        for lit in lit_meshes(parts, lights, world.lighting, viewpoints, cache, sunlight(world)):
+        for lit in lit_meshes(parts, lights, world.lighting, viewpoints, cache, sunlight(world), world.alike):
             glow = lit.material.glow
             shade = np.full_like(lit.light, glow) if glow else lit.light
             body.attach(self._shape(lit.mesh, shade, lit.material))

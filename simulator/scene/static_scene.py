@@ -41,6 +41,7 @@ def lit_meshes(
     viewpoints: FloatArray,
     cache: DiskCache,
     sun: Sunlight | None = None,
+    alike: bool = False,
 ) -> list[LitMesh]:
     """Meshes of all parts, without what no camera can see, and their light.
 
@@ -51,12 +52,13 @@ def lit_meshes(
         viewpoints: (k, 3) positions between which the camera always is.
         cache: keeps the result, as it takes seconds.
         sun: of worlds with open ground.
+        alike: whether equal rooms are lit equally, see lighting.bake.
     """
     here = Path(__file__)
     code = code_fingerprint([here, *(here.with_name(name) for name in CODE)])
-    key = fingerprint("lit meshes", code, parts, lights, even, viewpoints.tolist(), sun)
+    key = fingerprint("lit meshes", code, parts, lights, even, viewpoints.tolist(), sun, alike)
     materials = list(dict.fromkeys(part.material for part in parts))
-    packed = cache.fetch(key, lambda: _packed(_lit(parts, lights, even, viewpoints, sun), materials))
+    packed = cache.fetch(key, lambda: _packed(_lit(parts, lights, even, viewpoints, sun, alike), materials))
     return _unpacked(packed, materials)
 
 
@@ -66,12 +68,15 @@ def _lit(
     even: Lighting,
     viewpoints: FloatArray,
     sun: Sunlight | None,
+    alike: bool,
 ) -> list[LitMesh]:
     culled = {material: facing_any(mesh, viewpoints) for material, mesh in by_material(parts).items()}
     groups = {material: mesh for material, mesh in culled.items() if len(mesh.triangles)}
     whole = joined(list(groups.values()))
     rng = np.random.default_rng(0)
-    factors = bake(whole.vertices, whole.normals, parts, lights, even.ambient, even.occlusion, rng, sun)
+    factors = bake(
+        whole.vertices, whole.normals, parts, lights, even.ambient, even.occlusion, rng, sun, alike
+    )
     ends = np.cumsum([len(mesh.vertices) for mesh in groups.values()])
     return [
         LitMesh(material, mesh, light)

@@ -32,5 +32,5 @@ def stretched(part: Part, u: AnyFloat, v: AnyFloat) -> FloatArray:
 
 def texture_offset(part: Part) -> FloatArray:
     """Each part samples its own region of a tiled texture, so that no two boards look the same."""
-    x, y, z = part.centre_m
+    x, y, z = part.centre_m if part.texture_at_m is None else part.texture_at_m
     return np.array([0.37 * x + 0.71 * y + 0.13 * z, 0.53 * x - 0.29 * y + 0.41 * z], np.float32)

@@ -11,7 +11,8 @@ from pydantic import ValidationError
 
 from simulator.furniture.catalogue import FURNITURE
 from simulator.scene.parts import Pose2
-from simulator.world.world_file import Item, WorldFile
+from simulator.world.items import Item
+from simulator.world.world_file import WorldFile
 
 Changes = Mapping[str, Item | None]
 

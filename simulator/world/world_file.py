@@ -1,24 +1,15 @@
 """World files: the YAML that describes a world, checked on loading."""
 
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    ConfigDict,
-    Field,
-    ValidationError,
-    ValidationInfo,
-    field_serializer,
-    field_validator,
-    model_validator,
-)
+from pydantic import AfterValidator, Field, ValidationError, ValidationInfo, field_validator, model_validator
 
 from shared.yaml_reading import YamlFileError, read_yaml
 from simulator.assets.folder import AssetFolder
-from simulator.furniture.catalogue import FURNITURE
 from simulator.textures.catalogue import KINDS
+from simulator.world.fields import MOST_M, Channel, Degrees, FileModel, Height, Interval, Metres, Name, Seed
+from simulator.world.items import MOST_ITEMS, Item, Placement, placed_items
 
 WORLDS = Path(__file__).resolve().parents[1] / "worlds"
 
@@ -27,34 +18,16 @@ class WorldFileError(ValueError):
     """A world file cannot be used; the message names file, place, expectation and value."""
 
 
-def _interval(value: tuple[float, float]) -> tuple[float, float]:
-    if not value[0] < value[1]:
-        raise ValueError(f"must be [low, high] with low < high, got [{value[0]}, {value[1]}]")
-    return value
-
-
 def _texture(value: str) -> str:
     if value not in KINDS:
         raise ValueError(f"unknown texture kind {value!r}; choose from {', '.join(sorted(KINDS))}")
     return value
 
 
-MOST_M = 500.0  # of any coordinate
 MOST_SPAN_M = 250.0  # of a whole world
-Metres = Annotated[float, Field(ge=-MOST_M, le=MOST_M)]
-Degrees = Annotated[float, Field(ge=-3600.0, le=3600.0)]
-Height = Annotated[float, Field(gt=0.0, le=30.0)]
-Name = Annotated[str, Field(min_length=1, max_length=80)]
-Interval = Annotated[tuple[Metres, Metres], AfterValidator(_interval)]
-Seed = Annotated[int, Field(ge=0, lt=2**63)]
-Channel = Annotated[int, Field(ge=0, le=255)]
 
 
-class _Model(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class Surface(_Model):
+class Surface(FileModel):
     """Texture, colour (RGB) and seed of a floor, wall or ceiling; `tile_m` is the side of one repeat.
 
     With `variants` above 1 repeats differ: each tile shows one of so many textures, from `seed` on.
@@ -67,7 +40,7 @@ class Surface(_Model):
     variants: int = Field(default=1, ge=1, le=16)
 
 
-class Rectangle(_Model):
+class Rectangle(FileModel):
     """An axis-parallel piece of floor."""
 
     x_m: Interval
@@ -102,7 +75,7 @@ class Ground(Rectangle):
     border: Border = "none"
 
 
-class Sky(_Model):
+class Sky(FileModel):
     """Colours of the sky (RGB) above and at the horizon, and how much of it clouds cover (0 to 1)."""
 
     zenith: tuple[Channel, Channel, Channel] = (96, 142, 206)
@@ -111,7 +84,7 @@ class Sky(_Model):
     seed: Seed = 0
 
 
-class Sun(_Model):
+class Sun(FileModel):
     """Where the sun stands (azimuth counter-clockwise from x) and how much light it gives (linear RGB)."""
 
     azimuth_deg: Degrees = 130.0
@@ -119,41 +92,7 @@ class Sun(_Model):
     power: tuple[float, float, float] = (0.95, 0.9, 0.8)
 
 
-class Item(_Model):
-    """A piece of furniture: kind, position, heading of its front, height, seed, and options of that kind.
-
-    Items with a `name` can be removed or moved while the world runs.
-    """
-
-    name: Name | None = None
-    kind: str
-    at_m: tuple[Metres, Metres]
-    yaw_deg: Degrees = 0.0
-    z_m: Metres = 0.0
-    seed: Seed = 0
-    options: dict[str, Any] = Field(default_factory=dict)
-
-    @field_validator("options")
-    @classmethod
-    def _files_opened(cls, options: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
-        kind = FURNITURE.get(info.data.get("kind", ""))
-        return kind.opened(options, info.context) if kind else options
-
-    @field_serializer("options", when_used="json")
-    def _files_by_content(self, options: dict[str, Any]) -> dict[str, Any]:
-        return {name: getattr(value, "digest", value) for name, value in options.items()}
-
-    @model_validator(mode="after")
-    def _known(self) -> Self:
-        if self.kind not in FURNITURE:
-            raise ValueError(
-                f"unknown furniture kind {self.kind!r}; choose from {', '.join(sorted(FURNITURE))}"
-            )
-        FURNITURE[self.kind].check(self.options)
-        return self
-
-
-class Start(_Model):
+class Start(FileModel):
     """Where the robot starts."""
 
     x_m: Metres
@@ -161,19 +100,23 @@ class Start(_Model):
     yaw_deg: Degrees = 0.0
 
 
-class Lighting(_Model):
+class Lighting(FileModel):
     """Even light that reaches everything, and how much of it corners lose (0 to 1)."""
 
     ambient: tuple[float, float, float] = (0.24, 0.235, 0.23)
     occlusion: float = Field(default=0.9, ge=0.0, le=1.0)
 
 
-class WorldFile(_Model):
+class WorldFile(FileModel):
     """A whole world.
 
     Attributes:
         environment: which speeds, sensor ranges and thresholds suit it; no service reads it from here.
         sky, sun: of worlds with grounds; a sky is there whenever there is open ground.
+        groups, placed: furniture that is there more than once; its copies follow the world's own furniture,
+            and what is read from them is not written again.
+        alike: whether what is equal looks equal to the last grain, light included. Otherwise each piece shows
+            another part of its textures, as real wood does.
     """
 
     format: Literal["topnav-world/1"]
@@ -187,8 +130,21 @@ class WorldFile(_Model):
     rooms: tuple[Room, ...] = Field(default=(), max_length=200)
     grounds: tuple[Ground, ...] = Field(default=(), max_length=200)
     openings: tuple[Opening, ...] = Field(default=(), max_length=400)
-    furniture: tuple[Item, ...] = Field(default=(), max_length=3000)
+    groups: dict[Name, tuple[Item, ...]] = Field(default_factory=dict, max_length=200, exclude=True)
+    placed: tuple[Placement, ...] = Field(default=(), max_length=MOST_ITEMS, exclude=True)
+    alike: bool = False
+    furniture: tuple[Item, ...] = Field(default=(), max_length=MOST_ITEMS, validate_default=True)
     start: Start
+
+    @field_validator("furniture")
+    @classmethod
+    def _with_groups(cls, furniture: tuple[Item, ...], info: ValidationInfo) -> tuple[Item, ...]:
+        if not {"groups", "placed"} <= info.data.keys():
+            return furniture  # they have faults of their own
+        copies = placed_items(info.data["groups"], info.data["placed"], info.context)
+        if len(furniture) + len(copies) > MOST_ITEMS:
+            raise ValueError(f"must be at most {MOST_ITEMS}, got {len(furniture)} and {len(copies)} placed")
+        return (*furniture, *copies)
 
     def rectangles(self) -> list[tuple[tuple[float, float], tuple[float, float]]]:
         """All floor: the x and y intervals of rooms, openings and grounds."""

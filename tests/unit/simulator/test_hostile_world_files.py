@@ -84,6 +84,17 @@ def test_a_wrong_value_anywhere_is_refused_by_name(tmp_path, room_data, data):
 
 @LIMITED
 @given(st.data())
+def test_a_wrong_value_in_groups_and_their_copies_is_refused_by_name(tmp_path, room_data, data):
+    group = [{"name": "seat", "kind": "pouf", "at_m": [1, 1], "options": {"radius_m": 0.2}}]
+    changed = {"seat": {"seed": 2, "options": {"height_m": 0.3}}}
+    copies = [{"group": "corner", "name": "a", "at_m": [2, 2], "yaw_deg": 90, "changed": changed}]
+    whole = {"groups": {"corner": group}, "placed": copies}
+    path = data.draw(st.sampled_from(list(places(whole))))
+    survives(tmp_path, {**room_data, **with_value(whole, path, data.draw(VALUES))} if path else room_data)
+
+
+@LIMITED
+@given(st.data())
 def test_any_furniture_with_any_options_is_built_or_refused(tmp_path, room_data, data):
     kind = data.draw(st.sampled_from(sorted(FURNITURE)))
     known = FURNITURE[kind].options()

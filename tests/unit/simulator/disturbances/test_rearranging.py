@@ -6,7 +6,8 @@ import pytest
 from simulator.disturbances.rearranging import KEPT_FLOOR, is_movable, rearranged
 from simulator.world.changes import changed_world
 from simulator.world.freespace import free_space
-from simulator.world.world_file import Item, WorldFile
+from simulator.world.items import Item
+from simulator.world.world_file import WorldFile
 
 
 @pytest.fixture(scope="module")
