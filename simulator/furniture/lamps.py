@@ -1,9 +1,9 @@
-"""Ceiling light, floor lamp, table lamp."""
+"""Ceiling light, light panel, floor lamp, table lamp."""
 
 import numpy as np
 
 from simulator.scene.parts import Light, Material, Piece, Rgb
-from simulator.scene.shapes import post
+from simulator.scene.shapes import around, detail, post
 
 SHADE: Rgb = (255, 244, 220)
 WARM = np.array([1.0, 0.9, 0.76])
@@ -24,6 +24,23 @@ def ceiling_light(rng: np.random.Generator, radius_m: float = 0.22, strength: fl
         post(0.0, 0.0, (-0.1, -0.03), radius_m * 0.94, shade, solid=False, casts_shadow=False, taper=1.05),
     )
     return Piece(parts, (Light((0.0, 0.0, -0.12), (radius_m, radius_m, 0.02), _power(strength)),))
+
+
+def light_panel(
+    rng: np.random.Generator, length_m: float = 0.6, width_m: float = 0.6, strength: float = 3.6
+) -> Piece:
+    """Panel in the ceiling that shines, long side along y; the item's height is that of the ceiling."""
+    del rng
+    frame = Material("lacquer", (246, 246, 244), 1)
+    shade = Material("glow", (250, 252, 255), 3, glow=1.0)
+    half = width_m / 2, length_m / 2
+    lit = half[0] - 0.03, half[1] - 0.03
+    parts = (
+        detail(around(0.0, half[0]), around(0.0, half[1]), (-0.015, 0.0), frame, casts_shadow=False),
+        detail(around(0.0, lit[0]), around(0.0, lit[1]), (-0.018, -0.015), shade, casts_shadow=False),
+    )
+    cool = (0.96 * strength, 0.98 * strength, strength)
+    return Piece(parts, (Light((0.0, 0.0, -0.04), (width_m, length_m, 0.01), cool),))
 
 
 def floor_lamp(rng: np.random.Generator, height_m: float = 1.6, strength: float = 0.7) -> Piece:

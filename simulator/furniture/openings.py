@@ -1,4 +1,4 @@
-"""What walls open with: a shut door, a window with curtains that shines into the room."""
+"""What walls open with: a shut door, an open one, a window with curtains that shines into the room."""
 
 import numpy as np
 
@@ -22,6 +22,39 @@ def door(
         detail((0.016, 0.022), (half - 0.09, half - 0.05), (0.94, 1.14), steel),
         detail((0.018, 0.05), (half - 0.08, half - 0.06), (1.05, 1.07), steel),
         detail((0.045, 0.06), (half - 0.19, half - 0.06), (1.05, 1.07), steel),
+    ]
+    return Piece.of(*parts)
+
+
+def open_door(
+    rng: np.random.Generator,
+    width_m: float = 1.1,
+    height_m: float = 2.1,
+    depth_m: float = 0.15,
+    colour: Rgb = (226, 220, 206),
+) -> Piece:
+    """Frame of an opening in a wall and its leaf, hinged at +y and opened by a right angle towards +x.
+
+    The origin is the middle of the opening on that face of the wall; the frame is as deep as the wall.
+    """
+    del rng
+    leaf, frame = Material("door", colour, 0), Material("lacquer", (238, 236, 230), 2)
+    steel = Material("metal", (176, 176, 180), 4)
+    half, wide = width_m / 2, 0.07
+    parts = [detail((-depth_m, 0.0), around(0.0, half), (height_m - 0.02, height_m), frame)]
+    for side in (-1, 1):
+        edge = side * half
+        parts.append(detail((-depth_m, 0.0), (edge, edge - side * 0.02), (0.0, height_m), frame))
+        for face in ((0.0, 0.02), (-depth_m - 0.02, -depth_m)):
+            parts.append(detail(face, (edge, edge + side * wide), (0.0, height_m + wide), frame))
+    for face in ((0.0, 0.02), (-depth_m - 0.02, -depth_m)):
+        parts.append(detail(face, around(0.0, half + wide), (height_m, height_m + wide), frame))
+    thick, reach = (half + 0.02, half + 0.06), width_m - 0.04
+    parts.append(label((0.03, reach), thick, (0.01, height_m - 0.03), leaf, solid=True))
+    parts += [
+        detail((reach - 0.09, reach - 0.05), (thick[0] - 0.006, thick[0]), (0.94, 1.14), steel),
+        detail((reach - 0.19, reach - 0.06), (thick[0] - 0.045, thick[0] - 0.03), (1.05, 1.07), steel),
+        detail((reach - 0.08, reach - 0.06), (thick[0] - 0.045, thick[0]), (1.05, 1.07), steel),
     ]
     return Piece.of(*parts)
 

@@ -24,7 +24,7 @@ def detail(x: Span, y: Span, z: Span, material: Material, **options: object) -> 
 
 def label(x: Span, y: Span, z: Span, material: Material, **options: object) -> Part:
     """A box that is only seen and shows one whole picture on each side."""
-    return detail(x, y, z, material, tile_m=None, **options)
+    return box(x, y, z, material, **{"solid": False, "tile_m": None, **options})
 
 
 def ball(centre: Vec3, size: Vec3, material: Material, **options: object) -> Part:

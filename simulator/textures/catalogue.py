@@ -5,12 +5,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from simulator.textures import materials, objects, outdoors, pictures, rugs, surfaces
+from simulator.textures import materials, objects, outdoors, pictures, rugs, screens, surfaces
 from simulator.textures.noise import Image, Rgb
 
 KINDS: dict[str, Callable[[np.random.Generator, Rgb], Image]] = {
     name: function
-    for module in (materials, objects, outdoors, pictures, rugs, surfaces)
+    for module in (materials, objects, outdoors, pictures, rugs, screens, surfaces)
     for name, function in inspect.getmembers(module, inspect.isfunction)
     if function.__module__ == module.__name__ and not name.startswith("_")
 }

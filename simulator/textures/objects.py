@@ -1,4 +1,4 @@
-"""Things drawn as one picture: book spines, doors, screens, clocks, radiators, views from a window. RGB."""
+"""Things drawn as one picture: book spines, doors, clocks, radiators, views from a window. RGB."""
 
 import cv2
 import numpy as np
@@ -79,15 +79,6 @@ def radiator(rng: np.random.Generator, colour: Rgb) -> Image:
     image[:12] *= 0.8
     image[-12:] *= 0.75
     return finish(noised(image, rng, 1.6, 0.02))
-
-
-def screen(rng: np.random.Generator, colour: Rgb) -> Image:
-    """Switched-off television with a soft reflection of the room."""
-    height, width = 288, 512
-    image = noised(flat(height, width, colour), rng, 2.0, 0.35)
-    for x, y, half in ((110, 60, 46), (380, 80, 34)):
-        block(image, (x - half, y - 26), (x + half, y + 60), (88.0, 96.0, 108.0))
-    return finish(smooth(image, 6.0))
 
 
 def clock(rng: np.random.Generator, colour: Rgb) -> Image:

@@ -1,4 +1,4 @@
-"""Building surfaces: plaster, ceiling paint, floor boards, tiles. RGB, tileable."""
+"""Building surfaces: plaster, ceiling paint and panels, floor boards, tiles, carpet. RGB, tileable."""
 
 import numpy as np
 
@@ -92,4 +92,36 @@ def tiles(rng: np.random.Generator, colour: Rgb) -> Image:
             tone = np.array(vary(rng, colour, 0.07), np.float32)
             ridge = np.exp(-((vein / 0.07) ** 2))
             image[ys, xs] = tone * (1.0 + 0.05 * vein - 0.13 * ridge + 0.025 * fine[ys, xs])[..., None]
+    return finish(image)
+
+
+def carpet_tile(rng: np.random.Generator, colour: Rgb) -> Image:
+    """One carpet tile: loops in rows, flecks of yarn, a darker joint round it. All tiles are alike."""
+    size = 256
+    loops = np.sin(np.arange(size, dtype=np.float32) * np.pi / 4.0)
+    image = modulate(flat(size, size, colour), np.broadcast_to(loops[:, None], (size, size)), 0.03)
+    flecks = np.zeros((size, size), np.float32)
+    for _ in range(150):
+        x, y = (int(v) for v in rng.integers(4, size - 12, 2))
+        stroke(flecks, (x, y), (x + int(rng.integers(3, 9)), y), float(rng.uniform(-1.0, 1.0)), 3)
+    image = noised(modulate(image, smooth(flecks, 0.8), 0.22), rng, 0.5, 0.05)
+    image[[0, -1]] *= 0.72
+    image[:, [0, -1]] *= 0.72
+    return finish(image)
+
+
+def ceiling_panel(rng: np.random.Generator, colour: Rgb) -> Image:
+    """One mineral fibre panel with its pores, hung in a white grid. All panels are alike."""
+    size, rail = 256, 5
+    image = noised(flat(size, size, colour), rng, 1.0, 0.012)
+    pores = np.zeros((size, size), np.float32)
+    for _ in range(320):
+        x, y = (int(v) for v in rng.integers(rail, size - rail, 2))
+        disc(pores, (x, y), int(rng.integers(1, 4)), float(rng.uniform(0.3, 1.0)))
+    image = modulate(image, -smooth(pores, 0.7), 0.2)
+    for edge in (slice(0, rail), slice(size - rail, size)):
+        image[edge], image[:, edge] = (246.0, 246.0, 244.0), (246.0, 246.0, 244.0)
+    for line in (rail, size - rail - 1):
+        image[line, rail:-rail] *= 0.8
+        image[rail:-rail, line] *= 0.8
     return finish(image)
