@@ -15,10 +15,8 @@ SIOCSIFFLAGS = 0x8914  # linux/sockios.h
 IFF_UP = 1  # linux/if.h
 
 
-def enter_own_network(module: str = "services.launcher") -> bool:
+def enter_own_network() -> bool:
     """Run this command again in a network namespace of its own; False where the system does not allow that.
-
-    `module` is what `python -m` runs.
 
     Returns True once inside. Its loopback is nobody else's: the console cannot be reached from outside.
     """
@@ -28,8 +26,7 @@ def enter_own_network(module: str = "services.launcher") -> bool:
     words = ["unshare", "--net"] if os.geteuid() == 0 else ["unshare", "--user", "--map-root-user", "--net"]
     with contextlib.suppress(OSError):
         if subprocess.run([*words, "true"], capture_output=True, check=False).returncode == 0:
-            command = [*words, sys.executable, "-m", module, *sys.argv[1:]]
-            os.execvpe(command[0], command, os.environ | {OWN_NETWORK: "1"})
+            os.execvpe(words[0], [*words, *sys.orig_argv], os.environ | {OWN_NETWORK: "1"})
     return False
 
 

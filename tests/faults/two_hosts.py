@@ -123,7 +123,7 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, help="kept: certificates, logs, maps")
     parser.add_argument("--json", type=Path)
     chosen = parser.parse_args()
-    if not enter_own_network("tests.faults.two_hosts"):
+    if not enter_own_network():
         sys.exit(NO_NETWORK)
     report = Report(chosen.delay_s, chosen.loss)
     with tempfile.TemporaryDirectory() as spare:
