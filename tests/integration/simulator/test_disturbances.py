@@ -81,9 +81,9 @@ def test_gravity_of_a_rocking_robots_frame_sets_its_picture_upright(world, clear
     simulation, rocked = Simulation(world, settings, 1), tuple(np.radians(rocked_deg))
     picture, gravity = simulation.panorama_at(*HERE, rocked=rocked), simulation.gravity_at(*HERE, rocked)
     kept = slice(WIDTH // 16, WIDTH // 2 - WIDTH // 8)  # without the poles, and without the robot's own body
-    assert off(level_again(picture, gravity)[kept], clear_picture[kept]) < 2.5
+    assert off(level_again(picture, gravity)[kept], clear_picture[kept]) < 4.0
     for wrong in ((-gravity[0], -gravity[1], gravity[2]), (0.0, 0.0, -1.0)):
-        assert off(level_again(picture, wrong)[kept], clear_picture[kept]) > 5.0
+        assert off(level_again(picture, wrong)[kept], clear_picture[kept]) > 10.0
 
 
 def off(one, other):
@@ -98,7 +98,7 @@ def test_mount_leans_every_picture_alike_and_gravity_tells(world, clear_picture)
     assert math.degrees(math.acos(-gravity[2])) == pytest.approx(10.0)
     assert simulation.gravity_at(1.0, 3.0, 2.0) == gravity
     kept = slice(WIDTH // 16, WIDTH // 2 - WIDTH // 8)
-    assert off(level_again(picture, gravity)[kept], clear_picture[kept]) < 2.5
+    assert off(level_again(picture, gravity)[kept], clear_picture[kept]) < 4.0
 
 
 def test_rocking_leans_pictures_of_a_robot_that_drives_and_of_no_other(world, clear_picture):
