@@ -37,14 +37,14 @@ def test_braking_puts_the_nose_down_and_setting_off_up():
     stopping = driven(driving, repeat(STILL, 20))
     off = driven(NO_EDGE, repeat(AHEAD, 20))
     assert start.edges == 0
-    assert math.degrees(max(s.pitch_rad for s in stopping)) > 2.0
-    assert math.degrees(min(s.pitch_rad for s in off)) < -2.0
+    assert math.degrees(max(s.pitch_rad for s in stopping)) > 1.4
+    assert math.degrees(min(s.pitch_rad for s in off)) < -1.4
     assert all(s.roll_rad == 0.0 for s in (*stopping, *off))
 
 
 def test_a_push_to_the_left_lifts_the_left_side():
     pushed = driven(NO_EDGE, repeat((0.0, SPEED_MPS), 20))
-    assert math.degrees(max(s.roll_rad for s in pushed)) > 2.0
+    assert math.degrees(max(s.roll_rad for s in pushed)) > 1.4
     assert all(s.pitch_rad == 0.0 for s in pushed)
 
 
