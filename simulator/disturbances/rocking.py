@@ -18,8 +18,8 @@ W_RADPS, D = 2.0 * math.pi * 1.5, 0.21
 FULL_MPS, SLOW_MPS = 0.4, 0.2  # full speed indoors, and what is left of it beside obstacles
 LEAN_RAD_PER_MPS2 = 0.01  # braking from full speed at once pitches the nose down by 1.7 degrees
 EDGE_EVERY_M = 0.2  # mean way between edges, which lie half as far to half again as far apart
-# At length strikes s at a mean frequency f give an axis a variance of f s^2 / (4 D W^3). By this factor legs of
-# 8 s, rest to rest, have 3.1 degrees (tests/unit/simulator/disturbances/test_rocking.py), an exploration 2.9.
+# At length strikes s of mean frequency f give an axis a variance of f s^2 / (4 D W^3). By this factor legs
+# of 8 s, rest to rest, have 3.1° (tests/unit/simulator/disturbances/test_rocking.py); an exploration, 2.9.
 STRIKE = 1.1
 EDGE_RADPS = STRIKE * RMS_RAD * math.sqrt(4.0 * D * W_RADPS**3 * EDGE_EVERY_M / FULL_MPS)
 
