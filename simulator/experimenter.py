@@ -37,13 +37,14 @@ class Experimenter:
         elif request.action == "place_hider":
             pose = self._pose(request)
             self._simulation.place_hider(*pose)
-            frame = self._look(pose, seq, stamp_ns)
+            frame = self._maker.look(pose, seq, stamp_ns)
         elif request.action == "remove_hider":
             self._simulation.remove_hider()
         elif request.action == "look":
             true = self._simulation.truth()
             here = (true.x_m, true.y_m, true.yaw_rad)
-            frame = self._look(here if request.pose is None else self._pose(request), seq, stamp_ns)
+            pose = here if request.pose is None else self._pose(request)
+            frame = self._maker.look(pose, seq, stamp_ns)
         elif request.action in {"set_item", "place_obstacle"}:
             self._change_world(request)
         changed = request.action not in {"look", "truth"}
@@ -65,9 +66,6 @@ class Experimenter:
             self._simulation.place_obstacle(request.kind, self._pose(request), request.item)
         except ChangeError as error:
             raise RequestError(f"{request.action}: {error}") from error
-
-    def _look(self, pose: Pose2, seq: int, stamp_ns: int) -> Frame:
-        return self._maker.picture(self._simulation.panorama_at(*pose), seq, stamp_ns)
 
     def _pose(self, request: SimulationRequest) -> Pose2:
         if request.pose is None:

@@ -7,6 +7,8 @@ import numpy as np
 
 from shared.messages.sensors import Frame, Ranges
 from shared.messages.simulation import Pose, Truth
+from simulator.scene.parts import Pose2
+from simulator.sensors.attitude import Vector
 from simulator.service_settings import SimulatorSettings
 from simulator.simulation import Image, Simulation
 
@@ -32,10 +34,14 @@ class MessageMaker:
         started_s = time.perf_counter()
         picture = self._simulation.panorama()
         self._render_ms = 1000.0 * (time.perf_counter() - started_s)
-        return self.picture(picture, seq, stamp_ns)
+        return self._message(picture, self._simulation.gravity(), seq, stamp_ns)
 
-    def picture(self, picture: Image, seq: int, stamp_ns: int) -> Frame:
-        """Any picture as a frame."""
+    def look(self, pose: Pose2, seq: int, stamp_ns: int) -> Frame:
+        """What a camera at rest sees from any pose."""
+        picture = self._simulation.panorama_at(*pose)
+        return self._message(picture, self._simulation.gravity_at(*pose), seq, stamp_ns)
+
+    def _message(self, picture: Image, gravity: Vector | None, seq: int, stamp_ns: int) -> Frame:
         if self._settings.encoding == "jpeg":
             _, coded = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, self._settings.jpeg_quality])
             data = coded.tobytes()
@@ -45,6 +51,7 @@ class MessageMaker:
         return Frame(
             seq=seq, stamp_ns=stamp_ns, robot=self._settings.robot, lockstep=self._settings.lockstep,
             encoding=self._settings.encoding, width_px=width, height_px=height, data=data,
+            gravity=gravity,
         )  # fmt: skip
 
     def truth(self, seq: int, stamp_ns: int) -> Truth:

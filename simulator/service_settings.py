@@ -39,6 +39,7 @@ class SimulatorSettings(ServiceSettings):
         cache_limit_mb: size of that folder, see SimulationSettings.
         disturbance: levels from 0 to 1 of what disturbs camera and world, as "fog=0.5,noise=0.3".
         polite_people: see SimulationSettings.
+        imu: frames say where down is (`gravity`), as of a camera with an IMU.
         state_dir: where the robot keeps an emergency stop across restarts.
     """
 
@@ -61,6 +62,7 @@ class SimulatorSettings(ServiceSettings):
     cache_limit_mb: PositiveInt = SimulationSettings().cache_limit_mb
     disturbance: Annotated[Disturbances, NoDecode] = Disturbances()
     polite_people: bool = True
+    imu: bool = False
     state_dir: Path = Path("data/robot-state")
 
     def simulation(self) -> SimulationSettings:
@@ -73,4 +75,5 @@ class SimulatorSettings(ServiceSettings):
             cache_limit_mb=self.cache_limit_mb,
             disturbances=self.disturbance,
             polite_people=self.polite_people,
+            imu=self.imu,
         )

@@ -1,5 +1,6 @@
 """Settings of the simulated robot, its sensors and the physics. The bus loop has service_settings.py."""
 
+import math
 from pathlib import Path
 from typing import Self
 
@@ -91,6 +92,8 @@ class SimulationSettings(_Frozen):
             three worlds of about 165.
         disturbances: how strongly camera and world are disturbed; nothing by default.
         polite_people: walkers wait for the robot; without, they walk into it.
+        imu: the camera knows where down is.
+        imu_noise_rad: 1 sigma of that about each axis; chosen: 0.3 degrees, a cheap IMU in motion.
     """
 
     timestep_s: PositiveFloat = 0.01
@@ -102,3 +105,5 @@ class SimulationSettings(_Frozen):
     cache_limit_mb: PositiveInt = 640
     disturbances: Disturbances = Disturbances()
     polite_people: bool = True
+    imu: bool = False
+    imu_noise_rad: NonNegativeFloat = 0.3 * math.pi / 180.0

@@ -8,10 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from simulator.disturbances.camera import Moment
+from simulator.disturbances.leaning import CameraLean
 from simulator.disturbances.rearranging import rearranged
 from simulator.disturbances.walking import Crowd, crowd_of
 from simulator.robot.physics_scene import Bodies, PhysicsScene
 from simulator.scene.parts import Pose2
+from simulator.sensors.attitude import LEVEL, PitchRoll, Vector
 from simulator.sensors.ranges import measure, sensor_angles_rad
 from simulator.settings import SimulationSettings
 from simulator.world.changes import ChangeError, Changes, changed_world, with_item, with_obstacle
@@ -47,6 +49,7 @@ class Simulation:
         """Build the world; the robot stands at the world's start."""
         self.settings = settings or SimulationSettings()
         levels = self.settings.disturbances
+        self._camera = CameraLean(self.settings)
         self._file = world
         self._changes: Changes = rearranged(world, levels.furniture, seed)
         self._show(changed_world(world, self._changes))
@@ -60,11 +63,13 @@ class Simulation:
         start = self.world.start
         self._seed = seed
         self._readings = 0
+        self._camera.reset(seed)
         self._crowd.restart()
         self._build(pose or (start.x_m, start.y_m, math.radians(start.yaw_deg)), 0.0, 0)
 
     def place_robot(self, x_m: float, y_m: float, yaw_rad: float) -> None:
         """Put the robot elsewhere, at rest; time and the collision count go on."""
+        self._camera.lift()
         self._build((x_m, y_m, yaw_rad), self._physics.time_s, self._physics.collisions)
 
     def place_hider(self, x_m: float, y_m: float, yaw_rad: float) -> None:
@@ -112,18 +117,43 @@ class Simulation:
             if self._walkers:
                 self._walk()
             self._physics.step()
+            if self.settings.disturbances.rocking:
+                self._camera.advance(self._physics.robot.pose()[2], self._physics.robot.motion())
 
     def panorama(self) -> Image:
         """What the robot's camera sees, (height, width, 3) BGR."""
         robot = self._physics.robot
-        return self._picture(robot.pose(), robot.motion())
+        return self._picture(robot.pose(), robot.motion(), self._camera.rocked())
 
-    def panorama_at(self, x_m: float, y_m: float, yaw_rad: float, motion: Pose2 = (0.0, 0.0, 0.0)) -> Image:
+    def panorama_at(
+        self,
+        x_m: float,
+        y_m: float,
+        yaw_rad: float,
+        motion: Pose2 = (0.0, 0.0, 0.0),
+        rocked: PitchRoll = LEVEL,
+    ) -> Image:
         """What a camera at any pose sees, with both robots where they are; (height, width, 3) BGR.
 
-        `motion` is that of the camera, world frame, m/s and rad/s: it blurs where that is on.
+        `motion` is that of the camera, world frame, m/s and rad/s: it blurs where that is on. `rocked` is the
+        pitch (nose down) and roll (left up), radians, of a robot below it that rocks.
         """
-        return self._picture((x_m, y_m, yaw_rad), motion)
+        return self._picture((x_m, y_m, yaw_rad), motion, rocked)
+
+    def rocked(self) -> PitchRoll:
+        """By how much the robot rocks: pitch (nose down) and roll (left up), radians; for evaluation only."""
+        return self._camera.rocked()
+
+    def gravity(self) -> Vector | None:
+        """What an IMU on the camera reads when `panorama` is taken, see `Frame`; None without an IMU."""
+        robot = self._physics.robot
+        time_s, rocked = self._physics.time_s, self._camera.rocked()
+        return self._camera.gravity(time_s, robot.pose(), robot.motion(), rocked)
+
+    def gravity_at(self, x_m: float, y_m: float, yaw_rad: float, rocked: PitchRoll = LEVEL) -> Vector | None:
+        """The same for `panorama_at` of a camera at rest."""
+        camera, still = (x_m, y_m, yaw_rad), (0.0, 0.0, 0.0)
+        return self._camera.gravity(self._physics.time_s, camera, still, rocked)
 
     def ranges(self) -> npt.NDArray[np.float64]:
         """Distances of the twelve sensors, metres; every call is a new reading with its own noise."""
@@ -180,7 +210,7 @@ class Simulation:
         figures = [walker.figure for walker in self._crowd.walkers]
         return View(self.world, (self._parts, self._lights), self.settings, figures)
 
-    def _picture(self, camera: Pose2, motion: Pose2) -> Image:
+    def _picture(self, camera: Pose2, motion: Pose2, rocked: PitchRoll) -> Image:
         if self._view is None:
             raise RuntimeError(
                 "this simulation was made with render=False; set SimulationSettings.render to take pictures"
@@ -188,7 +218,8 @@ class Simulation:
         bodies = {name: link.entity.pose for name, link in self._physics.robot.links.items()}
         walkers = [walker.pose() for walker in self._crowd.walkers]
         moment = Moment(self._seed, self._physics.time_s, camera)
-        return self._view.picture(camera, motion, Bodies(bodies, self._hider, walkers), moment)
+        lean = self._camera.lean(self._physics.time_s, motion, rocked)
+        return self._view.picture(camera, motion, lean, Bodies(bodies, self._hider, walkers), moment)
 
     def _change(self, changes: Changes) -> None:
         """Build the changed world round the robot, which stops but stays where it is."""

@@ -1,5 +1,6 @@
 """`topnav study heading-frames`: heading errors of all seven methods on rendered frame pairs."""
 
+import math
 from typing import Annotated
 
 import typer
@@ -11,6 +12,10 @@ app = typer.Typer()
 
 Pairs = Annotated[int, typer.Option(min=1, help="How many pairs of frames.")]
 Quick = Annotated[bool, typer.Option("--quick", help="60 pairs only.")]
+Rocking = Annotated[
+    float,
+    typer.Option(min=0.0, max=30.0, help="1 sigma of the camera's roll and of its pitch in each frame."),
+]
 QUICK_PAIRS = 60  # a minute of rendering
 
 
@@ -22,6 +27,7 @@ def heading_frames(
     quick: Quick = False,
     seed: options.Seed = 1,
     pipeline: options.PipelineName = None,
+    rocking_deg: Rocking = 0.0,
     json_file: options.JsonFile = None,
     data_dir: options.DataDir = options.DATA_DIR,
 ) -> int:
@@ -35,7 +41,15 @@ def heading_frames(
 
     chosen, count = Pipeline(find_profile(pipeline or "sift")), QUICK_PAIRS if quick else pairs
     with wide_console(stderr=True).status("") as status:
-        results = measure(load_world(world), chosen, count, seed, data_dir, status.update)
+        results = measure(
+            load_world(world),
+            chosen,
+            count,
+            seed,
+            data_dir,
+            status.update,
+            rocking_rad=math.radians(rocking_deg),
+        )
     verified, raw = method_table(results), method_table(results, raw=True)
     by_distance = distance_table(results)
     report = {
@@ -44,6 +58,7 @@ def heading_frames(
         "world": world,
         "seed": seed,
         "pipeline": pipeline or "sift",
+        "rocking_deg": rocking_deg,
         "methods_raw_matches": raw,
         "by_distance": by_distance,
         "two_view_status": status_counts(results),

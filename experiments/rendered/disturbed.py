@@ -13,7 +13,8 @@ from services.features.matching.verification import Candidate, feature_set, veri
 from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.pipeline import Pipeline
 from services.launcher.terminal.output import rounded
-from simulator.disturbances.levels import Disturbances
+from simulator.disturbances.levels import Disturbances, generator
+from simulator.disturbances.rocking import RMS_RAD, drawn
 from simulator.simulation import Image, Simulation
 from simulator.world.freespace import free_space
 from simulator.world.world_file import WorldFile
@@ -47,21 +48,26 @@ def measured(
     settings = [(CLEAN, 0.0), *((name, level) for name in Disturbances.model_fields for level in levels)]
     for name, level in settings:
         simulation = simulated(world, disturbances=disturbances(name, level), seed=seed)
-        row = _measure(simulation, poses, targets, pipeline)
+        row = _measure(simulation, poses, targets, pipeline, seed)
         ratio = _render_ratio(simulation, clean)
         yield {"disturbance": name, "level": level, **row, "render_ratio": ratio}
 
 
 def _measure(
-    simulation: Simulation, poses: Sequence[PosePair], targets: Sequence[FeatureSet], pipeline: Pipeline
+    simulation: Simulation,
+    poses: Sequence[PosePair],
+    targets: Sequence[FeatureSet],
+    pipeline: Pipeline,
+    seed: int,
 ) -> Row:
-    """Medians over all pairs; the disturbed camera moves towards the other pose."""
+    """Medians over all pairs; the disturbed camera moves, and rocks, towards the other pose."""
     inliers, errors = [], []
+    sigma_rad, rng = RMS_RAD * simulation.settings.disturbances.rocking, generator(seed, "rocking")
     for number, (pair, clean) in enumerate(zip(poses, targets, strict=True)):
         way_rad = pair.heading_rad + pair.current.yaw_rad
         motion = (SPEED_MPS * math.cos(way_rad), SPEED_MPS * math.sin(way_rad), 0.0)
-        current = pair.current
-        seen = _features(simulation.panorama_at(current.x_m, current.y_m, current.yaw_rad, motion), pipeline)
+        place = (pair.current.x_m, pair.current.y_m, pair.current.yaw_rad)
+        seen = _features(simulation.panorama_at(*place, motion, drawn(sigma_rad, rng)), pipeline)
         (matched,) = pipeline.matcher.match(seen, [clean])
         result = verify(seen, Candidate(0, clean), matched, number, pipeline.verification, False)
         inliers.append(result.inliers)

@@ -10,12 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
-from experiments.rendered.frames import CAMERA, camera
+from experiments.rendered.frames import CAMERA, tilting_camera
 from services.features.matching.verification import feature_set
 from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.pipeline import Pipeline
 from shared.messages.features import Features
 from shared.messages.simulation import Pose
+from simulator.sensors.attitude import LEVEL, PitchRoll
 from simulator.world.world_file import WorldFile
 
 CHUNK = 50
@@ -26,8 +27,14 @@ Tick = Callable[[str], None]
 
 def features_seen(world: WorldFile, pipeline: Pipeline) -> Callable[[Pose], FeatureSet]:
     """What the pipeline extracts from a world's frame at any pose; loads SAPIEN."""
-    shoot = camera(world)
-    return lambda pose: feature_set(pipeline.features_of(shoot(pose)))
+    look = features_seen_tilted(world, pipeline)
+    return lambda pose: look(pose, LEVEL)
+
+
+def features_seen_tilted(world: WorldFile, pipeline: Pipeline) -> Callable[[Pose, PitchRoll], FeatureSet]:
+    """The same with a tilt of the robot at each pose."""
+    shoot = tilting_camera(world)
+    return lambda pose, tilt: feature_set(pipeline.features_of(shoot(pose, tilt)))
 
 
 def cache_folder(root: Path, kind: str, world: WorldFile, pipeline: Pipeline, *choices: object) -> Path:
@@ -38,17 +45,27 @@ def cache_folder(root: Path, kind: str, world: WorldFile, pipeline: Pipeline, *c
 
 
 def kept_features(
-    world: WorldFile, pipeline: Pipeline, poses: Sequence[Pose], folder: Path, tick: Tick
+    world: WorldFile,
+    pipeline: Pipeline,
+    poses: Sequence[Pose],
+    folder: Path,
+    tick: Tick,
+    tilts: Sequence[PitchRoll] = (),
 ) -> list[FeatureSet]:
-    """Read from `folder` what is there, render the rest and keep it; `tick` hears how far it is."""
+    """Read from `folder` what is there, render the rest and keep it; `tick` hears how far it is.
+
+    `tilts` are those of the robot at each of the poses, none for a level one; `folder` must be of their draw.
+    """
     folder.mkdir(parents=True, exist_ok=True)
-    look: Callable[[Pose], FeatureSet] | None = None
+    leans = tilts or [LEVEL] * len(poses)
+    look: Callable[[Pose, PitchRoll], FeatureSet] | None = None
     found: list[FeatureSet] = []
     for start in range(0, len(poses), CHUNK):
         path = folder / f"{start:06d}-{min(CHUNK, len(poses) - start)}.npz"
         if not path.exists():
-            look = look or features_seen(world, pipeline)
-            _save(path, [look(pose) for pose in poses[start : start + CHUNK]])
+            look = look or features_seen_tilted(world, pipeline)
+            chunk = slice(start, start + CHUNK)
+            _save(path, [look(*each) for each in zip(poses[chunk], leans[chunk], strict=True)])
         found += _load(path)
         tick(f"{world.name}: {len(found)} of {len(poses)} frames")
     return found

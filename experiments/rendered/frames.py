@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from shared.messages.sensors import Frame
 from shared.messages.simulation import Pose
 from simulator.disturbances.levels import Disturbances
+from simulator.sensors.attitude import LEVEL, PitchRoll
 from simulator.service_settings import user_cache_dir
 from simulator.settings import CameraSettings, SimulationSettings
 from simulator.world.world_file import WorldFile
@@ -32,8 +33,14 @@ def simulated(
 
 def camera(world: WorldFile) -> Callable[[Pose], Frame]:
     """The frame of a world from any pose; loads SAPIEN."""
+    shoot = tilting_camera(world)
+    return lambda pose: shoot(pose, LEVEL)
+
+
+def tilting_camera(world: WorldFile) -> Callable[[Pose, PitchRoll], Frame]:
+    """The frame of a world from any pose on a robot that rocks; loads SAPIEN."""
     simulation = simulated(world)
-    return lambda pose: frame_of(simulation.panorama_at(pose.x_m, pose.y_m, pose.yaw_rad))
+    return lambda pose, tilt: frame_of(simulation.panorama_at(pose.x_m, pose.y_m, pose.yaw_rad, rocked=tilt))
 
 
 def frame_of(picture: "Image", robot: str = "study") -> Frame:

@@ -15,6 +15,9 @@ from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.pipeline import Pipeline
 from services.planner.heading.methods import heading_estimate
 from shared.geometry.two_view import TwoViewResult, two_view
+from simulator.disturbances.levels import generator
+from simulator.disturbances.rocking import drawn
+from simulator.sensors.attitude import PitchRoll
 from simulator.world.freespace import free_space
 from simulator.world.world_file import WorldFile
 
@@ -52,19 +55,38 @@ def measure(
     data_dir: Path,
     tick: Tick,
     apart_m: tuple[float, float] = APART_M,
+    rocking_rad: float = 0.0,
 ) -> list[PairResult]:
-    """Draw pairs, render what is not kept in `data_dir` yet, and judge every method on each."""
+    """Draw pairs, render what is not kept in `data_dir` yet, and judge every method on each.
+
+    `rocking_rad` is 1 sigma of the pitch and of the roll of every frame; the pairs are the same without it.
+    """
     pairs = draw_pairs(free_space(world), count, np.random.default_rng(seed), apart_m)
-    folder = cache_folder(data_dir / "cache", "pairs", world, pipeline, seed, apart_m)
-    return judge_pairs(pairs, world, pipeline, folder, tick)
+    tilts = draw_tilts(2 * count, rocking_rad, seed)
+    choices = (seed, apart_m, f"rocking {rocking_rad}") if tilts else (seed, apart_m)
+    folder = cache_folder(data_dir / "cache", "pairs", world, pipeline, *choices)
+    return judge_pairs(pairs, world, pipeline, folder, tick, tilts)
+
+
+def draw_tilts(frames: int, sigma_rad: float, seed: int) -> list[PitchRoll]:
+    """A tilt for each of a number of frames, the first ones the same for any number; none if sigma is 0."""
+    if sigma_rad == 0.0:
+        return []
+    rng = generator(seed, "frames that rock")
+    return [drawn(sigma_rad, rng) for _ in range(frames)]
 
 
 def judge_pairs(
-    pairs: Sequence[PosePair], world: WorldFile, pipeline: Pipeline, folder: Path, tick: Tick
+    pairs: Sequence[PosePair],
+    world: WorldFile,
+    pipeline: Pipeline,
+    folder: Path,
+    tick: Tick,
+    tilts: Sequence[PitchRoll] = (),
 ) -> list[PairResult]:
     """Judge every method on each pair; features are kept in `folder`, `tick` hears how far it is."""
     poses = [pose for pair in pairs for pose in (pair.current, pair.target)]
-    seen = kept_features(world, pipeline, poses, folder, tick)
+    seen = kept_features(world, pipeline, poses, folder, tick, tilts)
     results = []
     for number, (pair, *both) in enumerate(zip(pairs, seen[::2], seen[1::2], strict=True)):
         tick(f"headings of pair {number + 1} of {len(pairs)}")

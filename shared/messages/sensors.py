@@ -1,16 +1,25 @@
 """What a robot senses: one panorama and 12 distances. Robot -> everyone."""
 
+import math
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from shared.messages.base import SECTORS, Message, Name
 
 BytesPerPixel = 3
+Direction = tuple[float, float, float]
+NORM_TOLERANCE = 1e-3
+"""Of a unit vector's length: what a vector of half-precision numbers is off by; all else is no direction."""
 
 
 class Frame(Message):
-    """An equirectangular picture, centre column ahead, twice as wide as high."""
+    """An equirectangular picture, centre column ahead, twice as wide as high.
+
+    Attributes:
+        gravity: where an IMU says down is: unit vector in the camera frame (x forward, y left, z up), so
+            (0, 0, -1) of a camera that is level; None if nobody measured it.
+    """
 
     SCHEMA: ClassVar[str] = "frame.v1"
 
@@ -20,6 +29,7 @@ class Frame(Message):
     width_px: int = Field(ge=2, le=16_384)
     height_px: int = Field(ge=1, le=8_192)
     data: bytes = Field(max_length=64_000_000)
+    gravity: Direction | None = None
 
     @model_validator(mode="after")
     def _size_fits(self) -> "Frame":
@@ -29,6 +39,13 @@ class Frame(Message):
         if self.encoding == "bgr8" and len(self.data) != expected:
             raise ValueError(f"bgr8 frame needs {expected} bytes, got {len(self.data)}")
         return self
+
+    @field_validator("gravity")
+    @classmethod
+    def _of_length_one(cls, gravity: Direction | None) -> Direction | None:
+        if gravity is not None and abs(math.hypot(*gravity) - 1.0) > NORM_TOLERANCE:
+            raise ValueError(f"gravity must be a unit vector, got length {math.hypot(*gravity):.4g}")
+        return gravity
 
 
 class Ranges(Message):

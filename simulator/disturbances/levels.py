@@ -21,6 +21,8 @@ class Disturbances(BaseModel):
         people: walkers and carts on closed paths.
         furniture: share of movable furniture that was moved or taken away.
         tilt: inclination of the camera, constant and swaying, up to 5 degrees.
+        rocking: the robot swings on its legs: pitch and roll of 3 degrees each (rms) while it drives.
+        mount: the camera is mounted askew, constantly, by up to 10 degrees.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
@@ -34,6 +36,8 @@ class Disturbances(BaseModel):
     people: float = Field(default=0.0, ge=0.0, le=1.0)
     furniture: float = Field(default=0.0, ge=0.0, le=1.0)
     tilt: float = Field(default=0.0, ge=0.0, le=1.0)
+    rocking: float = Field(default=0.0, ge=0.0, le=1.0)
+    mount: float = Field(default=0.0, ge=0.0, le=1.0)
 
     @model_validator(mode="before")
     @classmethod

@@ -3,12 +3,11 @@
 import math
 
 from simulator.disturbances.levels import generator
+from simulator.sensors.attitude import PitchRoll
 
 MOST_RAD = math.radians(5.0)  # constant and sway together, at level 1; chosen: seen by eye on a robot
 SWAY_SHARE, SWAY_HZ = 0.3, 0.8  # chosen: a mast of a metre on soft tyres
 FULL_SWAY_MPS = 0.3  # speed from which on it sways fully; chosen: just below full speed
-
-PitchRoll = tuple[float, float]
 
 
 def tilt_of(level: float, seed: int, time_s: float, speed_mps: float) -> PitchRoll:

@@ -18,6 +18,7 @@ from simulator.scene.painter import Look, Painter, look_of
 from simulator.scene.parts import Contents, Light, Material, Part, Pose2
 from simulator.scene.sky import RADIUS_M, backdrop, sunlight
 from simulator.scene.static_scene import by_material, lit_meshes
+from simulator.sensors.attitude import UPRIGHT, Quaternion
 from simulator.sensors.panorama import BORDER_PX, CubeToEquirect, Image, face_fov_rad, face_rotations
 from simulator.settings import CameraSettings
 from simulator.world.world_file import WorldFile
@@ -32,13 +33,6 @@ def set_up_renderer() -> None:
     render.set_global_config(max_num_materials=512, max_num_textures=512)
     render.set_camera_shader_dir(os.fspath(SHADERS))
     render.set_picture_format("Color", "r8g8b8a8unorm")
-
-
-def _leaning(pitch_rad: float, roll_rad: float) -> sapien.Pose:
-    """Rotation about the horizontal axis (roll, pitch, 0) by their root sum of squares."""
-    angle = math.hypot(pitch_rad, roll_rad)
-    share = math.sin(angle / 2) / angle
-    return sapien.Pose([0.0, 0.0, 0.0], [math.cos(angle / 2), roll_rad * share, pitch_rad * share, 0.0])
 
 
 class RenderScene:
@@ -107,15 +101,16 @@ class RenderScene:
         """Put a body on the floor at (x, y, yaw), or out of sight."""
         self.move(entity, None if pose is None else flat_pose(*pose))
 
-    def panorama(self, pose: Pose2, tilt: tuple[float, float] = (0.0, 0.0)) -> Image:
+    def panorama(self, pose: Pose2, lean: Quaternion = UPRIGHT) -> Image:
         """Picture from a pose (x, y, yaw); (width / 2, width, 3) BGR bytes.
 
         Args:
             pose: position on the floor and heading.
-            tilt: pitch (nose down) and roll (left up) of the camera, radians.
+            lean: of the camera about its centre, see `simulator.sensors.attitude`.
         """
         upright = flat_pose(*pose, z_m=self._settings.height_m)
-        self._mount.set_pose(upright * _leaning(*tilt) if any(tilt) else upright)
+        leans = lean != UPRIGHT
+        self._mount.set_pose(upright * sapien.Pose([0.0, 0.0, 0.0], list(lean)) if leans else upright)
         self._scene.update_render()
         for camera in self._cameras:
             camera.take_picture()

@@ -7,13 +7,13 @@ from simulator.disturbances.camera import Moment, degraded
 from simulator.disturbances.fog import fog_of
 from simulator.disturbances.illumination import body_brightness, illuminated, view_brightness
 from simulator.disturbances.people import Figure
-from simulator.disturbances.tilt import tilt_of
 from simulator.robot.physics_scene import Bodies
 from simulator.robot.robot_shape import HIDER, SEEKER, chassis_parts, leg_parts, wheel_parts, whole_robot
 from simulator.scene.disk_cache import DiskCache
 from simulator.scene.painter import Painter
 from simulator.scene.parts import Contents, Pose2
 from simulator.scene.render_scene import RenderScene
+from simulator.sensors.attitude import Quaternion
 from simulator.sensors.panorama import Image
 from simulator.settings import SimulationSettings
 from simulator.world.world_file import WorldFile
@@ -57,17 +57,17 @@ class View:
         with Painter(self._cache) as painter:
             self._scene.change_static(shown, lit, painter, self._cache)
 
-    def picture(self, camera: Pose2, motion: Motion, bodies: Bodies, moment: Moment) -> Image:
-        """What a camera that moves like this sees, (height, width, 3) BGR."""
+    def picture(
+        self, camera: Pose2, motion: Motion, lean: Quaternion, bodies: Bodies, moment: Moment
+    ) -> Image:
+        """What a camera that moves and leans like this sees, (height, width, 3) BGR."""
         self._scene.move_flat(self._hider, bodies.hider)
         for entity, pose in zip(self._walkers, bodies.walkers, strict=True):
             self._scene.move_flat(entity, pose)
-        speed_mps = (motion[0] ** 2 + motion[1] ** 2) ** 0.5
-        tilt = tilt_of(self._levels.tilt, moment.seed, moment.time_s, speed_mps)
         pictures = []
         for pose in poses_of(camera, motion, self._levels.blur):
             self._place_robot(bodies, pose[0] - camera[0], pose[1] - camera[1])
-            pictures.append(self._scene.panorama(pose, tilt))
+            pictures.append(self._scene.panorama(pose, lean))
         return degraded(mean_picture(pictures), self._levels, moment)
 
     def _place_robot(self, bodies: Bodies, dx_m: float, dy_m: float) -> None:

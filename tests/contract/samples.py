@@ -41,6 +41,7 @@ def frame() -> sensors.Frame:
         width_px=4,
         height_px=2,
         data=bytes(range(24)),
+        gravity=(0.6, 0.0, -0.8),
     )
 
 

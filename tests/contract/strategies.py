@@ -131,8 +131,10 @@ def _fit_match(fields: Fields, count: int, seed: int) -> Fields:
 def _fit_frame(fields: Fields, count: int, seed: int) -> Fields:
     height = count + 1
     size = 6 * height * height if fields["encoding"] == "bgr8" else count
-    data = np.random.default_rng(seed).bytes(size)
-    return fields | {"height_px": height, "width_px": 2 * height, "data": data}
+    rng = np.random.default_rng(seed)
+    data, down = rng.bytes(size), rng.standard_normal(3)
+    gravity = None if fields["gravity"] is None else tuple((down / np.linalg.norm(down)).tolist())
+    return fields | {"height_px": height, "width_px": 2 * height, "data": data, "gravity": gravity}
 
 
 def _fit_edge(fields: Fields, _count: int, _seed: int) -> Fields:

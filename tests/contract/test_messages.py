@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from shared.messages import all_messages
 from shared.messages.base import Message
 from shared.messages.features import Features
-from shared.wire import decode, encode
+from shared.messages.sensors import Frame
+from shared.wire import WireError, decode, encode
 from tests.contract.samples import GOLDEN, golden_files, samples
 from tests.contract.strategies import messages
 
@@ -71,3 +72,28 @@ def test_decoded_arrays_cannot_be_written_to():
     features = decode(Features, encode(samples()[Features]), LIMIT)
     with pytest.raises(ValueError, match="read-only"):
         features.scores[0] = 1.0
+
+
+def test_frames_from_before_there_was_gravity_have_none():
+    oldest, *_, newest = golden_files(Frame)
+    assert decode(Frame, oldest.read_bytes(), LIMIT).gravity is None
+    assert decode(Frame, newest.read_bytes(), LIMIT).gravity == (0.6, 0.0, -0.8)
+
+
+@pytest.mark.parametrize(
+    ("gravity", "says"),
+    [
+        ((0.0, 0.0, -9.81), "gravity: Value error, gravity must be a unit vector, got length 9.81"),
+        ((0.0, 0.0, 0.0), "must be a unit vector, got length 0"),
+        ((0.0, 0.0, -1.002), "must be a unit vector, got length 1.002"),
+        ((0.0, 0.0, float("nan")), "gravity.2: Input should be a finite number"),
+        ((0.0, -1.0), "gravity.2: Field required"),
+        ("down", "gravity: Input should be a valid tuple"),
+    ],
+)
+def test_gravity_that_is_no_unit_vector_is_refused(gravity, says):
+    content = msgpack.unpackb(encode(samples()[Frame])) | {"gravity": gravity}
+    with pytest.raises(WireError, match=f"^frame.v1: .*{says}"):
+        decode(Frame, msgpack.packb(content), LIMIT)
+    nearly = content | {"gravity": (0.0, 0.0, -0.9991)}
+    assert decode(Frame, msgpack.packb(nearly), LIMIT).gravity == (0.0, 0.0, -0.9991)

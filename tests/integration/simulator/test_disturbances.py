@@ -1,9 +1,13 @@
 """Rendered pictures under disturbances that act in the scene, and after changes of the world."""
 
+import math
+
+import cv2
 import numpy as np
 import pytest
 
 from simulator.disturbances.levels import Disturbances
+from simulator.sensors.panorama import directions
 from simulator.settings import CameraSettings, SimulationSettings
 from simulator.simulation import Simulation
 from simulator.world.world_file import WorldFile
@@ -56,6 +60,55 @@ def test_tilt_turns_the_picture_by_what_it_says(world, clear_picture):
     picture = tilted.panorama_at(*HERE)
     assert (picture != clear_picture).any()
     assert (tilted.panorama_at(*HERE) == picture).all()
+
+
+def level_again(picture, gravity):
+    """A picture turned so that `gravity`, given in its camera frame, points straight down."""
+    down = np.array([0.0, 0.0, -1.0])
+    across, cos = np.cross(gravity, down), float(down @ gravity)
+    cross = np.array([[0, -across[2], across[1]], [across[2], 0, -across[0]], [-across[1], across[0], 0]])
+    upright = np.eye(3) + cross + cross @ cross / (1.0 + cos)  # takes gravity to down
+    rays = directions(WIDTH) @ upright  # of the level picture, in the camera's frame
+    columns = (math.pi - np.arctan2(rays[..., 1], rays[..., 0])) * WIDTH / (2 * math.pi) - 0.5
+    rows = (math.pi / 2 - np.arcsin(np.clip(rays[..., 2], -1, 1))) * WIDTH / (2 * math.pi) - 0.5
+    maps = columns.astype(np.float32), rows.astype(np.float32)
+    return cv2.remap(picture, *maps, cv2.INTER_LINEAR, borderMode=cv2.BORDER_WRAP)
+
+
+@pytest.mark.parametrize("rocked_deg", [(15.0, 0.0), (0.0, 15.0), (-8.0, 11.0)])
+def test_gravity_of_a_rocking_robots_frame_sets_its_picture_upright(world, clear_picture, rocked_deg):
+    settings = SimulationSettings(camera=CAMERA, imu=True, imu_noise_rad=0.0)
+    simulation, rocked = Simulation(world, settings, 1), tuple(np.radians(rocked_deg))
+    picture, gravity = simulation.panorama_at(*HERE, rocked=rocked), simulation.gravity_at(*HERE, rocked)
+    kept = slice(WIDTH // 16, WIDTH // 2 - WIDTH // 8)  # without the poles, and without the robot's own body
+    assert off(level_again(picture, gravity)[kept], clear_picture[kept]) < 4.0
+    for wrong in ((-gravity[0], -gravity[1], gravity[2]), (0.0, 0.0, -1.0)):
+        assert off(level_again(picture, wrong)[kept], clear_picture[kept]) > 10.0
+
+
+def off(one, other):
+    return np.abs(one.astype(int) - other).mean()
+
+
+def test_mount_leans_every_picture_alike_and_gravity_tells(world, clear_picture):
+    levels = Disturbances(mount=1.0)
+    settings = SimulationSettings(camera=CAMERA, imu=True, imu_noise_rad=0.0, disturbances=levels)
+    simulation = Simulation(world, settings, 1)
+    picture, gravity = simulation.panorama_at(*HERE), simulation.gravity_at(*HERE)
+    assert math.degrees(math.acos(-gravity[2])) == pytest.approx(10.0)
+    assert simulation.gravity_at(1.0, 3.0, 2.0) == gravity
+    kept = slice(WIDTH // 16, WIDTH // 2 - WIDTH // 8)
+    assert off(level_again(picture, gravity)[kept], clear_picture[kept]) < 4.0
+
+
+def test_rocking_leans_pictures_of_a_robot_that_drives_and_of_no_other(world, clear_picture):
+    rocking, plain = simulated(world, rocking=1.0), simulated(world)
+    for simulation in (rocking, plain):
+        simulation.command(0.0, 5.0)
+        simulation.step(0.9)
+    assert (rocking.panorama() != plain.panorama()).any()
+    rocking.reset(1)
+    assert (rocking.panorama() == clear_picture).all()
 
 
 def test_blur_needs_motion(world, clear_picture):

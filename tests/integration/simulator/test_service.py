@@ -1,5 +1,6 @@
 """The simulator process over a real bus: lockstep, repetition, requests, real time."""
 
+import math
 import os
 import signal
 import subprocess
@@ -79,7 +80,7 @@ def start(router_endpoint, room_file, tmp_path):
     processes = []
     buses = []
 
-    def launch(lockstep):
+    def launch(lockstep, **settings):
         environment = {
             **os.environ,
             "TOPNAV_ENDPOINT": router_endpoint,
@@ -89,6 +90,7 @@ def start(router_endpoint, room_file, tmp_path):
             "SIMULATOR_REPEAT_S": "0.3",
             "SIMULATOR_CACHE_DIR": str(tmp_path / "cache"),
             "SIMULATOR_STATE_DIR": str(tmp_path / "state"),
+            **settings,
         }
         manager = open_bus(router_endpoint)
         peer = Peer(manager.__enter__())
@@ -112,6 +114,7 @@ def test_lockstep_advances_one_period_per_command_and_waits_without_one(start):
     peer = start(lockstep=True)
     peer.wait_for(lambda: peer.complete(0))
     assert peer.frame.lockstep
+    assert peer.frame.gravity is None
     first, seen = peer.frame, peer.frames
     peer.wait_for(lambda: peer.frames >= seen + 2)  # repeated: same frame, same bytes
     assert (peer.frame.seq, peer.frame.stamp_ns, peer.frame.data) == (first.seq, first.stamp_ns, first.data)
@@ -127,6 +130,14 @@ def test_lockstep_advances_one_period_per_command_and_waits_without_one(start):
     seen = peer.frames
     peer.wait_for(lambda: peer.frames >= seen + 2 or peer.command(2))  # an answer to an old frame
     assert peer.truth.seq == 4
+
+
+def test_frames_of_a_robot_with_an_imu_say_where_down_is(start):
+    peer = start(lockstep=True, SIMULATOR_IMU="true", SIMULATOR_DISTURBANCE="mount=1")
+    peer.wait_for(lambda: peer.complete(0))
+    seen = peer.frame, peer.ask(action="look").frame
+    for frame in seen:
+        assert math.degrees(math.acos(-frame.gravity[2])) == pytest.approx(10.0, abs=1.5)
 
 
 def test_requests_place_robots_return_pictures_and_keep_counting(start):

@@ -9,10 +9,13 @@ from simulator.disturbances.blur import EXPOSURE_S, mean_picture, poses_of
 from simulator.disturbances.camera import Moment, degraded
 from simulator.disturbances.exposure import exposed, stops
 from simulator.disturbances.fog import VISIBILITY_M, fog_of
+from simulator.disturbances.leaning import lean_of
 from simulator.disturbances.levels import Disturbances
+from simulator.disturbances.mount import mounted
 from simulator.disturbances.noise import noisy, spread
 from simulator.disturbances.rain import _pixels, rained
 from simulator.disturbances.tilt import MOST_RAD, tilt_of
+from simulator.sensors.attitude import LEVEL, UPRIGHT, gravity_in, leaning
 
 HERE = Moment(3, 1.5, (1.0, 2.0, 0.5))
 IN_PICTURE = ("rain", "noise", "exposure")
@@ -98,3 +101,30 @@ def test_tilt_stays_within_five_degrees_and_sways_only_in_motion():
     assert max(moving) <= MOST_RAD + 1e-12
     assert max(moving) > 0.97 * MOST_RAD
     assert max(moving) - min(moving) > 0.4 * MOST_RAD
+
+
+def test_mount_leans_by_ten_degrees_in_a_direction_of_the_seed():
+    assert mounted(0.0, 1) == LEVEL
+    sizes = [math.degrees(math.hypot(*mounted(1.0, seed))) for seed in range(20)]
+    assert sizes == pytest.approx([10.0] * 20)
+    assert math.degrees(math.hypot(*mounted(0.3, 7))) == pytest.approx(3.0)
+    directions = np.array([mounted(1.0, seed) for seed in range(200)])
+    assert abs(directions.mean(axis=0)).max() < math.radians(2.0)
+    assert mounted(1.0, 7) == mounted(1.0, 7) != mounted(1.0, 8)
+
+
+def test_tilt_alone_leans_the_camera_by_just_that():
+    tilt = tilt_of(1.0, 2, 3.0, 0.4)
+    assert lean_of(Disturbances(tilt=1.0), 2, 3.0, 0.4, LEVEL) == leaning(tilt)
+    assert lean_of(Disturbances(), 2, 3.0, 0.4, LEVEL) == UPRIGHT
+
+
+def test_mount_keeps_its_place_on_a_robot_that_rocks_and_adds_as_a_rotation():
+    levels = Disturbances(mount=1.0)
+    still = {lean_of(levels, 2, time_s, speed_mps, LEVEL) for time_s, speed_mps in ((0.0, 0.0), (9.0, 0.4))}
+    assert still == {leaning(mounted(1.0, 2))}
+    pitch_rad, roll_rad = mounted(1.0, 2)
+    straight = gravity_in(lean_of(levels, 2, 0.0, 0.0, (-pitch_rad, -roll_rad)))
+    assert straight == pytest.approx((0.0, 0.0, -1.0))
+    across = gravity_in(lean_of(levels, 2, 0.0, 0.0, (roll_rad, -pitch_rad)))
+    assert -across[2] == pytest.approx(math.cos(math.radians(10.0)) ** 2)
