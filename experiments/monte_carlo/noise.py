@@ -34,7 +34,7 @@ class NoisePlan(ScenePlan):
     def two_view(self) -> TwoViewSettings:
         """Limits for this noise: an inlier lies within three deviations; these scenes are flat."""
         threshold_deg = max(0.7, 3.0 * self.noise_deg)
-        return TwoViewSettings(threshold_rad=float(np.deg2rad(threshold_deg)), fallback=False)
+        return TwoViewSettings(threshold_rad=float(np.deg2rad(threshold_deg)), tilting=False)
 
 
 def noisy_errors(plan: NoisePlan) -> FloatArray:

@@ -5,20 +5,21 @@ Uses the pure code of `services.features`, and the simulator in this process.
 
 import hashlib
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
 
 from experiments.rendered.frames import CAMERA, tilting_camera
 from services.features.matching.verification import feature_set
-from services.features.pipeline.interfaces import FeatureSet
+from services.features.pipeline.interfaces import FeatureSet, Float32Array
 from services.features.pipeline.pipeline import Pipeline
 from shared.messages.features import Features
 from shared.messages.simulation import Pose
 from simulator.sensors.attitude import LEVEL, PitchRoll
 from simulator.world.world_file import WorldFile
 
+COLUMNS = ("lonlat_rad", "scores", "descriptors", "sizes_rad")
 CHUNK = 50
 """Frames in a file: what an interruption loses at most."""
 
@@ -79,6 +80,7 @@ def as_message(features: FeatureSet, pipeline: str, seq: int = 0) -> Features:
         lonlat_rad=features.lonlat_rad,
         scores=features.scores,
         descriptors=features.descriptors,
+        sizes_rad=features.sizes_rad,
     )
 
 
@@ -90,6 +92,7 @@ def _save(path: Path, features: Sequence[FeatureSet]) -> None:
         lonlat_rad=np.concatenate([each.lonlat_rad for each in features]),
         scores=np.concatenate([each.scores for each in features]),
         descriptors=np.concatenate([each.descriptors for each in features]),
+        sizes_rad=np.concatenate([_sizes_rad(each) for each in features]),
     )
     new.replace(path)
 
@@ -97,5 +100,16 @@ def _save(path: Path, features: Sequence[FeatureSet]) -> None:
 def _load(path: Path) -> list[FeatureSet]:
     with np.load(path, allow_pickle=False) as kept:
         ends = np.cumsum(kept["counts"])[:-1]
-        columns = [np.split(kept[name], ends) for name in ("lonlat_rad", "scores", "descriptors")]
-    return [FeatureSet(*each) for each in zip(*columns, strict=True)]
+        columns = [np.split(kept[name], ends) for name in COLUMNS]
+    found = [FeatureSet(*each) for each in zip(*columns, strict=True)]
+    return [each if _known(each) else replace(each, sizes_rad=None) for each in found]
+
+
+def _sizes_rad(features: FeatureSet) -> Float32Array:
+    """Sizes of the keypoints, NaN where they are unknown."""
+    unknown = np.full(len(features), np.nan, np.float32)
+    return unknown if features.sizes_rad is None else features.sizes_rad
+
+
+def _known(features: FeatureSet) -> bool:
+    return features.sizes_rad is not None and bool(np.isfinite(features.sizes_rad).all())

@@ -11,6 +11,7 @@ import numpy as np
 
 from experiments.rendered.features import Tick, cache_folder, kept_features
 from experiments.rendered.pairs import APART_M, PosePair, draw_pairs
+from services.features.matching.verification import cues_of
 from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.pipeline import Pipeline
 from services.planner.heading.methods import heading_estimate
@@ -98,9 +99,11 @@ def judge_pair(
     pair: PosePair, here: FeatureSet, there: FeatureSet, pipeline: Pipeline, seed: int
 ) -> PairResult:
     """Match, verify, and compare every method's heading with the truth; `seed` draws the hypotheses. Pure."""
-    (rows,) = pipeline.matcher.match(here, [there])
+    (matched,) = pipeline.matcher.match(here, [there])
+    rows = matched.pairs
     current, target = here.lonlat_rad[rows[:, 0]], there.lonlat_rad[rows[:, 1]]
-    result = two_view(current, target, np.random.default_rng(seed), pipeline.verification)
+    cues = cues_of(here, there, matched)
+    result = two_view(current, target, np.random.default_rng(seed), pipeline.verification, cues)
     kept = result.inlier_mask
     return PairResult(
         distance_m=pair.distance_m,

@@ -30,12 +30,15 @@ def put_together(sources: Sequence[FeatureSet], rng: np.random.Generator) -> Fea
     start = float(rng.uniform(-np.pi, np.pi))
     masks = [_sector(source.lonlat_rad, start, k, len(sources)) for k, source in enumerate(sources)]
     kept = list(zip(sources, masks, strict=True))
+    sizes = [source.sizes_rad[mask] for source, mask in kept if source.sizes_rad is not None]
+    unknown = len(sizes) < len(kept)
     scores = np.concatenate([source.scores[mask] for source, mask in kept])
     order = np.argsort(-scores, kind="stable")[: max(len(source) for source in sources)]
     return FeatureSet(
         np.concatenate([source.lonlat_rad[mask] for source, mask in kept])[order],
         scores[order],
         np.concatenate([source.descriptors[mask] for source, mask in kept])[order],
+        None if unknown else np.concatenate(sizes)[order],
     )
 
 

@@ -19,7 +19,7 @@ class FeaturesSettings(ServiceSettings):
     Attributes:
         robots: whose frames and questions this process takes, as r1,r2; empty: those of `robot` alone.
         pipeline: a named profile or extractor/representation/matcher, see `named_pipelines`.
-        uneven_ground: verify by any motion of the camera where the plane explains too little.
+        tilting: the camera may lean: where level ones explain too little, any motion is tried.
         extractor: instead of `pipeline` where not empty.
         device: where networks run: cpu or cuda.
         threads: cores OpenCV may use.
@@ -34,7 +34,7 @@ class FeaturesSettings(ServiceSettings):
     robots: Annotated[tuple[str, ...], NoDecode] = ()
     pipeline: str = "sift"
     extractor: str = ""
-    uneven_ground: bool = False
+    tilting: bool = True
     device: Literal["cpu", "cuda"] = "cpu"
     threads: int = Field(default=2, ge=1, le=64)
     frames_kept: int = Field(default=8, ge=1, le=1024)
@@ -44,7 +44,7 @@ class FeaturesSettings(ServiceSettings):
 
     def profile(self) -> Profile:
         """The pipeline's profile with what these settings replace."""
-        return replace(find_profile(self.extractor or self.pipeline), uneven_ground=self.uneven_ground)
+        return replace(find_profile(self.extractor or self.pipeline), tilting=self.tilting)
 
     def runtime(self) -> Runtime:
         """Where networks run."""

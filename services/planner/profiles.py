@@ -59,6 +59,8 @@ class MappingRules(_Rules):
         s_sure: S from which an edge needs no further proof.
         share_min: share of the raw matches that must be inliers for an edge with S below s_sure, or without
             free ground seen. The edge to the node the robot came from needs no more than s_edge_min.
+        noise_max_rad: an edge's matches spread less about its motion: in another room of the same kind things
+            stand a little differently. 0 leaves it out.
         s_blind_min: S of an edge along which no free ground was seen.
         far_rad: with less disparity than this an edge needs s_sure: few matches that hardly move are far
             away, and so may the node be.
@@ -76,6 +78,7 @@ class MappingRules(_Rules):
     s_node_max: PositiveInt = 90  # median S at 0.5 to 0.9 m, where nodes should be: `topnav calibrate`
     s_sure: PositiveInt = 45  # medians are 57 at 1 to 1.5 m, 38 beyond: `topnav calibrate`
     share_min: float = Field(default=0.0, ge=0.0, le=1.0)
+    noise_max_rad: float = Field(default=0.0, ge=0.0)
     s_blind_min: NonNegativeInt = 0
     far_rad: float = Field(default=0.0, ge=0.0)
     s_far: NonNegativeInt = 0
@@ -229,7 +232,20 @@ OUTDOOR = DEFAULT.replaced(
 THESIS_OUTDOOR = THESIS.replaced(name="thesis_outdoor", heading_method="4", **OUTDOOR_SPACE)
 """The thesis's rules in its village: method 4 (section 4.3)."""
 
-PROFILES = {profile.name: profile for profile in (DEFAULT, OUTDOOR, THESIS, THESIS_OUTDOOR)}
+PHOTO = DEFAULT.replaced(
+    name="photo",
+    s_edge_min=40,  # no two equal rooms of photographs have more with so little noise; 28 % of the links have
+    noise_max_rad=math.radians(0.4),  # links 0.32 at the median, equal rooms 0.5
+    s_sure=60,  # as s_edge_min, in the ratio of the default
+    s_node_max=250,  # of 1000 keypoints: as 90 of 300, less for the ratio of 0.95
+    s_via_min=30,
+    s_near=250,
+    s_slow=500,
+    s_max=1000,
+)
+"""For pipeline photo: real cameras that lean, 1.5 to 5 m from one picture to the next."""
+
+PROFILES = {profile.name: profile for profile in (DEFAULT, OUTDOOR, THESIS, THESIS_OUTDOOR, PHOTO)}
 
 
 def profile_named(name: str) -> Profile:

@@ -84,7 +84,7 @@ def fit_planar(
     best = np.argsort(-score, kind="stable")[:REFINED]
     phi, phi_target = phi[best] + turn[best], phi_target[best] + turn[best]
     start = evaluate(matches, phi, phi_target)
-    if not settings.fallback and _most(start.consistent(REACH * threshold)[0]) < settings.min_inliers:
+    if not settings.tilting and _most(start.consistent(REACH * threshold)[0]) < settings.min_inliers:
         return NoFit(start.consistent(threshold)[0][0])
     phi, phi_target, covariance = refine(matches, phi, phi_target, threshold)
     score, turn = _signed_scores(evaluate(matches, phi, phi_target), matches.weight, threshold)

@@ -65,6 +65,17 @@ class PlanarMatches:
         c, t = self.h_current * self.z_target, self.h_target * self.z_current
         return np.stack([c.imag, -c.real, -t.imag, t.real], axis=1)
 
+    def of(self, chosen: npt.NDArray[np.intp]) -> "PlanarMatches":
+        """Those matches only."""
+        return PlanarMatches(
+            self.h_current[chosen],
+            self.h_target[chosen],
+            self.z_current[chosen],
+            self.z_target[chosen],
+            self.lon_difference[chosen],
+            self.weight[chosen],
+        )
+
     def wrongly_paired(self, shifts: npt.NDArray[np.intp]) -> "PlanarMatches":
         """Every current bearing with the target bearing so many places on, for each of (S,) shifts."""
         count = len(self)

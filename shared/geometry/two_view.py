@@ -1,13 +1,14 @@
-"""Relative pose of two spherical views: the planar model, else the essential matrix."""
+"""Relative pose of two spherical views: level cameras on a plane, else cameras that lean."""
 
 import numpy as np
 import numpy.typing as npt
 
-from shared.geometry.essential import estimate_essential
+from shared.geometry.match_evidence import Cues
 from shared.geometry.planar import estimate_planar
+from shared.geometry.tilted import estimate_tilted
 from shared.geometry.two_view_types import TwoViewResult, TwoViewSettings, checked_matches
 
-__all__ = ["TwoViewResult", "TwoViewSettings", "two_view"]
+__all__ = ["Cues", "TwoViewResult", "TwoViewSettings", "two_view"]
 
 
 def two_view(
@@ -15,18 +16,20 @@ def two_view(
     target: npt.ArrayLike,
     rng: np.random.Generator,
     settings: TwoViewSettings | None = None,
+    cues: Cues | None = None,
 ) -> TwoViewResult:
     """Heading and yaw from matched bearings.
 
-    The general model is asked where the planar one has no answer, is less than half sure, or leaves
-    residuals that fill its tolerance; it answers where it explains clearly more matches, as it has two and a
-    half times the freedom.
+    Level cameras on one plane are tried first: two matches fix them, so that they stand out best among wrong
+    matches, and a robot on a floor is as good as level most of the time. Where their motion leaves doubts,
+    rotation and travel are free.
 
     Args:
         current: (N, 2) longitude, latitude in the current frame, radians.
         target: (N, 2) the same matches in the target frame, radians.
         rng: numpy Generator; the same state and input give the same answer.
         settings: limits; None for the defaults.
+        cues: how likely each match is right and how large it is in both views; None where that is unknown.
 
     Returns:
         The result; its `model` tells which model answered.
@@ -37,27 +40,17 @@ def two_view(
     limits = settings or TwoViewSettings()
     c, t = checked_matches(current, target)
     planar = estimate_planar(c, t, rng, limits)
-    if not limits.fallback or len(c) < limits.fallback_min_matches or _settled(planar, limits):
+    if not limits.tilting or planar.status == "too_few" or _settled(planar, limits):
         return planar
-    general = estimate_essential(c, t, rng, limits)
-    gain = _cost(planar, limits.threshold_rad) - _cost(general, limits.threshold_rad)
-    better = gain >= limits.fallback_gain + 0.05 * len(c)
-    return general if general.status in ("ok", "no_baseline") and better else planar
-
-
-def _cost(result: TwoViewResult, threshold: float) -> float:
-    """Truncated squared residuals of all matches in units of the threshold: an outlier costs one."""
-    inlier_cost = ((result.noise_rad or 0.0) / threshold) ** 2
-    return len(result.inlier_mask) - result.inliers * (1.0 - inlier_cost)
+    return estimate_tilted(c, t, cues or Cues.unknown(len(c)), rng, limits)
 
 
 def _settled(planar: TwoViewResult, limits: TwoViewSettings) -> bool:
-    """Whether the planar answer stands without asking the general model."""
-    if planar.status in ("no_baseline", "too_few"):
-        return True
-    if not planar.usable:
-        return planar.near_misses < limits.fallback_probe
-    noisy = planar.noise_rad is None or planar.noise_rad > limits.fallback_noise * limits.threshold_rad
-    out_of_reach = planar.near_misses > limits.fallback_near * len(planar.inlier_mask) + 2.0
-    few = planar.inliers < limits.fallback_share * len(planar.inlier_mask)
+    """Whether the answer of level cameras leaves no doubt."""
+    if planar.noise_rad is None:
+        return False
+    count = len(planar.inlier_mask)
+    noisy = planar.noise_rad > limits.settled_noise * limits.threshold_rad
+    out_of_reach = planar.near_misses > limits.settled_near * count + 2.0
+    few = planar.inliers < limits.settled_share * count
     return not (noisy or out_of_reach or few) and planar.confidence >= 0.5

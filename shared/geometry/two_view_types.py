@@ -9,7 +9,7 @@ import numpy.typing as npt
 from shared.geometry.sphere import BoolArray, FloatArray
 
 Status = Literal["ok", "no_baseline", "too_few", "inconsistent"]
-Model = Literal["planar", "essential", "rotation", "none"]
+Model = Literal["planar", "tilted", "rotation", "none"]
 
 
 @dataclass(frozen=True)
@@ -37,23 +37,15 @@ class TwoViewSettings:
             inliers; chosen: one in seven such pairs of wrong frames, before the other limits.
         max_heading_std_rad: above this spread a direction is not worth following, radians; chosen:
             20 degrees, two thirds of a node's twelve directions.
-        fallback: try the essential matrix where the planar model explains too little.
-        fallback_noise: a planar answer whose residuals spread over more than this share of the threshold is
-            too noisy: those of a wrong model fill the band evenly, which gives 1 / sqrt(3) = 0.58.
-        fallback_near: ... or which leaves more than this share of the matches, plus two, just out of reach;
+        tilting: the camera may lean: where a level one explains too little, rotation and travel are free.
+        settled_noise: an answer of level cameras whose residuals spread over more than this share of the
+            threshold is too noisy: those of a wrong model fill the band evenly: 1 / sqrt(3) = 0.58.
+        settled_near: ... or which leaves more than this share of the matches, plus two, just out of reach;
             chosen.
-        fallback_probe: where the planar model found nothing, the fallback is only asked if at least this
-            many matches lie just out of its reach; 0 asks always. Wrong matches alone stay below 1.5 nine
-            times in ten, a tilt of three degrees rarely does, a tilt beyond ten among many wrong matches
-            often does (tests/unit/shared/geometry/test_two_view.py).
-        fallback_share: ... or which explains less than this share of the matches; chosen: below
+        settled_share: ... or which explains less than this share of the matches; chosen: below
             the half that is right at 1 to 3 m (decision 0003).
-        fallback_min_matches: fewer matches than this are not worth the price of the fallback, ten times the
-            planar model's; 40 lose 5 % of the answers of a tilted camera.
-        fallback_samples: five-point samples drawn by the fallback; twice as many answer 2 % more, in one
-            and a half times the time.
-        fallback_gain: how much lower the truncated cost of the fallback must be, in outliers, plus a
-            twentieth of all matches: chance gives the larger model a few. 6 lose 5 % of the answers.
+        min_nats: evidence below which a motion is chance, nats: unrelated pictures reach 11 once in sixty.
+        min_parallax_nats: ... or below which a turn on the spot explains as much; chosen alike.
     """
 
     pairs: int = 320
@@ -65,14 +57,12 @@ class TwoViewSettings:
     min_parallax_z: float = 4.5
     max_log_nfa: float = -2.0
     max_heading_std_rad: float = float(np.deg2rad(20.0))
-    fallback: bool = True
-    fallback_noise: float = 0.45
-    fallback_near: float = 0.15
-    fallback_probe: float = 1.5
-    fallback_share: float = 0.3
-    fallback_min_matches: int = 20
-    fallback_samples: int = 200
-    fallback_gain: float = 3.0
+    tilting: bool = True
+    settled_noise: float = 0.45
+    settled_near: float = 0.15
+    settled_share: float = 0.5
+    min_nats: float = 11.0
+    min_parallax_nats: float = 11.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,6 +21,7 @@ class Features(Message):
         lonlat_rad: (N, 2) longitude and latitude of each keypoint, camera frame.
         scores: (N,) detector response, larger is better.
         descriptors: (N, D).
+        sizes_rad: (N,) diameter of each keypoint, above 0: what is nearer is larger; None where unknown.
         thumbnail: small JPEG of the frame for people, may be empty.
         extract_ms: time the feature service took for this picture, decoding and thumbnail included.
     """
@@ -33,6 +34,7 @@ class Features(Message):
     lonlat_rad: Annotated[Array, ArraySpec(("float32",), (None, 2), MAX_KEYPOINTS)]
     scores: Annotated[Array, ArraySpec(("float32",), (None,), MAX_KEYPOINTS)]
     descriptors: Annotated[Array, ArraySpec(("float32", "float16", "uint8"), (None, None), MAX_KEYPOINTS)]
+    sizes_rad: Annotated[Array, ArraySpec(("float32",), (None,), MAX_KEYPOINTS)] | None = None
     thumbnail: bytes = Field(default=b"", max_length=MAX_THUMBNAIL_BYTES)
     extract_ms: float = Field(default=0.0, ge=0.0)
 
@@ -41,6 +43,13 @@ class Features(Message):
         counts = (len(self.lonlat_rad), len(self.scores), len(self.descriptors))
         if len(set(counts)) != 1:
             raise ValueError(f"lonlat_rad, scores and descriptors must have one length, got {counts}")
+        if self.sizes_rad is None:
+            return self
+        count = len(self.sizes_rad)
+        if count != counts[0]:
+            raise ValueError(f"sizes_rad must have {counts[0]} numbers, as scores have, got {count}")
+        if count and not float(self.sizes_rad.min()) > 0.0:
+            raise ValueError(f"sizes_rad must be above 0, got {self.sizes_rad.min()}")
         return self
 
 

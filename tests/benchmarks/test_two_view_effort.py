@@ -19,7 +19,7 @@ from tests.unit.shared.geometry.synthetic_room import error_deg, make_scene
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(1200)]
 
 DISTANCES_M = (0.1, 0.2, 0.5, 1.0, 2.0, 4.0)
-PLANAR = TwoViewSettings(fallback=False)
+PLANAR = TwoViewSettings(tilting=False)
 GENERAL = TwoViewSettings(fallback_probe=0.0)
 FIGURES = {
     planar_fit: ("SIGNED", "REFINED", "PARALLAX_REACH", "PARALLAX_FLOOR_RAD", "REACH"),

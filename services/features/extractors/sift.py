@@ -31,7 +31,7 @@ class Sift:
 
     def __init__(self, profile: Profile) -> None:
         self._sift = cv2.SIFT.create(nfeatures=0, contrastThreshold=CONTRAST, edgeThreshold=EDGE, sigma=SIGMA)
-        self._upright = profile.upright
+        self._upright, self._surroundings = profile.upright, profile.surroundings
 
     def detect(self, grays: Sequence[Image]) -> list[Detections]:
         """Find extrema of the difference of Gaussians.
@@ -43,16 +43,19 @@ class Sift:
 
     def _of_view(self, gray: Image) -> Detections:
         found = detections_from_keypoints(self._sift.detect(gray, None))
-        sizes = np.array([keypoint.size for keypoint in found.handle], dtype=np.float32)
+        sizes = np.asarray(found.sizes)
         once = first_of_each(np.column_stack([found.pixels, sizes]))
         scores = found.scores * np.sqrt(sizes)
-        return Detections(found.pixels[once], scores[once], tuple(found.handle[k] for k in once.tolist()))
+        handle = tuple(found.handle[k] for k in once.tolist())
+        return Detections(found.pixels[once], scores[once], handle, sizes[once])
 
     def describe(
         self, gray: Image, detections: Detections, chosen: IndexArray
     ) -> tuple[IndexArray, npt.NDArray[np.uint8]]:
         """Describe the chosen ones as bytes."""
-        kept, raw = describe_chosen(self._sift, gray, detections, chosen, WIDTH, self._upright)
+        kept, raw = describe_chosen(
+            self._sift, gray, detections, chosen, WIDTH, self._upright, self._surroundings
+        )
         return kept, root_bytes(raw)
 
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from services.features.matching.nearest_neighbours import Neighbours, match_by
-from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray, Profile
+from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray, Matched, Profile
 
 
 class BruteForce:
@@ -15,8 +15,8 @@ class BruteForce:
         del profile
         self._distance = distance
 
-    def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[IndexArray]:
-        """(M, 2) index pairs per other, in the order of the query."""
+    def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[Matched]:
+        """Matches with each other frame."""
         return match_by(_closest, query, others, self._distance)
 
 

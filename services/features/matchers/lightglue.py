@@ -7,7 +7,7 @@ import numpy as np
 import torch
 
 from services.features.networks.runtime import HEIGHT_PX, WIDTH_PX, device_named, loading, pixels_of
-from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray, Profile, Runtime
+from services.features.pipeline.interfaces import Distance, FeatureSet, Matched, Profile, Runtime
 from services.features.pipeline.named_pipelines import LIGHTGLUE
 
 
@@ -21,17 +21,17 @@ class LightGlue:
         self._network = _build(features, trained=runtime.trained).to(self._device).eval()
         self._size = torch.tensor([[WIDTH_PX, HEIGHT_PX]], dtype=torch.float32, device=self._device)
 
-    def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[IndexArray]:
-        """(M, 2) index pairs per other, in the order of the query."""
+    def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[Matched]:
+        """Matches with each other frame."""
         one = self._picture(query)
         pairs = []
         for other in others:
             if len(query) == 0 or len(other) == 0:
-                pairs.append(np.zeros((0, 2), dtype=np.intp))
+                pairs.append(Matched.alike(np.zeros((0, 2), dtype=np.intp)))
                 continue
             with torch.inference_mode():
                 found = self._network({"image0": one, "image1": self._picture(other)})["matches"][0]
-            pairs.append(found.cpu().numpy().astype(np.intp).reshape(-1, 2))
+            pairs.append(Matched.alike(found.cpu().numpy().astype(np.intp).reshape(-1, 2)))
         return pairs
 
     def _picture(self, features: FeatureSet) -> dict[str, torch.Tensor]:

@@ -5,21 +5,19 @@ from collections.abc import Sequence
 import numpy as np
 
 from services.features.matching.nearest_neighbours import Neighbours, match_by
-from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray, Profile
+from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray, Matched, Profile
 
 
 class MutualRatio:
     """Both are each other's nearest, and first distance < ratio x second distance."""
 
     def __init__(self, profile: Profile, distance: Distance) -> None:
-        self._distance = distance
-        # Squared Euclidean distances of +1/-1 vectors are proportional to the Hamming distance itself.
-        self._ratio = profile.ratio if distance == "hamming" else profile.ratio**2
+        self._distance, self._ratio = distance, profile.ratio
 
-    def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[IndexArray]:
-        """(M, 2) index pairs per other, in the order of the query."""
+    def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[Matched]:
+        """Matches with each other frame."""
 
         def clearly_nearest(found: Neighbours) -> IndexArray:
-            return np.flatnonzero(found.mutual & (found.first < self._ratio * found.second))
+            return np.flatnonzero(found.mutual & (found.ratio(self._distance) < self._ratio))
 
         return match_by(clearly_nearest, query, others, self._distance)

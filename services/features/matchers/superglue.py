@@ -13,7 +13,7 @@ from services.features.networks.runtime import (
     pixels_of,
     require_consent,
 )
-from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray, Profile, Runtime
+from services.features.pipeline.interfaces import Distance, FeatureSet, IndexArray, Matched, Profile, Runtime
 
 REPOSITORY = "magic-leap-community/superglue_{}"
 
@@ -35,9 +35,9 @@ class SuperGlue:
             network = SuperGlueForKeypointMatching(SuperGlueConfig())
         self._network = network.to(self._device).eval()
 
-    def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[IndexArray]:
-        """(M, 2) index pairs per other, in the order of the query."""
-        return [self._pair(query, other) for other in others]
+    def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[Matched]:
+        """Matches with each other frame."""
+        return [Matched.alike(self._pair(query, other)) for other in others]
 
     def _pair(self, query: FeatureSet, other: FeatureSet) -> IndexArray:
         count = max(len(query), len(other))

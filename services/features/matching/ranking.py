@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from services.features.pipeline.interfaces import IndexArray
+from services.features.pipeline.interfaces import Matched
 from shared.messages.matching import NodeMatch
 
 SHORTLIST_FACTOR = 2
@@ -20,7 +20,7 @@ def considered(best_k: int) -> int:
     return max(CONSIDERED_LEAST, CONSIDERED_FACTOR * best_k)
 
 
-def shortlist(pairs: Mapping[int, IndexArray], best_k: int) -> list[int]:
+def shortlist(pairs: Mapping[int, Matched], best_k: int) -> list[int]:
     """Node ids with the most raw matches, at most 2 best_k of them; ties by id."""
     ranked = sorted(pairs, key=lambda node_id: (-len(pairs[node_id]), node_id))
     return ranked[: SHORTLIST_FACTOR * best_k]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from services.features.map_features.map_features import MapFeatures
 from services.features.matching.ranking import answer, considered, is_settled, shortlist
 from services.features.matching.verification import Candidate, feature_set, verify
-from services.features.pipeline.interfaces import FeatureSet, IndexArray
+from services.features.pipeline.interfaces import FeatureSet, Matched
 from services.features.pipeline.pipeline import Pipeline
 from shared.messages.features import Features
 from shared.messages.matching import MatchRequest, NodeMatch
@@ -31,7 +31,7 @@ class RawMatches:
     query: FeatureSet
     seq: int
     candidates: Mapping[int, Candidate]
-    pairs: Mapping[int, IndexArray]
+    pairs: Mapping[int, Matched]
     shortlisted: list[int]
 
 

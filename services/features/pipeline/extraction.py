@@ -39,7 +39,7 @@ def extract(
     views = representation.views(gray)
     found = extractor.detect([view.gray for view in views])
     max_lat_rad = float(np.deg2rad(90.0 - profile.crop_deg))
-    view_index, own_index, lonlat, scores = _merge(views, found, max_lat_rad)
+    view_index, own_index, lonlat, scores, sizes = _merge(views, found, max_lat_rad)
     chosen = strongest(lonlat, scores, profile.keypoints)
     parts = []
     for number, (view, detections) in enumerate(zip(views, found, strict=True)):
@@ -55,7 +55,8 @@ def extract(
     order = np.lexsort((rows, -scores[rows]))
     rows = rows[order]
     descriptors = np.concatenate([part[1] for part in parts])[order]
-    return FeatureSet(lonlat[rows].astype(np.float32), scores[rows], descriptors)
+    known = None if sizes is None else sizes[rows]
+    return FeatureSet(lonlat[rows].astype(np.float32), scores[rows], descriptors, known)
 
 
 def strongest(lonlat_rad: FloatArray, scores: Float32Array, count: int) -> IndexArray:
@@ -75,9 +76,9 @@ def strongest(lonlat_rad: FloatArray, scores: Float32Array, count: int) -> Index
 
 def _merge(
     views: list[View], found: list[Detections], max_lat_rad: float
-) -> tuple[np.ndarray, np.ndarray, FloatArray, np.ndarray]:
-    """Keypoints the views own within the latitudes: view number, index in it, lonlat, score."""
-    view_index, own_index, lonlat, scores = [], [], [], []
+) -> tuple[np.ndarray, np.ndarray, FloatArray, np.ndarray, Float32Array | None]:
+    """Keypoints the views own within the latitudes: view number, index in it, lonlat, score, size (rad)."""
+    view_index, own_index, lonlat, scores, sizes = [], [], [], [], []
     for number, (view, detections) in enumerate(zip(views, found, strict=True)):
         directions = view.lonlat_from_pixels(detections.pixels)
         keep = np.flatnonzero(view.owns(detections.pixels) & (np.abs(directions[:, 1]) <= max_lat_rad))
@@ -85,9 +86,12 @@ def _merge(
         own_index.append(keep)
         lonlat.append(directions[keep])
         scores.append(detections.scores[keep])
+        if detections.sizes is not None:
+            sizes.append(detections.sizes[keep] * np.float32(view.rad_per_pixel))
     return (
         np.concatenate(view_index),
         np.concatenate(own_index),
         np.concatenate(lonlat),
         np.concatenate(scores),
+        np.concatenate(sizes) if sizes else None,
     )

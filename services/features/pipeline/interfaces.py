@@ -27,9 +27,10 @@ class Profile:
         ratio: largest distance of the best candidate relative to the second best (decision 0011).
         crop_deg: angle cut away above and below (thesis, section 6.1.1: 25), degrees.
         resize: rows and columns the whole picture is resized to (thesis: 400, 800); None = as it comes.
-        upright: describe keypoints without turning them; the robot's camera always stands upright.
+        upright: describe keypoints without turning them; the robot's camera stands about upright.
+        surroundings: side of what SIFT describes, in its own sizes: more tells more, and changes more.
         verification_deg: largest angle off the epipolar plane of a verified match, degrees (decision 0011).
-        uneven_ground: where the plane explains too little, try any motion of the camera.
+        tilting: the camera may lean: where level ones explain too little, any motion is tried.
         detector: of the patch networks: gftt, harris or keynet (kornia's).
         affnet: fit the shape of patches with AffNet; `upright` false turns them with OriNet (appendix A).
     """
@@ -42,15 +43,17 @@ class Profile:
     crop_deg: float = 25.0
     resize: tuple[int, int] | None = (400, 800)
     upright: bool = True
+    surroundings: float = 1.0
     verification_deg: float = 0.7
-    uneven_ground: bool = False
+    tilting: bool = True
     detector: str = "gftt"
     affnet: bool = False
 
     @property
     def identity(self) -> str:
         """What must be equal for two frames to be compared; travels as `Features.pipeline`."""
-        return f"{self.extractor}-{self.representation}-{self.keypoints}"
+        unusual = "" if self.surroundings == 1.0 else f"-{self.surroundings:g}"
+        return f"{self.extractor}-{self.representation}-{self.keypoints}{unusual}"
 
 
 @dataclass(frozen=True)
@@ -72,11 +75,13 @@ class View:
 
     Attributes:
         gray: (H, W) picture.
+        rad_per_pixel: angle that a pixel covers, from top to bottom; only ratios of sizes matter.
         lonlat_from_pixels: maps (N, 2) continuous pixels (first centre 0.5) to longitude, latitude, rad.
         owns: says for (N, 2) pixels whether this view reports them: overlaps belong to one view only.
     """
 
     gray: Image
+    rad_per_pixel: float
     lonlat_from_pixels: Callable[[FloatArray], FloatArray]
     owns: Callable[[FloatArray], BoolArray]
 
@@ -89,11 +94,13 @@ class Detections:
         pixels: (N, 2) continuous pixels.
         scores: (N,) response, larger is better.
         handle: what the extractor needs to describe them.
+        sizes: (N,) diameter, pixels; None where the detector does not measure it.
     """
 
     pixels: FloatArray
     scores: Float32Array
     handle: Any
+    sizes: Float32Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,14 +111,37 @@ class FeatureSet:
         lonlat_rad: (N, 2) longitude, latitude, camera frame.
         scores: (N,) response, descending.
         descriptors: (N, D).
+        sizes_rad: (N,) diameter of each keypoint; None where the detector does not measure it.
     """
 
     lonlat_rad: Float32Array
     scores: Float32Array
     descriptors: npt.NDArray[Any]
+    sizes_rad: Float32Array | None = None
 
     def __len__(self) -> int:
         return len(self.scores)
+
+
+@dataclass(frozen=True, eq=False)
+class Matched:
+    """Matches of one frame with another.
+
+    Attributes:
+        pairs: (M, 2) index in the query, index in the other, in the order of the query.
+        right: (M,) probability that each is right, by the descriptors alone.
+    """
+
+    pairs: IndexArray
+    right: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.pairs)
+
+    @classmethod
+    def alike(cls, pairs: IndexArray) -> "Matched":
+        """Pairs of which nothing tells the right ones: every other one, as at 1 to 3 m (decision 0003)."""
+        return cls(pairs, np.full(len(pairs), 0.5))
 
 
 class Extractor(Protocol):
@@ -141,6 +171,6 @@ class Representation(Protocol):
 class Matcher(Protocol):
     """Pairs the features of one frame with those of many others."""
 
-    def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[IndexArray]:
-        """(M, 2) index pairs per other: index in the query, index in the other."""
+    def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[Matched]:
+        """Matches with each other frame."""
         ...

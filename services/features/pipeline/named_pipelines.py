@@ -12,6 +12,8 @@ from services.features.pipeline.plugins import PLUGINS
 # 300 is the default: 500 gave no more directions, and matching grows with the square of the count.
 PROFILES: dict[str, Profile] = {
     "sift": Profile("sift"),
+    "fast": Profile("sift"),
+    "photo": Profile("sift", keypoints=1000, ratio=0.95, crop_deg=35.0, resize=(800, 1600), surroundings=2.0),
     "sift_dense": Profile("sift", keypoints=500),
     "thesis": Profile("sift", keypoints=150),
     "orb": Profile("orb"),

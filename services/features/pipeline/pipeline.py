@@ -30,7 +30,7 @@ class Pipeline:
         self.extractor = create_extractor(profile, runtime)
         self.representation = create_representation(profile)
         self.matcher = create_matcher(profile, self.extractor.distance, runtime)
-        self.verification = two_view_settings(profile.verification_deg, uneven_ground=profile.uneven_ground)
+        self.verification = two_view_settings(profile.verification_deg, tilting=profile.tilting)
         self._enough_px = profile.resize[1] if profile.resize is not None else None
         self._thumbnail = (thumbnail_width_px, thumbnail_quality)
 
@@ -51,6 +51,7 @@ class Pipeline:
             lonlat_rad=found.lonlat_rad,
             scores=found.scores,
             descriptors=found.descriptors,
+            sizes_rad=found.sizes_rad,
             thumbnail=_thumbnail(picture, *self._thumbnail),
         )
 

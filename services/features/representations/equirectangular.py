@@ -4,6 +4,8 @@ Columns of the other side are pasted beyond both edges, so that a keypoint at th
 as anywhere else; only those inside the original columns are reported, hence each once.
 """
 
+import math
+
 import cv2
 import numpy as np
 
@@ -32,4 +34,6 @@ class Equirectangular:
         def owns(pixels: FloatArray) -> BoolArray:
             return np.asarray((pixels[:, 0] >= pad) & (pixels[:, 0] < pad + grid.width))
 
-        return [View(np.asarray(padded, dtype=np.uint8), lonlat_from_pixels, owns)]
+        return [
+            View(np.asarray(padded, dtype=np.uint8), math.pi / grid.full_height, lonlat_from_pixels, owns)
+        ]

@@ -1,5 +1,7 @@
 """The picture as it is, edges and all: what a pipeline for flat pictures would see."""
 
+import math
+
 import numpy as np
 
 from services.features.pipeline.interfaces import BoolArray, FloatArray, Image, Profile, View
@@ -15,7 +17,7 @@ class Planar:
     def views(self, gray: Image) -> list[View]:
         """One view."""
         strip, grid = cropped_strip(gray, self._profile.crop_deg, self._profile.resize)
-        return [View(strip, grid.lonlat_from_pixels, _all)]
+        return [View(strip, math.pi / grid.full_height, grid.lonlat_from_pixels, _all)]
 
 
 def _all(pixels: FloatArray) -> BoolArray:

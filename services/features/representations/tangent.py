@@ -43,7 +43,8 @@ class Tangent:
         def owns(pixels: FloatArray) -> BoolArray:
             return self._layout.owned(face, pixels)
 
-        return View(picture, self._layout.views[face].lonlat_from_pixels, owns)
+        view = self._layout.views[face]
+        return View(picture, 1.0 / view.focal_px, view.lonlat_from_pixels, owns)
 
     def _table(self, grid: EquirectGrid) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
         """Remap tables of all faces, one below the other, kept for the newest picture size."""

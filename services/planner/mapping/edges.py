@@ -96,7 +96,7 @@ def is_ambiguous(match: NodeMatch) -> bool:
     if len(rest) < SECOND_MIN or match.heading_rad is None or match.yaw_rad is None:
         return False
     rng = np.random.default_rng([match.raw_matches, match.inliers])
-    other = two_view(rest[:, :2], rest[:, 2:], rng, TwoViewSettings(fallback=False))
+    other = two_view(rest[:, :2], rest[:, 2:], rng, TwoViewSettings(tilting=False))
     if other.status != "ok" or other.heading_rad is None or other.yaw_rad is None:
         return False
     return (
@@ -113,6 +113,9 @@ def _admitted(match: NodeMatch, profile: Profile) -> bool:
         return False
     if profile.sensing.similarity == "raw":
         return True
+    limit_rad = profile.mapping.noise_max_rad
+    if limit_rad and (match.noise_rad is None or match.noise_rad > limit_rad):
+        return False
     return trusted(match, profile) and match.heading_rad is not None and match.confidence >= CONFIDENCE_MIN
 
 

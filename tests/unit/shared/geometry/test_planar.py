@@ -254,7 +254,7 @@ def test_time_of_one_estimation_is_reported(record_property):
     record_property("planar_ms_median", 1e3 * float(np.median(times)))
 
 
-FLAT = TwoViewSettings(fallback=False)
+FLAT = TwoViewSettings(tilting=False)
 """Without a fallback that wants to know how near the best model came, hopeless ones are not refined."""
 
 

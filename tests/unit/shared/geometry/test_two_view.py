@@ -4,9 +4,9 @@ import dataclasses
 
 import numpy as np
 import pytest
-
 from shared.geometry.essential import estimate_essential
 from shared.geometry.essential_model import Pose, draw_fives, evaluate_pose, five_point, poses_of
+
 from shared.geometry.perspective import rotation_y, rotation_z
 from shared.geometry.rotation import fit_rotation
 from shared.geometry.sphere import bearings_from_lonlat, lonlat_from_bearings
@@ -105,7 +105,7 @@ def test_small_tilt_is_noticed_and_wrong_matches_alone_do_not_start_the_costly_m
 
 def test_without_fallback_the_planar_answer_stands():
     scene = make_scene(np.random.default_rng(11), 80, 40, noise_deg=0.15, tilt_deg=10.0)
-    limits = dataclasses.replace(LIMITS, fallback=False)
+    limits = dataclasses.replace(LIMITS, tilting=False)
     assert two_view(scene.current, scene.target, np.random.default_rng(0), limits).model != "essential"
 
 

@@ -1,0 +1,92 @@
+"""What each match says about a motion: likelihood ratios against a wrong match. Pure.
+
+A match is right with a probability that its descriptors tell. A right one lies on the epipolar plane within
+the noise and has the size that the motion predicts; a wrong one lies anywhere. The evidence of a motion is
+the sum of ln(1 + p (L - 1)) over the matches, L being the ratio of both densities: distinctive matches that
+do not fit speak against it, dull ones that fit hardly count.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shared.geometry.relative_pose import Evaluated, Poses
+from shared.geometry.sphere import FloatArray
+
+NOISE_RAD = float(np.deg2rad(0.3))
+"""Spread of right matches about the epipolar plane: 1.3 pixels at 1600 columns; photographs are stitched."""
+SCALE_NOISE = 0.2
+"""Spread of ln(size ratio) about equation (1) of relative_pose: 0.15 measured, most of it within."""
+TAIL_SHARE, TAIL_WIDTH = 0.2, 3.0
+"""Share of right matches that err by so many times as much; chosen: stitching, edges of things."""
+CHANCE_PER_RAD = 1.0
+"""Density of a wrong match's angle off a plane: even over a good half turn."""
+CHANCE_SCALE = 0.6
+"""Spread of ln(size ratio) of wrong matches, as measured."""
+CHANCE_SR = 5.0
+"""Solid angle over which wrong matches spread: the picture without its poles, the horizon preferred."""
+BEHIND = 2.5
+"""Noises by which a match may lie on the wrong side of a camera."""
+TILT_RAD = float(np.deg2rad(4.0))
+"""Usual angle between two cameras' verticals: 1.4 degrees on tripods; robots rock by 3."""
+CLIMB_RAD = float(np.deg2rad(8.0))
+"""Usual steepness of the way: cameras lean, and stand up to some decimetres higher after metres."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cues:
+    """What is known of N matches beside their bearings.
+
+    Attributes:
+        right: (N,) probability that a match is right, by its descriptors alone.
+        log_scale: (N,) ln(keypoint's size in the current view / in the target); None where sizes are unknown.
+    """
+
+    right: FloatArray
+    log_scale: FloatArray | None = None
+
+    @classmethod
+    def unknown(cls, count: int) -> "Cues":
+        """Nothing is known: every other match is right."""
+        return cls(np.full(count, 0.5))
+
+
+def motion_ratio(seen: Evaluated, noise_rad: float, *, scaled: bool) -> FloatArray:
+    """L (K, N) of a motion: how much better it explains each match than chance does."""
+    ratio = _tailed(seen.residual, noise_rad) / CHANCE_PER_RAD
+    if scaled:
+        ratio *= _tailed(seen.scale_error, SCALE_NOISE) * CHANCE_SCALE * np.sqrt(2.0 * np.pi)
+    reach = BEHIND * noise_rad
+    return ratio * ((seen.forward >= -reach) & (seen.same_side >= -reach))
+
+
+def turn_ratio(apart_rad: FloatArray, log_scale: FloatArray, noise_rad: float, *, scaled: bool) -> FloatArray:
+    """L of a turn on the spot, for matches (..., N) that it leaves `apart_rad` from each other.
+
+    It foretells both coordinates, so that it is far stronger where it holds.
+    """
+    size = apart_rad / noise_rad
+    dense = (1.0 - TAIL_SHARE) * np.exp(-0.5 * size**2)
+    dense += TAIL_SHARE / TAIL_WIDTH**2 * np.exp(-0.5 * (size / TAIL_WIDTH) ** 2)
+    ratio = dense * CHANCE_SR / (2.0 * np.pi * noise_rad**2)
+    if scaled:
+        ratio = ratio * _tailed(log_scale, SCALE_NOISE) * CHANCE_SCALE * np.sqrt(2.0 * np.pi)
+    return np.asarray(ratio, dtype=np.float64)
+
+
+def evidence(right: FloatArray, ratio: FloatArray) -> FloatArray:
+    """ln(1 + p (L - 1)) of each match, nats."""
+    return np.asarray(np.log1p(right * (ratio - 1.0)), dtype=np.float64)
+
+
+def unlikely(poses: Poses) -> FloatArray:
+    """Nats (K,) by which tilt and climb are less likely than none."""
+    return 0.5 * ((poses.tilt_rad / TILT_RAD) ** 2 + (poses.elevation_rad / CLIMB_RAD) ** 2)
+
+
+def _tailed(error: FloatArray, width: float) -> FloatArray:
+    """Density of a normal variable with a wide tail."""
+    size2 = (error / width) ** 2
+    dense = (1.0 - TAIL_SHARE) * np.exp(-0.5 * size2)
+    dense += TAIL_SHARE / TAIL_WIDTH * np.exp(size2 * (-0.5 / TAIL_WIDTH**2))
+    return np.asarray(dense / (width * np.sqrt(2.0 * np.pi)), dtype=np.float64)

@@ -1,0 +1,100 @@
+"""Reweighted Gauss-Newton over rotation and travel of several poses at once, with level cameras preferred."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from shared.geometry.match_evidence import CLIMB_RAD, TILT_RAD, motion_ratio
+from shared.geometry.relative_pose import Bearings, Evaluated, Poses, cross, evaluate
+from shared.geometry.sphere import FloatArray
+
+MOST_STEP_RAD = 0.2
+"""Longest step; chosen: 11 degrees, so that no step leaves the start that it refines."""
+RIDGE = 1e-3
+"""Added to the normal matrix, whose entries are matches over squared noise: far below one match."""
+LEAST_NOISE_RAD, MOST_NOISE_RAD = float(np.deg2rad(0.05)), float(np.deg2rad(0.5))
+"""Bounds of the measured noise: a fifth of a pixel at 1600 columns; more means wrong matches."""
+
+
+def refine(
+    poses: Poses,
+    matches: Bearings,
+    right: FloatArray,
+    noises_rad: Sequence[float],
+    *,
+    scaled: bool,
+    measured: int = 0,
+) -> tuple[Poses, FloatArray]:
+    """Maximum a posteriori poses, by expectation maximisation.
+
+    Every match counts with the probability that it belongs to the pose; a tilt between the cameras and a
+    climb are pulled towards none, as their usual sizes tell.
+
+    Args:
+        poses: K starts.
+        matches: N matches.
+        right: (N,) probability that each is right.
+        noises_rad: noise assumed in each step, from wide to narrow.
+        scaled: whether the matches' sizes are known.
+        measured: further steps with the noise that the pose itself leaves.
+
+    Returns:
+        The poses and (K, 5, 5) covariances of a turn about x, y, z and of the travel sideways and upwards.
+    """
+    noise = np.full(len(poses), 0.0)
+    for k in range(len(noises_rad) + measured):
+        seen = evaluate(poses, matches)
+        usual = noises_rad[min(k, len(noises_rad) - 1)]
+        ratio = motion_ratio(seen, usual, scaled=scaled)
+        belongs = right * ratio / (1.0 - right + right * ratio)
+        noise = _noise(seen, belongs) if k >= len(noises_rad) else np.full(len(poses), usual)
+        poses, normal = _step(poses, matches, seen, belongs, noise)
+    return poses, np.asarray(np.linalg.inv(normal), dtype=np.float64)
+
+
+def _noise(seen: Evaluated, belongs: FloatArray) -> FloatArray:
+    """Spread (K,) of the residuals of what belongs to each pose, after its five parameters."""
+    freedom = np.maximum(belongs.sum(axis=1) - 5.0, 1.0)
+    spread = np.sqrt(np.sum(belongs * seen.residual**2, axis=1) / freedom)
+    return np.asarray(np.clip(spread, LEAST_NOISE_RAD, MOST_NOISE_RAD), dtype=np.float64)
+
+
+def _step(
+    poses: Poses, matches: Bearings, seen: Evaluated, belongs: FloatArray, noise: FloatArray
+) -> tuple[Poses, FloatArray]:
+    t = poses.travel
+    level = np.maximum(np.hypot(t[:, 0], t[:, 1]), 1e-9)
+    cos, sin = t[:, 0] / level, t[:, 1] / level
+    sideways = np.stack([-sin, cos, np.zeros_like(sin)], axis=1)
+    upwards = np.stack([-t[:, 2] * cos, -t[:, 2] * sin, level], axis=1)
+    jacobian = np.empty((len(t), 5, len(matches)))
+    b, travel = matches.current[None], t[:, :, None]
+    jacobian[:, :3] = cross(seen.turned, cross(b, travel))
+    by_travel = cross(seen.turned, b)
+    jacobian[:, 3] = np.matmul(sideways[:, None, :], by_travel)[:, 0]
+    jacobian[:, 4] = np.matmul(upwards[:, None, :], by_travel)[:, 0]
+    jacobian /= seen.norm[:, None, :]
+    weighted = jacobian * (belongs / noise[:, None] ** 2)[:, None, :]
+    normal = np.matmul(weighted, np.swapaxes(jacobian, 1, 2))
+    gradient = np.matmul(weighted, seen.residual[:, :, None])[:, :, 0]
+    # The target's vertical in the current frame is R e_z = w x e_z for a small tilt w: w = (-y, x).
+    normal[:, [0, 1], [0, 1]] += TILT_RAD**-2
+    gradient[:, 0] -= poses.rotation[:, 1, 2] * TILT_RAD**-2
+    gradient[:, 1] += poses.rotation[:, 0, 2] * TILT_RAD**-2
+    normal[:, 4, 4] += CLIMB_RAD**-2
+    gradient[:, 4] += poses.elevation_rad * CLIMB_RAD**-2
+    normal[:, range(5), range(5)] += RIDGE
+    step = np.clip(-np.linalg.solve(normal, gradient[:, :, None])[:, :, 0], -MOST_STEP_RAD, MOST_STEP_RAD)
+    travel_new = t + step[:, 3:4] * sideways + step[:, 4:5] * upwards
+    travel_new /= np.linalg.norm(travel_new, axis=1, keepdims=True)
+    return Poses(np.matmul(exponential(step[:, :3]), poses.rotation), travel_new), normal
+
+
+def exponential(turns: FloatArray) -> FloatArray:
+    """Rotations (K, 3, 3) by (K, 3) vectors (Rodrigues)."""
+    angle = np.linalg.norm(turns, axis=1)
+    x, y, z = (turns / np.maximum(angle, 1e-300)[:, None]).T
+    zero = np.zeros_like(x)
+    k = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=1).reshape(-1, 3, 3)
+    sin, cos = np.sin(angle)[:, None, None], np.cos(angle)[:, None, None]
+    return np.asarray(np.eye(3) + sin * k + (1.0 - cos) * (k @ k), dtype=np.float64)

@@ -1,0 +1,154 @@
+"""Search for relative poses: hypotheses from level cameras and from five matches, refined."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shared.geometry.five_point import five_point, poses_of
+from shared.geometry.match_evidence import Cues, evidence, motion_ratio, unlikely
+from shared.geometry.planar_model import PlanarMatches, line_scores, solve_pairs
+from shared.geometry.relative_pose import Bearings, Poses, evaluate, upright
+from shared.geometry.relative_pose_refine import refine
+from shared.geometry.sphere import FloatArray
+
+# What half and twice of each changes is measured by tests/benchmarks/test_two_view_effort.py.
+FIRST = 160
+"""Matches that the search looks at, the likeliest ones; the answer is judged on all."""
+PAIRS = 600
+"""Hypotheses of level cameras."""
+LINES, STARTS, LEFT, RIVALS = 48, 24, 8, 5
+"""Lines of travel whose signs are told apart, poses refined coarsely and finely, and on all matches."""
+HOPELESS = 3.0
+"""Evidence below which no pose is refined on all matches, nats: a third of what an answer needs."""
+WIDE_RAD = float(np.deg2rad(2.0))
+"""Threshold of the lines: cameras of 2 degrees relative tilt still come first."""
+COARSE_RAD = tuple(np.deg2rad([2.0, 1.4]).tolist())
+ANNEALED_RAD = tuple(np.deg2rad([1.0, 0.6, 0.45]).tolist())
+FINAL_RAD = tuple(np.deg2rad([0.6, 0.45, 0.3]).tolist())
+"""Noise assumed step by step, down to that of match_evidence."""
+APART_RAD, TURNED_RAD = float(np.deg2rad(8.0)), float(np.deg2rad(4.0))
+"""Poses that differ by less in travel and in rotation are one."""
+FIVES = 60
+"""Samples of five matches; with two thirds of the sure ones right, eight of them are right."""
+SURE, SURE_COUNT = 0.5, 12
+"""So many matches that likely are right, and are not explained, are worth samples of five."""
+EXPLAINED = 0.75
+"""Share of the sure matches that an answer from level cameras must explain."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Poses that explain most, best first.
+
+    Attributes:
+        poses: K of them, all different.
+        score: (K,) nats: evidence of all matches less how unlikely tilt and climb are.
+        covariance: (K, 5, 5) of relative_pose_refine.
+    """
+
+    poses: Poses
+    score: FloatArray
+    covariance: FloatArray
+
+
+def search(matches: Bearings, planar: PlanarMatches, cues: Cues, rng: np.random.Generator) -> Found | None:
+    """The best different poses; None where there is no hope of any.
+
+    Args:
+        matches: N matches.
+        planar: the same, prepared for level cameras.
+        cues: what is known of them.
+        rng: draws the samples.
+    """
+    scaled = cues.log_scale is not None
+    first = np.argsort(-cues.right, kind="stable")[:FIRST]
+    near, right = matches.of(first), cues.right[first]
+    starts = _level(near, planar.of(first), right, rng, scaled=scaled)
+    if starts is None:
+        return None
+    poses, score = _refined(starts, near, right, scaled=scaled)
+    if _unexplained(poses, near, right, scaled=scaled):
+        others = _of_five(near, right, rng, scaled=scaled)
+        if others is not None:
+            more, more_score = _refined(others, near, right, scaled=scaled)
+            poses, score = _joined(poses, more), np.concatenate([score, more_score])
+    if float(score.max()) < HOPELESS:
+        return None
+    kept = poses.of(np.array(_different(poses, score)))
+    kept, covariance = refine(kept, matches, cues.right, FINAL_RAD, scaled=scaled, measured=2)
+    score = _score(kept, matches, cues.right, scaled=scaled)
+    order = np.argsort(-score, kind="stable")
+    return Found(kept.of(order), score[order], covariance[order])
+
+
+def _level(
+    matches: Bearings, planar: PlanarMatches, right: FloatArray, rng: np.random.Generator, *, scaled: bool
+) -> Poses | None:
+    """Starts from pairs of matches of level cameras, drawn by how likely they are right."""
+    share = right / right.sum()
+    pairs = rng.choice(len(right), (PAIRS, 2), p=share)
+    heading, heading_target = solve_pairs(planar.rows, pairs[pairs[:, 0] != pairs[:, 1]])
+    if len(heading) == 0:
+        return None
+    lines = np.argsort(-line_scores(planar, heading, heading_target, WIDE_RAD), kind="stable")[:LINES]
+    heading, heading_target = heading[lines], heading_target[lines]
+    both = np.concatenate([heading, heading + np.pi])
+    poses = upright(both, np.concatenate([heading - heading_target] * 2))
+    ratio = motion_ratio(evaluate(poses, matches), 0.5 * WIDE_RAD, scaled=scaled)
+    best = np.argsort(-evidence(right, ratio).sum(axis=1), kind="stable")[:STARTS]
+    return poses.of(best)
+
+
+def _of_five(matches: Bearings, right: FloatArray, rng: np.random.Generator, *, scaled: bool) -> Poses | None:
+    """Starts from samples of five of the matches that are likely right."""
+    sure = np.flatnonzero(right >= SURE)
+    samples = sure[np.argsort(rng.random((FIVES, len(sure))), axis=1)[:, :5]]
+    essentials = five_point(matches.current.T[samples], matches.target.T[samples])
+    if len(essentials) == 0:
+        return None
+    poses = poses_of(essentials)
+    ratio = motion_ratio(evaluate(poses, matches), 0.5 * WIDE_RAD, scaled=scaled)
+    best = np.argsort(-evidence(right, ratio).sum(axis=1), kind="stable")[:STARTS]
+    return poses.of(best)
+
+
+def _refined(
+    starts: Poses, matches: Bearings, right: FloatArray, *, scaled: bool
+) -> tuple[Poses, FloatArray]:
+    poses, _ = refine(starts, matches, right, COARSE_RAD, scaled=scaled)
+    ratio = motion_ratio(evaluate(poses, matches), COARSE_RAD[-1], scaled=scaled)
+    best = np.argsort(-evidence(right, ratio).sum(axis=1), kind="stable")[:LEFT]
+    poses, _ = refine(poses.of(best), matches, right, ANNEALED_RAD, scaled=scaled)
+    return poses, _score(poses, matches, right, scaled=scaled)
+
+
+def _score(poses: Poses, matches: Bearings, right: FloatArray, *, scaled: bool) -> FloatArray:
+    ratio = motion_ratio(evaluate(poses, matches), FINAL_RAD[-1], scaled=scaled)
+    return np.asarray(evidence(right, ratio).sum(axis=1) - unlikely(poses), dtype=np.float64)
+
+
+def _unexplained(poses: Poses, matches: Bearings, right: FloatArray, *, scaled: bool) -> bool:
+    """Whether many likely matches fit no pose so far: the cameras may lean far from each other."""
+    sure = right >= SURE
+    if sure.sum() < SURE_COUNT:
+        return False
+    fit = motion_ratio(evaluate(poses, matches), FINAL_RAD[-1], scaled=scaled)[:, sure] > 1.0
+    return bool(fit.mean(axis=1).max() < EXPLAINED)
+
+
+def _different(poses: Poses, score: FloatArray) -> list[int]:
+    """Indices of the best poses that differ from each other."""
+    kept: list[int] = []
+    for k in np.argsort(-score, kind="stable").tolist():
+        travel = poses.travel[kept] @ poses.travel[k]
+        turn = np.einsum("kij,ij->k", poses.rotation[kept], poses.rotation[k])
+        same = (travel > np.cos(APART_RAD)) & ((turn - 1.0) / 2.0 > np.cos(TURNED_RAD))
+        if not same.any():
+            kept.append(k)
+        if len(kept) == RIVALS:
+            break
+    return kept
+
+
+def _joined(a: Poses, b: Poses) -> Poses:
+    return Poses(np.concatenate([a.rotation, b.rotation]), np.concatenate([a.travel, b.travel]))
