@@ -9,12 +9,10 @@ import numpy as np
 from experiments.photographs.comparing import Answer, Question
 from experiments.photographs.eyes import Eyes
 from experiments.photographs.looks import Look, Seen
-from experiments.photographs.sampling import foreign_pairs
-from experiments.photographs.tables import LinkAnswer, calibration, row
+from experiments.photographs.tables import LinkAnswer
 from experiments.photographs.tilted import Few, tilt_rows
-from experiments.photographs.tours import Tour
+from experiments.photographs.tours import Tour, foreign_pairs
 from services.features.matching.verification import Candidate
-from services.launcher.terminal.output import rounded
 
 FOREIGN_MOST, FOREIGN_QUICK = 2000, 200
 """Pairs of different tours compared; chosen: a share of 0.1 % shows, in about a minute of one core."""
@@ -89,26 +87,6 @@ def measure(tours: Sequence[Tour], eyes: Eyes, *, quick: bool) -> Found:
     few = FEW_QUICK if quick else FEW
     found.tilt.extend(tilt_rows(paths_of(tours), seen, found.links, few, rng, eyes))
     return found
-
-
-def report(found: Found, pipeline: str) -> dict[str, Any]:
-    """All figures, as they are written to JSON."""
-    rows = [
-        row(one.tour.file.name, len(one.tour.paths), one.links, len(one.wrong), one.recalled)
-        for one in found.tours
-    ]
-    wrong = sum(len(one.wrong) for one in found.tours) + len(found.foreign_wrong)
-    recalled = [each for one in found.tours for each in one.recalled]
-    return {
-        "tours": rows,
-        "total": row("total", len(found.seen), found.links, wrong, recalled),
-        "foreign_pairs": {"pairs": len(found.foreign), "edges": len(found.foreign_wrong)},
-        "tilt": found.tilt,
-        "calibration": calibration(found.links),
-        "pipeline": pipeline,
-        "ms_per_picture": rounded(np.median([one.ms for one in found.seen]), 2),
-        "ms_per_pair": rounded(np.median(found.ms), 2),
-    }
 
 
 def _of_tour(tour: Tour, first: int, found: Found, eyes: Eyes) -> TourFound:

@@ -3,19 +3,22 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from experiments.photographs.comparing import Question
 from experiments.photographs.eyes import Eyes
 from experiments.photographs.looks import Look, Seen
-from experiments.photographs.sampling import axes_rad, pitch_roll, some
 from experiments.photographs.tables import LinkAnswer, apart_deg, tilt_row
+from experiments.photographs.tilting import pitch_roll
 from services.features.matching.verification import Candidate
 
 TILTS_DEG = (1.0, 2.0, 5.0, 10.0)
 """Chosen: a tripod, a hand-held stick, a kerb, a slope."""
+
+
+One = TypeVar("One")
 
 
 @dataclass(frozen=True)
@@ -56,7 +59,10 @@ def tilt_rows(
     answered = [link.answer for link in links if link.answer.heading_deg is not None]
     pictures, chosen = some(range(len(looks)), few.pictures, rng), some(answered, few.links, rng)
     pairs = [(n, n) for n in pictures] + [(one.query, one.candidate) for one in chosen]
-    cases = [Case(*pair, axis) for pair, axis in zip(pairs, axes_rad(len(pairs), rng), strict=True)]
+    cases = [
+        Case(*pair, axis)
+        for pair, axis in zip(pairs, rng.uniform(-math.pi, math.pi, len(pairs)).tolist(), strict=True)
+    ]
     rows = []
     for deg in TILTS_DEG:
         tilted = eyes.look(
@@ -74,6 +80,13 @@ def tilt_rows(
         ]
         rows.append(tilt_row(deg, answers[: len(pictures)], changes))
     return rows
+
+
+def some(items: Sequence[One], most: int, rng: np.random.Generator) -> list[One]:
+    """All items, or `most` of them, in their order."""
+    if len(items) <= most:
+        return list(items)
+    return [items[int(k)] for k in np.sort(rng.choice(len(items), most, replace=False))]
 
 
 def _tilted(look: Look, deg: float, axis_rad: float) -> Look:

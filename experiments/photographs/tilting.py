@@ -1,5 +1,7 @@
 """What a camera that is not upright sees: equirectangular pictures sampled along turned bearings. Pure."""
 
+import math
+
 import cv2
 import numpy as np
 
@@ -41,3 +43,8 @@ def tilt(picture: Image, pitch_rad: float, roll_rad: float) -> Image:
         ),
         np.uint8,
     )
+
+
+def pitch_roll(angle_rad: float, axis_rad: float) -> tuple[float, float]:
+    """Pitch and roll of a tilt by an angle about the horizontal axis at a longitude, radians."""
+    return angle_rad * math.sin(axis_rad), angle_rad * math.cos(axis_rad)

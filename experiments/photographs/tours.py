@@ -1,69 +1,20 @@
-"""Tours: folders of equirectangular pictures of one place, and what is known of it (`tour.json`)."""
+"""Tours: folders of equirectangular pictures of one place, read and checked."""
 
 import json
-import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
-from typing import Self
 
+import numpy as np
 from PIL import Image, UnidentifiedImageError
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import ValidationError
 
+from experiments.photographs.tour_file import TourFile, kind_of
 from services.launcher.client.failure import ExperimentError
 
 TOUR_FILE = "tour.json"
 SUFFIXES = (".jpg", ".jpeg", ".png")
-SHOWN = 8
-"""Ids named in an error, so that it stays one line."""
-
-
-class Link(BaseModel):
-    """Where the place of picture `to` lies in picture `from`.
-
-    Attributes:
-        bearing_deg: counter-clockwise, 0 is the centre column, degrees.
-    """
-
-    model_config = ConfigDict(frozen=True, coerce_numbers_to_str=True)
-    source: str = Field(alias="from")
-    to: str
-    bearing_deg: float = Field(ge=-360.0, le=360.0)
-
-
-class TourFile(BaseModel):
-    """The file as people write it.
-
-    Attributes:
-        pictures: ids; the picture lies beside the file as ID.jpg or ID.png.
-        rooms: which room a picture shows; different rooms of one kind look alike.
-    """
-
-    model_config = ConfigDict(frozen=True, coerce_numbers_to_str=True)
-    name: str = Field(min_length=1)
-    pictures: tuple[str, ...] = Field(min_length=2)
-    links: tuple[Link, ...] = ()
-    rooms: dict[str, str] = {}
-
-    @model_validator(mode="after")
-    def _ids_are_known(self) -> Self:
-        if twice := sorted({one for one in self.pictures if self.pictures.count(one) > 1}):
-            raise ValueError(f"pictures: expected ids that differ, got {twice} twice: name each picture once")
-        ids = ", ".join(self.pictures[:SHOWN]) + (", ..." if len(self.pictures) > SHOWN else "")
-        for place, given in [
-            *((f"links.{n}.from", link.source) for n, link in enumerate(self.links)),
-            *((f"links.{n}.to", link.to) for n, link in enumerate(self.links)),
-            *((f"rooms.{one}", one) for one in self.rooms),
-        ]:
-            if given not in self.pictures:
-                raise ValueError(
-                    f"{place}: expected an id of pictures ({ids}), got {given!r}: "
-                    "correct the id, or add it to pictures"
-                )
-        for n, link in enumerate(self.links):
-            if link.source == link.to:
-                raise ValueError(f"links.{n}: expected two pictures, got {link.to!r} twice: remove this link")
-        return self
 
 
 @dataclass(frozen=True)
@@ -106,9 +57,20 @@ class Tour:
         ]
 
 
-def kind_of(room: str) -> str:
-    """A room's name without its numbers."""
-    return re.sub(r"\d+", "", room)
+def foreign_pairs(tour_of: Sequence[int], most: int, rng: np.random.Generator) -> list[tuple[int, int]]:
+    """Pairs of pictures of different tours: all where there are at most `most`, else so many of them.
+
+    Args:
+        tour_of: number of the tour of each picture.
+        most: pairs wanted at most.
+        rng: draws them.
+    """
+    of = np.asarray(tour_of)
+    a, b = np.triu_indices(len(of), 1)
+    different = of[a] != of[b]
+    a, b = a[different], b[different]
+    kept = np.arange(len(a)) if len(a) <= most else np.sort(rng.choice(len(a), most, replace=False))
+    return [(int(a[k]), int(b[k])) for k in kept]
 
 
 def read_tours(folder: Path) -> list[Tour]:

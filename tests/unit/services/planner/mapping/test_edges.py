@@ -112,6 +112,6 @@ def test_a_match_that_stands_alone_is_an_edge_without_free_ground():
 
 
 def test_a_match_that_two_motions_explain_does_not_stand_alone(monkeypatch):
-    monkeypatch.setattr("services.planner.mapping.edges.is_ambiguous", lambda match: True)
+    monkeypatch.setattr("services.planner.mapping.edges.is_ambiguous", lambda _: True)
     assert not stands_alone(match(0, 60, 80), DEFAULT)
     assert stands_alone(match(0, 60, 80), THESIS)  # its rules know no such thing
