@@ -15,10 +15,10 @@ from experiments.photographs.tables import Row, apart_deg, heading_figures
 from experiments.photographs.tours import Tour
 from services.launcher.client.failure import ExperimentError
 from services.launcher.terminal.output import rounded
-from shared.geometry.perspective import PerspectiveView, view_table
+from shared.geometry.perspective import PerspectiveView, rotation_z, view_table
 from shared.geometry.sphere import EquirectGrid, FloatArray
 
-CROPS, CROP_DEG, CROP_PX_MOST = 6, 90.0, 768
+LONS_RAD, CROP_RAD, CROP_PX_MOST = np.arange(6) * math.pi / 3.0, math.radians(90.0), 768
 """Views round the horizon: as in pycolmap's example of panoramas they overlap, and what they show is where
 this software's keypoints are. Their pixels are as fine as the panorama's up to CROP_PX_MOST."""
 
@@ -101,8 +101,8 @@ def _headings(pycolmap: Any, tour: Tour, tick: Callable[[str], None]) -> Heading
 def _write_crops(pycolmap: Any, tour: Tour, folder: Path) -> Any:
     """Crops of all pictures, a folder for each direction and one size; returns their camera."""
     width_px = picture_of(tour.paths[0]).shape[1]
-    side_px = min(round(width_px * CROP_DEG / 360.0), CROP_PX_MOST)
-    views = [PerspectiveView(side_px, side_px, math.radians(CROP_DEG), _lon_rad(k)) for k in range(CROPS)]
+    side_px = min(round(width_px * CROP_RAD / math.tau), CROP_PX_MOST)
+    views = [PerspectiveView(side_px, side_px, CROP_RAD, lon_rad) for lon_rad in LONS_RAD]
     for number, path in enumerate(tour.paths):
         picture = picture_of(path)
         source = EquirectGrid(picture.shape[1], picture.shape[0])
@@ -119,9 +119,8 @@ def _write_crops(pycolmap: Any, tour: Tour, folder: Path) -> Any:
 def _rig(pycolmap: Any) -> Any:
     """The crops of one picture as a rig whose frame is the first crop's camera."""
     cameras = [pycolmap.RigConfigCamera(ref_sensor=True, image_prefix="crop0/")]
-    for k in range(1, CROPS):
-        view = PerspectiveView(1, 1, math.radians(CROP_DEG), _lon_rad(k))
-        turned = OPTICAL_AXES @ view.rotation.T @ OPTICAL_AXES.T
+    for k, lon_rad in enumerate(LONS_RAD[1:], start=1):
+        turned = OPTICAL_AXES @ rotation_z(-lon_rad) @ OPTICAL_AXES.T
         pose = pycolmap.Rigid3d(pycolmap.Rotation3d(turned), np.zeros(3))
         cameras.append(pycolmap.RigConfigCamera(image_prefix=f"crop{k}/", cam_from_rig=pose))
     return pycolmap.RigConfig(cameras=cameras)
@@ -150,7 +149,3 @@ def _bearings(reconstruction: Any, tour: Tour) -> Headings:
             if a != b:
                 found[a, b] = math.degrees(math.atan2(-right, ahead))
     return found
-
-
-def _lon_rad(crop: int) -> float:
-    return 2.0 * math.pi * crop / CROPS
