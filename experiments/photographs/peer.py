@@ -15,15 +15,21 @@ from experiments.photographs.tables import Row, apart_deg, heading_figures
 from experiments.photographs.tours import Tour
 from services.launcher.client.failure import ExperimentError
 from services.launcher.terminal.output import rounded
-from shared.geometry.perspective import PerspectiveView, rotation_z, view_table
+from shared.geometry.perspective import PerspectiveView, view_table
 from shared.geometry.sphere import EquirectGrid, FloatArray
 
-LONS_RAD, CROP_RAD, CROP_PX_MOST = np.arange(6) * math.pi / 3.0, math.radians(90.0), 768
-"""Views round the horizon: as in pycolmap's example of panoramas they overlap, and what they show is where
-this software's keypoints are. Their pixels are as fine as the panorama's up to CROP_PX_MOST."""
+DIRECTIONS_DEG = [(lon, lat) for lat in (0.0, -35.0, 35.0) for lon in (0.0, 90.0, 180.0, 270.0)]
+CROP_RAD, CROP_PX_MOST = math.radians(90.0), 768
+"""The overlapping crops of pycolmap's example of panoramas; as fine as the panorama up to CROP_PX_MOST."""
 
-MIN_MODEL_FRAMES = 3
-"""Pictures of the smallest reconstruction kept, of COLMAP's default of 10: rooms have few."""
+MAPPING = {
+    "ba_refine_sensor_from_rig": False,
+    "ba_refine_focal_length": False,
+    "ba_refine_principal_point": False,
+    "ba_refine_extra_params": False,
+    "min_model_size": 2,  # pictures: enough for a bearing; COLMAP's own bound is 10
+}
+"""Rig and cameras are known."""
 
 OPTICAL_AXES = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])
 """Rows: right, down and ahead of COLMAP's camera in our frame (ahead, left, up)."""
@@ -56,16 +62,13 @@ def measure_peer(
     offs: list[float | None] = []
     for tour in tours:
         began_s = time.perf_counter()
-        own = _offs(tour, _headings(pycolmap, tour, tick))
+        found = _headings(pycolmap, tour, tick)
+        own = [apart_deg(found[a, b], deg) if (a, b) in found else None for a, b, deg in tour.links()]
         rows.append(_row(tour.file.name, len(tour.paths), own, time.perf_counter() - began_s))
         offs += own
     pictures = sum(len(tour.paths) for tour in tours)
     total = _row("total", pictures, offs, sum(row["seconds"] for row in rows))
     return {"name": f"pycolmap {pycolmap.__version__}", "tours": rows, "total": total}
-
-
-def _offs(tour: Tour, headings: Headings) -> list[float | None]:
-    return [apart_deg(headings[a, b], deg) if (a, b) in headings else None for a, b, deg in tour.links()]
 
 
 def _row(name: str, pictures: int, offs: Sequence[float | None], spent_s: float) -> Row:
@@ -94,7 +97,7 @@ def _headings(pycolmap: Any, tour: Tour, tick: Callable[[str], None]) -> Heading
             matching_options={"rig_verification": True, "skip_image_pairs_in_same_frame": True},
         )
         tick(f"pycolmap, {name}: reconstruction")
-        found = pycolmap.incremental_mapping(database, folder / "crops", folder, _mapping(pycolmap))
+        found = pycolmap.incremental_mapping(database, folder / "crops", folder, MAPPING)
         return {k: v for one in found.values() for k, v in _bearings(one, tour).items()}
 
 
@@ -102,7 +105,7 @@ def _write_crops(pycolmap: Any, tour: Tour, folder: Path) -> Any:
     """Crops of all pictures, a folder for each direction and one size; returns their camera."""
     width_px = picture_of(tour.paths[0]).shape[1]
     side_px = min(round(width_px * CROP_RAD / math.tau), CROP_PX_MOST)
-    views = [PerspectiveView(side_px, side_px, CROP_RAD, lon_rad) for lon_rad in LONS_RAD]
+    views = _views(side_px)
     for number, path in enumerate(tour.paths):
         picture = picture_of(path)
         source = EquirectGrid(picture.shape[1], picture.shape[0])
@@ -111,28 +114,23 @@ def _write_crops(pycolmap: Any, tour: Tour, folder: Path) -> Any:
             file.parent.mkdir(parents=True, exist_ok=True)
             cut = cv2.remap(picture, *view_table(view, source), cv2.INTER_LINEAR, borderMode=cv2.BORDER_WRAP)
             cv2.imwrite(str(file), cut)
-    middle_px, focal_px = side_px / 2.0, views[0].focal_px
-    params = [focal_px, focal_px, middle_px, middle_px]
+    params = [views[0].focal_px, views[0].focal_px, side_px / 2.0, side_px / 2.0]
     return pycolmap.Camera(model="PINHOLE", width=side_px, height=side_px, params=params)
+
+
+def _views(side_px: int) -> list[PerspectiveView]:
+    directions = ((math.radians(lon), math.radians(lat)) for lon, lat in DIRECTIONS_DEG)
+    return [PerspectiveView(side_px, side_px, CROP_RAD, *direction) for direction in directions]
 
 
 def _rig(pycolmap: Any) -> Any:
     """The crops of one picture as a rig whose frame is the first crop's camera."""
     cameras = [pycolmap.RigConfigCamera(ref_sensor=True, image_prefix="crop0/")]
-    for k, lon_rad in enumerate(LONS_RAD[1:], start=1):
-        turned = OPTICAL_AXES @ rotation_z(-lon_rad) @ OPTICAL_AXES.T
+    for k, view in enumerate(_views(1)[1:], start=1):
+        turned = OPTICAL_AXES @ view.rotation.T @ OPTICAL_AXES.T
         pose = pycolmap.Rigid3d(pycolmap.Rotation3d(turned), np.zeros(3))
         cameras.append(pycolmap.RigConfigCamera(image_prefix=f"crop{k}/", cam_from_rig=pose))
     return pycolmap.RigConfig(cameras=cameras)
-
-
-def _mapping(pycolmap: Any) -> Any:
-    """Options of the reconstruction: the rig and its cameras are known."""
-    options = pycolmap.IncrementalPipelineOptions()
-    options.ba_refine_sensor_from_rig = options.ba_refine_focal_length = False
-    options.ba_refine_principal_point = options.ba_refine_extra_params = False
-    options.min_model_size = MIN_MODEL_FRAMES
-    return options
 
 
 def _bearings(reconstruction: Any, tour: Tour) -> Headings:
