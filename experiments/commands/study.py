@@ -10,6 +10,7 @@ from experiments.commands import (
     heading,
     heading_frames,
     matching,
+    photographs,
     recovery,
     scale,
 )
@@ -25,6 +26,7 @@ for study in (
     disturbance_matches,
     failures,
     matching,
+    photographs,
     recovery,
     scale,
 ):

@@ -84,6 +84,12 @@ def judge_edges(
     return NewEdges(admitted, clear, refused, covered)
 
 
+def stands_alone(match: NodeMatch, profile: Profile) -> bool:
+    """Whether a match becomes an edge by itself: no map, no drive and no free ground speak for it."""
+    admitted = _admitted(match, profile) and _credible(match, profile, clear=False)
+    return admitted and (profile.sensing.similarity == "raw" or not is_ambiguous(match))
+
+
 def is_ambiguous(match: NodeMatch) -> bool:
     """Whether two motions of the camera explain a match: a wall whose pattern repeats.
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from services.planner.mapping.edges import judge_edges
+from services.planner.mapping.edges import judge_edges, stands_alone
 from services.planner.mapping.nodes import add_node
 from services.planner.ports import Observation
-from services.planner.profiles import DEFAULT, OUTDOOR
+from services.planner.profiles import DEFAULT, OUTDOOR, THESIS
 from shared.mapgraph.graph import MapGraph
 from shared.messages.features import Features
 from shared.messages.maps import Edge, Node, PutEdge
@@ -102,3 +102,16 @@ def test_a_place_too_uncertain_for_an_edge_leaves_nothing_unexplored_that_way():
     assert set(edges.covered) == {1}, "its neighbour supports it"
     node, _ = add_node(maps, observation(), edges, OUTDOOR, 0)
     assert maps.graph.neighbours(node) == [0]
+
+
+def test_a_match_that_stands_alone_is_an_edge_without_free_ground():
+    assert stands_alone(match(0, 35, 80), DEFAULT)
+    assert not stands_alone(match(0, 25, 80), DEFAULT)
+    assert not stands_alone(match(0, 35, 80), OUTDOOR)  # driven there it would be one
+    assert not stands_alone(match(0, 35, 80).model_copy(update={"confidence": 0.4}), DEFAULT)
+
+
+def test_a_match_that_two_motions_explain_does_not_stand_alone(monkeypatch):
+    monkeypatch.setattr("services.planner.mapping.edges.is_ambiguous", lambda _: True)
+    assert not stands_alone(match(0, 60, 80), DEFAULT)
+    assert stands_alone(match(0, 60, 80), THESIS)  # its rules know no such thing
