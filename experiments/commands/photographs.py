@@ -66,9 +66,9 @@ def photographs(
             return 0
     if tours is None:
         raise ExperimentError("expected --tours DIR, a folder of tours, or --render-example DIR, got neither")
-    name, read = pipeline or "sift", read_tours(tours)
+    name, read = pipeline or "photo", read_tours(tours)
     pycolmap = load_pycolmap() if peer is not None else None
-    asked = profile or "default"
+    asked = profile or ("photo" if name == "photo" else "default")
     rules = profile_of_file(Path(asked)) if asked.endswith(".json") else profile_named(asked)
     with (
         wide_console(stderr=True).status("") as status,

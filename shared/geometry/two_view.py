@@ -2,19 +2,27 @@
 
 import numpy as np
 import numpy.typing as npt
+from numpy.random import Generator
 
-from shared.geometry.match_evidence import Cues
+from shared.geometry.match_evidence import NOISE_RAD, Cues
 from shared.geometry.planar import estimate_planar
+from shared.geometry.rotation import fit_rotation
+from shared.geometry.sphere import FloatArray, bearings_from_lonlat
 from shared.geometry.tilted import estimate_tilted
 from shared.geometry.two_view_types import TwoViewResult, TwoViewSettings, checked_matches
 
 __all__ = ["Cues", "TwoViewResult", "TwoViewSettings", "two_view"]
 
+SHORT_RAD = float(np.deg2rad(3.0))
+"""Disparity up to which leaning may pass for a way; more than that level cameras cannot explain."""
+AS_WELL = 0.9
+"""Share of the inliers of level cameras that a turn must explain to be considered; chosen."""
+
 
 def two_view(
     current: npt.ArrayLike,
     target: npt.ArrayLike,
-    rng: np.random.Generator,
+    rng: Generator,
     settings: TwoViewSettings | None = None,
     cues: Cues | None = None,
 ) -> TwoViewResult:
@@ -40,9 +48,20 @@ def two_view(
     limits = settings or TwoViewSettings()
     c, t = checked_matches(current, target)
     planar = estimate_planar(c, t, rng, limits)
-    if not limits.tilting or planar.status == "too_few" or _settled(planar, limits):
+    if not limits.tilting or len(c) < limits.tilting_min_matches:
+        return planar
+    if _settled(planar, limits) and not _only_leans(planar, c, t, rng):
         return planar
     return estimate_tilted(c, t, cues or Cues.unknown(len(c)), rng, limits)
+
+
+def _only_leans(planar: TwoViewResult, current: FloatArray, target: FloatArray, rng: Generator) -> bool:
+    """Whether a short way may be none: the camera leans, and a turn about any axis explains it as well."""
+    if planar.disparity_rad is None or planar.disparity_rad > SHORT_RAD:
+        return False
+    b, bt = bearings_from_lonlat(current), bearings_from_lonlat(target)
+    _, turned = fit_rotation(b, bt, rng, NOISE_RAD)
+    return bool(turned.sum() >= AS_WELL * planar.inliers)
 
 
 def _settled(planar: TwoViewResult, limits: TwoViewSettings) -> bool:

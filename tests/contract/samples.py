@@ -18,6 +18,7 @@ HALF = (True, False) * 6
 
 def features() -> looks.Features:
     return looks.Features(
+        sizes_rad=np.array([0.01, 0.02], np.float32),
         seq=7,
         stamp_ns=STAMP_NS,
         robot="r1",
@@ -140,6 +141,7 @@ def node_match() -> matching.NodeMatch:
         yaw_rad=-0.5,
         disparity_rad=0.25,
         confidence=0.75,
+        noise_rad=0.005,
         matches_rad=np.array([[0.5, 0.25, 0.75, 0.125], [1.0, 0.0, 2.0, 0.0]], np.float32),
         inlier_mask=np.array([1, 0], np.uint8),
     )

@@ -77,7 +77,7 @@ def test_trained_networks_find_the_turn_between_two_views(room, name):
         extract(view, pipeline.extractor, pipeline.representation, profile)
         for view in (picture, np.roll(picture, 80, axis=1))
     )
-    (pairs,) = pipeline.matcher.match(here, [there])
+    pairs = pipeline.matcher.match(here, [there])[0].pairs
     moved = wrap_rad(there.lonlat_rad[pairs[:, 1], 0] - here.lonlat_rad[pairs[:, 0], 0] + np.deg2rad(36.0))
     assert len(pairs) > 100
     assert np.mean(np.abs(moved) < np.deg2rad(1.0)) > 0.8
@@ -88,7 +88,7 @@ def test_untrained_lightglue_pairs_features_of_its_extractor(room, extractor):
     profile = replace(combined(extractor, "equirectangular", "lightglue"), keypoints=40)
     pipeline = untrained(profile)
     found = extract(room(0.0, 0.0, 0.0, 400), pipeline.extractor, pipeline.representation, profile)
-    (pairs,) = pipeline.matcher.match(found, [found])
+    pairs = pipeline.matcher.match(found, [found])[0].pairs
     assert pairs.shape[1:] == (2,)
     assert len(np.unique(pairs[:, 0])) == len(pairs)
 
@@ -98,7 +98,7 @@ def test_untrained_superglue_pairs_features_of_superpoint(room):
     profile = replace(combined("superpoint", "equirectangular", "superglue"), keypoints=40)
     pipeline = untrained(profile)
     found = extract(room(0.0, 0.0, 0.0, 400), pipeline.extractor, pipeline.representation, profile)
-    (pairs,) = pipeline.matcher.match(found, [found])
+    pairs = pipeline.matcher.match(found, [found])[0].pairs
     assert pairs.shape[1:] == (2,)
 
 

@@ -75,9 +75,9 @@ def test_what_an_import_does_not_load(module, absent):
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
-def test_uneven_ground_asks_for_any_motion_of_the_camera():
-    assert not Pipeline(FeaturesSettings().profile()).verification.fallback
-    assert Pipeline(FeaturesSettings(uneven_ground=True).profile()).verification.fallback
+def test_cameras_may_lean_unless_somebody_says_that_they_do_not():
+    assert Pipeline(FeaturesSettings().profile()).verification.tilting
+    assert not Pipeline(FeaturesSettings(tilting=False).profile()).verification.tilting
 
 
 def test_one_service_may_serve_several_robots_by_default_its_own(monkeypatch):

@@ -49,28 +49,28 @@ def test_float_descriptors_are_compared_as_they_are():
 def test_the_ratio_is_one_of_distances_not_of_squares():
     query, other = np.array([[0]], np.uint8), np.array([[8], [10]], np.uint8)
     for ratio, count in ((0.79, 0), (0.81, 1)):
-        (pairs,) = MutualRatio(Profile("sift", ratio=ratio), "euclidean").match(
+        (matched,) = MutualRatio(Profile("sift", ratio=ratio), "euclidean").match(
             features(query), [features(other)]
         )
-        assert len(pairs) == count
+        assert len(matched) == count
 
 
 def test_the_hamming_ratio_is_one_of_bits():
     query, other = np.array([[0]], np.uint8), np.array([[0b1111], [0b11111]], np.uint8)
     for ratio, count in ((0.79, 0), (0.81, 1)):
-        (pairs,) = MutualRatio(Profile("orb", ratio=ratio), "hamming").match(
+        (matched,) = MutualRatio(Profile("orb", ratio=ratio), "hamming").match(
             features(query), [features(other)]
         )
-        assert len(pairs) == count
+        assert len(matched) == count
 
 
 def test_equal_descriptors_never_share_a_partner():
     query = np.full((3, 8), 7, np.uint8)
     other = np.array([[7] * 8, [200] * 8], np.uint8)
-    (pairs,) = MutualRatio(Profile("sift"), "euclidean").match(features(query), [features(other)])
-    assert pairs.tolist() == [[0, 0]]
-    (pairs,) = BruteForce(Profile("sift"), "euclidean").match(features(query), [features(other)])
-    assert pairs.tolist() == [[0, 0]]
+    (matched,) = MutualRatio(Profile("sift"), "euclidean").match(features(query), [features(other)])
+    assert matched.pairs.tolist() == [[0, 0]]
+    (matched,) = BruteForce(Profile("sift"), "euclidean").match(features(query), [features(other)])
+    assert matched.pairs.tolist() == [[0, 0]]
 
 
 @pytest.mark.parametrize("matcher", [MutualRatio, BruteForce])

@@ -34,7 +34,8 @@ def turned_share(picture: np.ndarray, profile: Profile, turns: int) -> np.ndarra
     found, present = np.zeros(turns), np.zeros(turns)
     for i, here in enumerate(views):
         sector = np.rint((here.lonlat_rad[:, 0] + np.pi) / (2.0 * np.pi) * turns).astype(int) % turns
-        for j, pairs in enumerate(pipeline.matcher.match(here, views)):
+        for j, matched in enumerate(pipeline.matcher.match(here, views)):
+            pairs = matched.pairs
             if i == j:
                 continue
             expected = here.lonlat_rad[pairs[:, 0], 0] + 2.0 * np.pi * (i - j) / turns
@@ -90,7 +91,7 @@ def test_bearings_do_not_depend_on_the_size_of_the_picture(room):
         features_in(room(0.0, 0.0, 0.0, 512), profile),
         features_in(room(0.0, 0.0, 0.0, 400), profile),
     )
-    (pairs,) = pipeline.matcher.match(large, [small])
+    pairs = pipeline.matcher.match(large, [small])[0].pairs
     difference = large.lonlat_rad[pairs[:, 0]] - small.lonlat_rad[pairs[:, 1]]
     assert len(pairs) > 100
     assert np.abs(np.median(difference, axis=0)).max() < np.deg2rad(0.03)
@@ -140,7 +141,7 @@ def test_tangent_pictures_give_the_same_bearings_each_keypoint_once(room):
     found = features_in(picture, profile)
     assert np.abs(found.lonlat_rad[:, 1]).max() <= CROP_RAD
     whole = features_in(picture, replace(PROFILES["orb"], resize=None, keypoints=1000))
-    (pairs,) = Pipeline(profile).matcher.match(found, [whole])
+    pairs = Pipeline(profile).matcher.match(found, [whole])[0].pairs
     difference = found.lonlat_rad[pairs[:, 0]] - whole.lonlat_rad[pairs[:, 1]]
     assert len(pairs) > 50
     assert np.median(np.abs(difference), axis=0).max() < np.deg2rad(0.3)

@@ -1,4 +1,4 @@
-"""Choice of the heading method: two-view geometry first, votes where it has no answer, reasons given."""
+"""Choice of the heading method: two-view geometry or the one that a profile names, reasons given."""
 
 import numpy as np
 import pytest
@@ -70,12 +70,11 @@ def test_two_view_heading_comes_first():
         ({"confidence": 0.9 * CONFIDENCE_MIN}, "confidence 0.27"),
     ],
 )
-def test_histogram_decides_where_two_view_has_no_usable_answer(changes, word):
+def test_there_is_no_heading_where_two_view_geometry_has_no_usable_answer(changes, word):
     choice = choose_heading(matched(**changes), "epipolar")
-    assert choice.method == "1"
+    assert choice.method == "epipolar"
     assert word in choice.reason
-    assert "so method 1" in choice.reason
-    assert choice.estimate == by_votes("1")
+    assert choice.estimate.heading_rad is None
 
 
 def test_turn_on_the_spot_has_no_direction():
