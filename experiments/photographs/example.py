@@ -115,6 +115,7 @@ def _render(world: WorldFile, folder: Path, views: list[tuple[str, Pose2, tuple[
     from simulator.scene.disk_cache import DiskCache
     from simulator.scene.painter import Painter
     from simulator.scene.render_scene import RenderScene
+    from simulator.sensors.attitude import leaning
     from simulator.service_settings import user_cache_dir
     from simulator.settings import CameraSettings, SimulationSettings
     from simulator.world.contents import expand
@@ -125,4 +126,4 @@ def _render(world: WorldFile, folder: Path, views: list[tuple[str, Pose2, tuple[
         scene = RenderScene(world, expand(world), settings.camera, painter, cache)
     for name, pose, tilt in views:
         quality = [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]
-        cv2.imwrite(str(folder / f"{name}.jpg"), scene.panorama(pose, tilt), quality)
+        cv2.imwrite(str(folder / f"{name}.jpg"), scene.panorama(pose, leaning(tilt)), quality)

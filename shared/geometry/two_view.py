@@ -4,11 +4,11 @@ import numpy as np
 import numpy.typing as npt
 from numpy.random import Generator
 
-from shared.geometry.match_evidence import NOISE_RAD, Cues
 from shared.geometry.planar import estimate_planar
 from shared.geometry.rotation import fit_rotation
 from shared.geometry.sphere import FloatArray, bearings_from_lonlat
-from shared.geometry.tilted import estimate_tilted
+from shared.geometry.tilted.estimate import estimate_tilted
+from shared.geometry.tilted.match_evidence import NOISE_RAD, Cues
 from shared.geometry.two_view_types import TwoViewResult, TwoViewSettings, checked_matches
 
 __all__ = ["Cues", "TwoViewResult", "TwoViewSettings", "two_view"]

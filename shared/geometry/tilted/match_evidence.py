@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shared.geometry.relative_pose import Evaluated, Poses
 from shared.geometry.sphere import FloatArray
+from shared.geometry.tilted.poses import Evaluated, Poses
 
 NOISE_RAD = float(np.deg2rad(0.3))
 """Spread of right matches about the epipolar plane: 1.3 pixels at 1600 columns; photographs are stitched."""
 SCALE_NOISE = 0.2
-"""Spread of ln(size ratio) about equation (1) of relative_pose: 0.15 measured, most of it within."""
+"""Spread of ln(size ratio) about equation (1) of poses: 0.15 measured, most of it within."""
 TAIL_SHARE, TAIL_WIDTH = 0.2, 3.0
 """Share of right matches that err by so many times as much; chosen: stitching, edges of things."""
 CHANCE_PER_RAD = 1.0

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from shared.geometry.match_evidence import CLIMB_RAD, TILT_RAD, motion_ratio
-from shared.geometry.relative_pose import Bearings, Evaluated, Poses, cross, evaluate
 from shared.geometry.sphere import FloatArray
+from shared.geometry.tilted.match_evidence import CLIMB_RAD, TILT_RAD, motion_ratio
+from shared.geometry.tilted.poses import Bearings, Evaluated, Poses, cross, evaluate
 
 MOST_STEP_RAD = 0.2
 """Longest step; chosen: 11 degrees, so that no step leaves the start that it refines."""

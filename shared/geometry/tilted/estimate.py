@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from shared.geometry.evidence import NOISE_FLOOR_RAD, parallax_share
-from shared.geometry.match_evidence import NOISE_RAD, Cues, evidence, motion_ratio, turn_ratio
 from shared.geometry.planar_model import PlanarMatches
-from shared.geometry.relative_pose import Bearings, Evaluated, Poses, evaluate
-from shared.geometry.relative_pose_search import search
 from shared.geometry.rotation import fit_rotation
 from shared.geometry.sphere import BoolArray, FloatArray, angle_between_rad, bearings_from_lonlat, wrap_rad
+from shared.geometry.tilted.match_evidence import NOISE_RAD, Cues, evidence, motion_ratio, turn_ratio
+from shared.geometry.tilted.poses import Bearings, Evaluated, Poses, evaluate
+from shared.geometry.tilted.search import search
 from shared.geometry.two_view_types import TwoViewResult, TwoViewSettings, refused
 
 FIRST = 160

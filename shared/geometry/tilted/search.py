@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shared.geometry.five_point import five_point, poses_of
-from shared.geometry.match_evidence import Cues, evidence, motion_ratio, unlikely
 from shared.geometry.planar_model import PlanarMatches, line_scores, solve_pairs
-from shared.geometry.relative_pose import Bearings, Poses, evaluate, upright
-from shared.geometry.relative_pose_refine import refine
 from shared.geometry.sphere import FloatArray
+from shared.geometry.tilted.five_point import five_point, poses_of
+from shared.geometry.tilted.match_evidence import Cues, evidence, motion_ratio, unlikely
+from shared.geometry.tilted.poses import Bearings, Poses, evaluate, upright
+from shared.geometry.tilted.refine import refine
 
 # What half and twice of each changes is measured by tests/benchmarks/test_two_view_effort.py.
 FIRST = 160
@@ -43,7 +43,7 @@ class Found:
     Attributes:
         poses: K of them, all different.
         score: (K,) nats: evidence of all matches less how unlikely tilt and climb are.
-        covariance: (K, 5, 5) of relative_pose_refine.
+        covariance: (K, 5, 5) of refine.
     """
 
     poses: Poses

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from shared.geometry.five_point import five_point, poses_of
-from shared.geometry.match_evidence import NOISE_RAD, evidence, motion_ratio, turn_ratio, unlikely
 from shared.geometry.perspective import rotation_y, rotation_z
-from shared.geometry.relative_pose import Bearings, Poses, evaluate, upright
-from shared.geometry.relative_pose_refine import exponential, refine
+from shared.geometry.tilted.five_point import five_point, poses_of
+from shared.geometry.tilted.match_evidence import NOISE_RAD, evidence, motion_ratio, turn_ratio, unlikely
+from shared.geometry.tilted.poses import Bearings, Poses, evaluate, upright
+from shared.geometry.tilted.refine import exponential, refine
 from tests.unit.shared.geometry.synthetic_room import rotation_x
 
 ROTATION = rotation_z(0.8) @ rotation_y(0.05) @ rotation_x(-0.04)

@@ -9,8 +9,8 @@ from itertools import combinations_with_replacement, product
 
 import numpy as np
 
-from shared.geometry.relative_pose import Poses
 from shared.geometry.sphere import FloatArray
+from shared.geometry.tilted.poses import Poses
 
 SINGULAR = 1e-18
 """Determinant below which five matches fix no matrix; chosen: above the rounding of ten factors below 1."""
