@@ -3,12 +3,15 @@
 import os
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from experiments.work.record import on_record
 from services.launcher.terminal import options
+
+if TYPE_CHECKING:
+    from services.planner.profiles import Profile
 
 app = typer.Typer()
 
@@ -56,8 +59,6 @@ def photographs(
     from experiments.photographs.tours import read_tours
     from services.launcher.client.failure import ExperimentError
     from services.launcher.terminal.output import wide_console, write_json
-    from services.planner.profile_file import profile_of_file
-    from services.planner.profiles import profile_named
 
     if render_example is not None:
         example = render_apartment(render_example, seed)
@@ -68,11 +69,9 @@ def photographs(
         raise ExperimentError("expected --tours DIR, a folder of tours, or --render-example DIR, got neither")
     name, read = pipeline or "sift", read_tours(tours)
     pycolmap = load_pycolmap() if peer is not None else None
-    asked = profile or "default"
-    rules = profile_of_file(Path(asked)) if asked.endswith(".json") else profile_named(asked)
     with (
         wide_console(stderr=True).status("") as status,
-        eyes(name, rules, seed, jobs or os.cpu_count() or 1, status.update) as looking,
+        eyes(name, _rules(profile or "default"), seed, jobs or os.cpu_count() or 1, status.update) as looking,
     ):
         found = measure(read, looking, quick=quick)
         if failures is not None:
@@ -85,3 +84,11 @@ def photographs(
         draw(plot, found)
     show(figures)
     return len(found.links)
+
+
+def _rules(profile: str) -> "Profile":
+    """The planner's rules by name, or those of a file."""
+    from services.planner.profile_file import profile_of_file
+    from services.planner.profiles import profile_named
+
+    return profile_of_file(Path(profile)) if profile.endswith(".json") else profile_named(profile)
