@@ -62,12 +62,11 @@ def measure_peer(
     offs: list[float | None] = []
     for tour in tours:
         began_s = time.perf_counter()
-        found = _headings(pycolmap, tour, tick)
+        found = _headings(pycolmap, tour, seed, tick)
         own = [apart_deg(found[a, b], deg) if (a, b) in found else None for a, b, deg in tour.links()]
         rows.append(_row(tour.file.name, len(tour.paths), own, time.perf_counter() - began_s))
         offs += own
-    pictures = sum(len(tour.paths) for tour in tours)
-    total = _row("total", pictures, offs, sum(row["seconds"] for row in rows))
+    total = _row("total", sum(len(tour.paths) for tour in tours), offs, sum(row["seconds"] for row in rows))
     return {"name": f"pycolmap {pycolmap.__version__}", "tours": rows, "total": total}
 
 
@@ -75,7 +74,7 @@ def _row(name: str, pictures: int, offs: Sequence[float | None], spent_s: float)
     return {"name": name, "pictures": pictures, **heading_figures(offs), "seconds": rounded(spent_s, 1)}
 
 
-def _headings(pycolmap: Any, tour: Tour, tick: Callable[[str], None]) -> Headings:
+def _headings(pycolmap: Any, tour: Tour, seed: int, tick: Callable[[str], None]) -> Headings:
     """Bearing in degrees from each picture to each other one of the same reconstruction."""
     name = tour.file.name
     with tempfile.TemporaryDirectory() as made:
@@ -95,9 +94,12 @@ def _headings(pycolmap: Any, tour: Tour, tick: Callable[[str], None]) -> Heading
         pycolmap.match_exhaustive(
             database,
             matching_options={"rig_verification": True, "skip_image_pairs_in_same_frame": True},
+            verification_options={"ransac": {"random_seed": seed}},
         )
         tick(f"pycolmap, {name}: reconstruction")
-        found = pycolmap.incremental_mapping(database, folder / "crops", folder, MAPPING)
+        found = pycolmap.incremental_mapping(
+            database, folder / "crops", folder, MAPPING | {"random_seed": seed}
+        )
         return {k: v for one in found.values() for k, v in _bearings(one, tour).items()}
 
 
@@ -110,10 +112,9 @@ def _write_crops(pycolmap: Any, tour: Tour, folder: Path) -> Any:
         picture = picture_of(path)
         source = EquirectGrid(picture.shape[1], picture.shape[0])
         for k, view in enumerate(views):
-            file = folder / f"crop{k}" / f"{number:05d}.jpg"
-            file.parent.mkdir(parents=True, exist_ok=True)
+            (folder / f"crop{k}").mkdir(parents=True, exist_ok=True)
             cut = cv2.remap(picture, *view_table(view, source), cv2.INTER_LINEAR, borderMode=cv2.BORDER_WRAP)
-            cv2.imwrite(str(file), cut)
+            cv2.imwrite(str(folder / f"crop{k}" / f"{number:05d}.jpg"), cut)
     params = [views[0].focal_px, views[0].focal_px, side_px / 2.0, side_px / 2.0]
     return pycolmap.Camera(model="PINHOLE", width=side_px, height=side_px, params=params)
 

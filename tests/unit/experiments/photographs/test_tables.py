@@ -54,10 +54,8 @@ def test_ece_weighs_bins_by_their_answers():
 
 
 def test_full_confidence_falls_into_the_last_bin_and_no_answers_into_none():
-    assert calibration([link(0.0, 0.0, 1.0)]) == {
-        "ece": 0.0,
-        "bins": [{"confidence": 1.0, "right": 1.0, "n": 1}],
-    }
+    (last,) = calibration([link(0.0, 0.0, 1.0), link(0.0, 0.0, 0.92)])["bins"]
+    assert last == {"confidence": pytest.approx(0.96), "right": 1.0, "n": 2}
     assert calibration([link(0.0)]) == {"ece": None, "bins": []}
 
 

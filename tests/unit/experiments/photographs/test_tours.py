@@ -5,9 +5,10 @@ import re
 import numpy as np
 import pytest
 
-from experiments.photographs.tour_file import kind_of
+from experiments.photographs.tour_file import TourFile, kind_of
 from experiments.photographs.tours import foreign_pairs, read_tour, read_tours
 from services.launcher.client.failure import ExperimentError
+from tests.readme import REPOSITORY, examples
 
 
 def test_tours_are_found_in_a_folder_and_below(write_tour, tmp_path):
@@ -77,3 +78,8 @@ def test_foreign_pairs_are_all_or_so_many_and_never_of_one_tour():
     some = foreign_pairs(tour_of, 4, rng)
     assert len(set(some)) == 4
     assert set(some) < set(everything)
+
+
+def test_the_file_in_the_documentation_is_one():
+    (shown,) = examples("json", REPOSITORY / "deploy" / "PHOTOGRAPHS.md")
+    assert TourFile.model_validate_json(shown).links[1].bearing_deg == -12.5
