@@ -48,11 +48,12 @@ def two_view(
     limits = settings or TwoViewSettings()
     c, t = checked_matches(current, target)
     planar = estimate_planar(c, t, rng, limits)
-    if not limits.tilting or len(c) < limits.tilting_min_matches:
+    known = cues or Cues.unknown(len(c))
+    if not limits.tilting or float(known.right.sum()) < limits.tilting_min_right:
         return planar
     if _settled(planar, limits) and not _only_leans(planar, c, t, rng):
         return planar
-    return estimate_tilted(c, t, cues or Cues.unknown(len(c)), rng, limits)
+    return estimate_tilted(c, t, known, rng, limits)
 
 
 def _only_leans(planar: TwoViewResult, current: FloatArray, target: FloatArray, rng: Generator) -> bool:

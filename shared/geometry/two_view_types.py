@@ -38,8 +38,8 @@ class TwoViewSettings:
         max_heading_std_rad: above this spread a direction is not worth following, radians; chosen:
             20 degrees, two thirds of a node's twelve directions.
         tilting: the camera may lean: where a level one explains too little, rotation and travel are free.
-        tilting_min_matches: fewer matches than this are not worth the price of it, three times that of level
-            cameras: no node with fewer gets an edge or is driven to.
+        tilting_min_right: matches of which fewer than this are likely right, by their descriptors, are not
+            worth the price of it, three times that of level cameras.
         settled_noise: an answer of level cameras whose residuals spread over more than this share of the
             threshold is too noisy: those of a wrong model fill the band evenly: 1 / sqrt(3) = 0.58.
         settled_near: ... or which leaves more than this share of the matches, plus two, just out of reach;
@@ -60,7 +60,7 @@ class TwoViewSettings:
     max_log_nfa: float = -2.0
     max_heading_std_rad: float = float(np.deg2rad(20.0))
     tilting: bool = True
-    tilting_min_matches: int = 20
+    tilting_min_right: float = 8.0
     settled_noise: float = 0.45
     settled_near: float = 0.15
     settled_share: float = 0.5

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from services.features.pipeline.interfaces import FeatureSet, Matched
+from services.features.pipeline.interfaces import FeatureSet, Matched, Profile
 from shared.geometry.two_view import Cues, TwoViewResult, TwoViewSettings, two_view
 from shared.messages.features import Features
 from shared.messages.matching import NodeMatch
@@ -64,9 +64,13 @@ def cues_of(query: FeatureSet, other: FeatureSet, matched: Matched) -> Cues:
     return Cues(matched.right, np.log(sizes.astype(np.float64)))
 
 
-def two_view_settings(verification_deg: float, *, tilting: bool = True) -> TwoViewSettings:
-    """Defaults with the pipeline's own threshold, degrees, of cameras that may lean or not."""
-    return TwoViewSettings(threshold_rad=float(np.deg2rad(verification_deg)), tilting=tilting)
+def two_view_settings(profile: Profile) -> TwoViewSettings:
+    """Limits of the estimation as a pipeline's profile sets them."""
+    return TwoViewSettings(
+        threshold_rad=float(np.deg2rad(profile.verification_deg)),
+        tilting=profile.tilting,
+        tilting_min_right=profile.promising,
+    )
 
 
 def feature_set(features: Features) -> FeatureSet:

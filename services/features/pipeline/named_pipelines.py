@@ -13,7 +13,15 @@ from services.features.pipeline.plugins import PLUGINS
 PROFILES: dict[str, Profile] = {
     "sift": Profile("sift"),
     "fast": Profile("sift"),
-    "photo": Profile("sift", keypoints=1000, ratio=0.95, crop_deg=35.0, resize=(800, 1600), surroundings=2.0),
+    "photo": Profile(
+        "sift",
+        keypoints=1000,
+        ratio=0.95,
+        crop_deg=35.0,
+        resize=(800, 1600),
+        surroundings=2.0,
+        promising=5.0,
+    ),
     "sift_dense": Profile("sift", keypoints=500),
     "thesis": Profile("sift", keypoints=150),
     "orb": Profile("orb"),

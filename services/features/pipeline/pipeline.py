@@ -30,7 +30,7 @@ class Pipeline:
         self.extractor = create_extractor(profile, runtime)
         self.representation = create_representation(profile)
         self.matcher = create_matcher(profile, self.extractor.distance, runtime)
-        self.verification = two_view_settings(profile.verification_deg, tilting=profile.tilting)
+        self.verification = two_view_settings(profile)
         self._enough_px = profile.resize[1] if profile.resize is not None else None
         self._thumbnail = (thumbnail_width_px, thumbnail_quality)
 
