@@ -31,8 +31,8 @@ class Profile:
         surroundings: side of what SIFT describes, in its own sizes: more tells more, and changes more.
         verification_deg: largest angle off the epipolar plane of a verified match, degrees (decision 0011).
         tilting: the camera may lean: where level ones explain too little, any motion is tried.
-        promising: so many matches must likely be right before cameras that lean are tried: of 400 pairs of the
-            apartment none with fewer than 14 had S above 22, and most pairs of other spots have fewer.
+        promising: so many matches must likely be right before cameras that lean are tried: of 400 pairs of
+            the apartment none with fewer than 14 had S above 22, and most pairs of other spots have fewer.
         detector: of the patch networks: gftt, harris or keynet (kornia's).
         affnet: fit the shape of patches with AffNet; `upright` false turns them with OriNet (appendix A).
     """
