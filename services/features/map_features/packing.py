@@ -3,7 +3,7 @@
     d ~ base + step * code, code in 0..15, base and step for each descriptor
 
 The frame that is looked for stays exact, only the nodes are packed. Root SIFT loses 0.2 % of its verified
-matches by this, TFeat 0.1, MKD 0.8, ALIKED 0.4 (`topnav study scale`), for 72 instead of 136 bytes a keypoint
+matches by this, TFeat 0.1, MKD 0.8, ALIKED 0.4 (`topnav study scale`), for 73 instead of 137 bytes a keypoint
 of root SIFT. Bits are kept as they are.
 """
 
