@@ -47,11 +47,11 @@ def estimate_planar(
     threshold = settings.threshold_rad
     chance, wide_chance = _chance_rates(fit, matches, [threshold, WIDE * threshold])
     evidence = log_nfa(int(fit.mask.sum()), len(c), chance, 2, 2 * settings.pairs)
-    near = _near_misses(fit, matches, chance, wide_chance, threshold)
     if int(fit.mask.sum()) < settings.min_inliers or evidence > settings.max_log_nfa:
-        return replace(refused("inconsistent", fit.mask), near_misses=near)
+        return refused("inconsistent", fit.mask)
     if _only_turned(rotation, fit, chance, settings):
         return _rotation_result(rotation)
+    near = _near_misses(fit, matches, chance, wide_chance, threshold)
     return replace(_accept(fit, matches, chance, evidence, settings), near_misses=near)
 
 

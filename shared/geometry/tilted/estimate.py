@@ -12,13 +12,11 @@ from shared.geometry.evidence import NOISE_FLOOR_RAD, parallax_share
 from shared.geometry.planar_model import PlanarMatches
 from shared.geometry.rotation import fit_rotation
 from shared.geometry.sphere import BoolArray, FloatArray, angle_between_rad, bearings_from_lonlat, wrap_rad
-from shared.geometry.tilted.match_evidence import NOISE_RAD, Cues, evidence, motion_ratio, turn_ratio
-from shared.geometry.tilted.poses import Bearings, Evaluated, Poses, evaluate
+from shared.geometry.tilted.match_evidence import NOISE_RAD, Cues, belongs, evidence, motion_ratio, turn_ratio
+from shared.geometry.tilted.poses import Bearings, Evaluated, Poses, evaluate, yaw_of
 from shared.geometry.tilted.search import search
 from shared.geometry.two_view_types import TwoViewResult, TwoViewSettings, refused
 
-FIRST = 160
-"""Matches that a turn on the spot is looked for among: the likeliest."""
 FAR_SHARES = (0.1, 0.5, 0.9)
 """Shares of what is seen that may be too far to move: the likeliest of them counts."""
 SAME_HEADING_RAD = float(np.deg2rad(20.0))
@@ -77,8 +75,7 @@ def estimate_tilted(
     none = np.zeros(len(current), dtype=np.bool_)
     if len(current) < settings.min_matches:
         return refused("too_few", none)
-    sizes = np.zeros(len(current)) if cues.log_scale is None else cues.log_scale
-    matches = Bearings(bearings_from_lonlat(current).T, bearings_from_lonlat(target).T, sizes)
+    matches = Bearings(bearings_from_lonlat(current).T, bearings_from_lonlat(target).T, cues.log_scale)
     motion = likeliest_motion(matches, PlanarMatches.from_lonlat(current, target), cues, rng)
     if motion is not None and motion.parallax >= settings.min_parallax_nats:
         return _accepted(motion, matches, settings)
@@ -95,11 +92,10 @@ def likeliest_motion(
     found = search(matches, planar, cues, rng)
     if found is None:
         return None
-    scaled = cues.log_scale is not None
     pose = found.poses.of(np.array([0]))
     seen = evaluate(pose, matches)
-    ratio = motion_ratio(seen, NOISE_RAD, scaled=scaled)[0]
-    mask: BoolArray = cues.right * ratio > 1.0 - cues.right
+    ratio = motion_ratio(seen, NOISE_RAD)[0]
+    mask = belongs(cues.right, ratio)
     other = np.abs(wrap_rad(found.poses.heading_rad - found.poses.heading_rad[0])) > SAME_HEADING_RAD
     noise = float(np.sqrt(np.sum(seen.residual[0][mask] ** 2) / max(int(mask.sum()) - 5, 1)))
     level = max(float(np.hypot(*pose.travel[0, :2])), 1e-6)
@@ -119,8 +115,7 @@ def likeliest_motion(
 def _parallax(seen: Evaluated, ratio: FloatArray, matches: Bearings, cues: Cues) -> float:
     """Nats by which a motion, part of the scene being far, is likelier than its rotation without travel."""
     apart = _apart_rad(matches, seen.turned[0])
-    scaled = cues.log_scale is not None
-    far = turn_ratio(apart, matches.log_scale, NOISE_RAD, scaled=scaled)
+    far = turn_ratio(apart, matches.log_scale, NOISE_RAD)
     still = float(evidence(cues.right, far).sum())
     moving = [float(evidence(cues.right, f * far + (1.0 - f) * ratio).sum()) for f in FAR_SHARES]
     return max(moving) - still
@@ -128,19 +123,18 @@ def _parallax(seen: Evaluated, ratio: FloatArray, matches: Bearings, cues: Cues)
 
 def _turn(matches: Bearings, cues: Cues, rng: np.random.Generator) -> tuple[FloatArray, BoolArray, float]:
     """Rotation (3, 3) alone that explains most, the matches that belong to it, and its evidence, nats."""
-    first = np.argsort(-cues.right, kind="stable")[:FIRST]
+    first = cues.likeliest
     rotation, _ = fit_rotation(matches.current.T[first], matches.target.T[first], rng, NOISE_RAD)
     apart = _apart_rad(matches, rotation @ matches.target)
-    ratio = turn_ratio(apart, matches.log_scale, NOISE_RAD, scaled=cues.log_scale is not None)
-    return rotation, cues.right * ratio > 1.0 - cues.right, float(evidence(cues.right, ratio).sum())
+    ratio = turn_ratio(apart, matches.log_scale, NOISE_RAD)
+    return rotation, belongs(cues.right, ratio), float(evidence(cues.right, ratio).sum())
 
 
 def _turned(rotation: FloatArray, mask: BoolArray, matches: Bearings) -> TwoViewResult:
-    yaw = np.arctan2(rotation[1, 0] - rotation[0, 1], rotation[0, 0] + rotation[1, 1])
     return TwoViewResult(
         status="no_baseline",
         heading_rad=None,
-        yaw_rad=float(wrap_rad(yaw)),
+        yaw_rad=float(wrap_rad(yaw_of(rotation))),
         inlier_mask=mask,
         inliers=int(mask.sum()),
         confidence=0.0,

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shared.geometry.sphere import FloatArray
+from shared.geometry.sphere import BoolArray, FloatArray, IndexArray
 from shared.geometry.tilted.poses import Evaluated, Poses
 
 NOISE_RAD = float(np.deg2rad(0.3))
@@ -27,6 +27,8 @@ CHANCE_SR = 5.0
 """Solid angle over which wrong matches spread: the picture without its poles, the horizon preferred."""
 BEHIND = 2.5
 """Noises by which a match may lie on the wrong side of a camera."""
+SEARCHED = 160
+"""Matches that hypotheses are drawn from and tried on, the likeliest ones; the answer is judged on all."""
 TILT_RAD = float(np.deg2rad(4.0))
 """Usual angle between two cameras' verticals: 1.4 degrees on tripods; robots rock by 3."""
 CLIMB_RAD = float(np.deg2rad(8.0))
@@ -45,22 +47,27 @@ class Cues:
     right: FloatArray
     log_scale: FloatArray | None = None
 
+    @property
+    def likeliest(self) -> IndexArray:
+        """Indices of the matches that a search looks at, the likeliest first."""
+        return np.argsort(-self.right, kind="stable")[:SEARCHED]
+
     @classmethod
     def unknown(cls, count: int) -> "Cues":
         """Nothing is known: every other match is right."""
         return cls(np.full(count, 0.5))
 
 
-def motion_ratio(seen: Evaluated, noise_rad: float, *, scaled: bool) -> FloatArray:
+def motion_ratio(seen: Evaluated, noise_rad: float) -> FloatArray:
     """L (K, N) of a motion: how much better it explains each match than chance does."""
     ratio = _tailed(seen.residual, noise_rad) / CHANCE_PER_RAD
-    if scaled:
-        ratio *= _tailed(seen.scale_error, SCALE_NOISE) * CHANCE_SCALE * np.sqrt(2.0 * np.pi)
+    if seen.scale_error is not None:
+        ratio *= _size_ratio(seen.scale_error)
     reach = BEHIND * noise_rad
     return ratio * ((seen.forward >= -reach) & (seen.same_side >= -reach))
 
 
-def turn_ratio(apart_rad: FloatArray, log_scale: FloatArray, noise_rad: float, *, scaled: bool) -> FloatArray:
+def turn_ratio(apart_rad: FloatArray, log_scale: FloatArray | None, noise_rad: float) -> FloatArray:
     """L of a turn on the spot, for matches (..., N) that it leaves `apart_rad` from each other.
 
     It foretells both coordinates, so that it is far stronger where it holds.
@@ -69,9 +76,14 @@ def turn_ratio(apart_rad: FloatArray, log_scale: FloatArray, noise_rad: float, *
     dense = (1.0 - TAIL_SHARE) * np.exp(-0.5 * size**2)
     dense += TAIL_SHARE / TAIL_WIDTH**2 * np.exp(-0.5 * (size / TAIL_WIDTH) ** 2)
     ratio = dense * CHANCE_SR / (2.0 * np.pi * noise_rad**2)
-    if scaled:
-        ratio = ratio * _tailed(log_scale, SCALE_NOISE) * CHANCE_SCALE * np.sqrt(2.0 * np.pi)
+    if log_scale is not None:
+        ratio = ratio * _size_ratio(log_scale)
     return np.asarray(ratio, dtype=np.float64)
+
+
+def belongs(right: FloatArray, ratio: FloatArray) -> BoolArray:
+    """Which matches rather belong to a motion than not: p L > 1 - p."""
+    return np.asarray(right * ratio > 1.0 - right, dtype=np.bool_)
 
 
 def evidence(right: FloatArray, ratio: FloatArray) -> FloatArray:
@@ -82,6 +94,11 @@ def evidence(right: FloatArray, ratio: FloatArray) -> FloatArray:
 def unlikely(poses: Poses) -> FloatArray:
     """Nats (K,) by which tilt and climb are less likely than none."""
     return 0.5 * ((poses.tilt_rad / TILT_RAD) ** 2 + (poses.elevation_rad / CLIMB_RAD) ** 2)
+
+
+def _size_ratio(error: FloatArray) -> FloatArray:
+    """L of changes of size that are so far, ln, from the foretold ones."""
+    return np.asarray(_tailed(error, SCALE_NOISE) * CHANCE_SCALE * np.sqrt(2.0 * np.pi), dtype=np.float64)
 
 
 def _tailed(error: FloatArray, width: float) -> FloatArray:

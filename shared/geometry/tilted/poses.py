@@ -24,18 +24,19 @@ NEAREST_SIN = 0.03
 
 @dataclass(frozen=True, eq=False)
 class Bearings:
-    """Unit bearings of N matches: (3, N) each, and (N,) ln(size in the current view / in the target)."""
+    """Unit bearings (3, N) of N matches, and if known (N,) ln(size in the current view / in the target)."""
 
     current: FloatArray
     target: FloatArray
-    log_scale: FloatArray
+    log_scale: FloatArray | None = None
 
     def __len__(self) -> int:
-        return len(self.log_scale)
+        return int(self.current.shape[1])
 
     def of(self, chosen: IndexArray) -> "Bearings":
         """Those matches only."""
-        return Bearings(self.current[:, chosen], self.target[:, chosen], self.log_scale[chosen])
+        sizes = None if self.log_scale is None else self.log_scale[chosen]
+        return Bearings(self.current[:, chosen], self.target[:, chosen], sizes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,9 +70,14 @@ class Poses:
 
     @property
     def yaw_rad(self) -> FloatArray:
-        """(K,) turns about the vertical of the swing-twist decomposition."""
-        r = self.rotation
-        return np.arctan2(r[:, 1, 0] - r[:, 0, 1], r[:, 0, 0] + r[:, 1, 1])
+        """(K,) turns about the vertical."""
+        return yaw_of(self.rotation)
+
+
+def yaw_of(rotation: FloatArray) -> FloatArray:
+    """Turns (...,) about the vertical of the swing-twist decomposition of rotations (..., 3, 3), radians."""
+    r = rotation
+    return np.arctan2(r[..., 1, 0] - r[..., 0, 1], r[..., 0, 0] + r[..., 1, 1])
 
 
 def upright(heading_rad: FloatArray, yaw_rad: FloatArray) -> Poses:
@@ -92,7 +98,7 @@ class Evaluated:
         residual: (K, N) signed angle off the epipolar plane, radians.
         forward: (K, N) normalised displacement away from t; positive where the depth is positive.
         same_side: (K, N) normalised; negative where the rays lie on opposite sides of the line of travel.
-        scale_error: (K, N) ln of the size ratio less what equation (1) predicts.
+        scale_error: (K, N) ln of the size ratio less what equation (1) predicts; None without sizes.
     """
 
     turned: FloatArray
@@ -100,7 +106,7 @@ class Evaluated:
     residual: FloatArray
     forward: FloatArray
     same_side: FloatArray
-    scale_error: FloatArray
+    scale_error: FloatArray | None
 
 
 def evaluate(poses: Poses, matches: Bearings) -> Evaluated:
@@ -114,17 +120,21 @@ def evaluate(poses: Poses, matches: Bearings) -> Evaluated:
     plane = cross(t[:, :, None], turned)
     residual = (b[0] * plane[:, 0] + b[1] * plane[:, 1] + b[2] * plane[:, 2]) * inverse
     dot = b[0] * turned[:, 0] + b[1] * turned[:, 1] + b[2] * turned[:, 2]
-    sine2 = np.maximum(1.0 - along * along, NEAREST_SIN**2)
-    sine2_turned = np.maximum(1.0 - along_turned * along_turned, NEAREST_SIN**2)
-    nearer = 0.5 * np.log(sine2 / sine2_turned)
     return Evaluated(
         turned,
         norm,
         residual,
         (along - along_turned) * inverse,
         (dot - along * along_turned) * inverse,
-        matches.log_scale - nearer,
+        None if matches.log_scale is None else matches.log_scale - _log_nearer(along, along_turned),
     )
+
+
+def _log_nearer(along: FloatArray, along_turned: FloatArray) -> FloatArray:
+    """ln(d_t / d_c) of equation (1), from the cosines (K, N) of both bearings to the travel."""
+    sine2 = np.maximum(1.0 - along * along, NEAREST_SIN**2)
+    sine2_turned = np.maximum(1.0 - along_turned * along_turned, NEAREST_SIN**2)
+    return np.asarray(0.5 * np.log(sine2 / sine2_turned), dtype=np.float64)
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:

@@ -22,7 +22,6 @@ def refine(
     right: FloatArray,
     noises_rad: Sequence[float],
     *,
-    scaled: bool,
     measured: int = 0,
 ) -> tuple[Poses, FloatArray]:
     """Maximum a posteriori poses, by expectation maximisation.
@@ -35,7 +34,6 @@ def refine(
         matches: N matches.
         right: (N,) probability that each is right.
         noises_rad: noise assumed in each step, from wide to narrow.
-        scaled: whether the matches' sizes are known.
         measured: further steps with the noise that the pose itself leaves.
 
     Returns:
@@ -45,7 +43,7 @@ def refine(
     for k in range(len(noises_rad) + measured):
         seen = evaluate(poses, matches)
         usual = noises_rad[min(k, len(noises_rad) - 1)]
-        ratio = motion_ratio(seen, usual, scaled=scaled)
+        ratio = motion_ratio(seen, usual)
         belongs = right * ratio / (1.0 - right + right * ratio)
         noise = _noise(seen, belongs) if k >= len(noises_rad) else np.full(len(poses), usual)
         poses, normal = _step(poses, matches, seen, belongs, noise)

@@ -12,8 +12,6 @@ from shared.geometry.tilted.poses import Bearings, Poses, evaluate, upright
 from shared.geometry.tilted.refine import refine
 
 # What half and twice of each changes is measured by tests/benchmarks/test_two_view_effort.py.
-FIRST = 160
-"""Matches that the search looks at, the likeliest ones; the answer is judged on all."""
 PAIRS = 600
 """Hypotheses of level cameras."""
 LINES, STARTS, LEFT, RIVALS = 48, 24, 8, 5
@@ -60,29 +58,28 @@ def search(matches: Bearings, planar: PlanarMatches, cues: Cues, rng: np.random.
         cues: what is known of them.
         rng: draws the samples.
     """
-    scaled = cues.log_scale is not None
-    first = np.argsort(-cues.right, kind="stable")[:FIRST]
+    first = cues.likeliest
     near, right = matches.of(first), cues.right[first]
-    starts = _level(near, planar.of(first), right, rng, scaled=scaled)
+    starts = _level(near, planar.of(first), right, rng)
     if starts is None:
         return None
-    poses, score = _refined(starts, near, right, scaled=scaled)
-    if _unexplained(poses, near, right, scaled=scaled):
-        others = _of_five(near, right, rng, scaled=scaled)
+    poses, score = _refined(starts, near, right)
+    if _unexplained(poses, near, right):
+        others = _of_five(near, right, rng)
         if others is not None:
-            more, more_score = _refined(others, near, right, scaled=scaled)
+            more, more_score = _refined(others, near, right)
             poses, score = _joined(poses, more), np.concatenate([score, more_score])
     if float(score.max()) < HOPELESS:
         return None
     kept = poses.of(np.array(_different(poses, score)))
-    kept, covariance = refine(kept, matches, cues.right, FINAL_RAD, scaled=scaled, measured=2)
-    score = _score(kept, matches, cues.right, scaled=scaled)
+    kept, covariance = refine(kept, matches, cues.right, FINAL_RAD, measured=2)
+    score = _score(kept, matches, cues.right)
     order = np.argsort(-score, kind="stable")
     return Found(kept.of(order), score[order], covariance[order])
 
 
 def _level(
-    matches: Bearings, planar: PlanarMatches, right: FloatArray, rng: np.random.Generator, *, scaled: bool
+    matches: Bearings, planar: PlanarMatches, right: FloatArray, rng: np.random.Generator
 ) -> Poses | None:
     """Starts from pairs of matches of level cameras, drawn by how likely they are right."""
     share = right / right.sum()
@@ -94,12 +91,10 @@ def _level(
     heading, heading_target = heading[lines], heading_target[lines]
     both = np.concatenate([heading, heading + np.pi])
     poses = upright(both, np.concatenate([heading - heading_target] * 2))
-    ratio = motion_ratio(evaluate(poses, matches), 0.5 * WIDE_RAD, scaled=scaled)
-    best = np.argsort(-evidence(right, ratio).sum(axis=1), kind="stable")[:STARTS]
-    return poses.of(best)
+    return _best(poses, matches, right, 0.5 * WIDE_RAD, STARTS)
 
 
-def _of_five(matches: Bearings, right: FloatArray, rng: np.random.Generator, *, scaled: bool) -> Poses | None:
+def _of_five(matches: Bearings, right: FloatArray, rng: np.random.Generator) -> Poses | None:
     """Starts from samples of five of the matches that are likely right."""
     sure = np.flatnonzero(right >= SURE)
     samples = sure[np.argsort(rng.random((FIVES, len(sure))), axis=1)[:, :5]]
@@ -107,32 +102,32 @@ def _of_five(matches: Bearings, right: FloatArray, rng: np.random.Generator, *, 
     if len(essentials) == 0:
         return None
     poses = poses_of(essentials)
-    ratio = motion_ratio(evaluate(poses, matches), 0.5 * WIDE_RAD, scaled=scaled)
-    best = np.argsort(-evidence(right, ratio).sum(axis=1), kind="stable")[:STARTS]
-    return poses.of(best)
+    return _best(poses, matches, right, 0.5 * WIDE_RAD, STARTS)
 
 
-def _refined(
-    starts: Poses, matches: Bearings, right: FloatArray, *, scaled: bool
-) -> tuple[Poses, FloatArray]:
-    poses, _ = refine(starts, matches, right, COARSE_RAD, scaled=scaled)
-    ratio = motion_ratio(evaluate(poses, matches), COARSE_RAD[-1], scaled=scaled)
-    best = np.argsort(-evidence(right, ratio).sum(axis=1), kind="stable")[:LEFT]
-    poses, _ = refine(poses.of(best), matches, right, ANNEALED_RAD, scaled=scaled)
-    return poses, _score(poses, matches, right, scaled=scaled)
+def _refined(starts: Poses, matches: Bearings, right: FloatArray) -> tuple[Poses, FloatArray]:
+    poses, _ = refine(starts, matches, right, COARSE_RAD)
+    poses, _ = refine(_best(poses, matches, right, COARSE_RAD[-1], LEFT), matches, right, ANNEALED_RAD)
+    return poses, _score(poses, matches, right)
 
 
-def _score(poses: Poses, matches: Bearings, right: FloatArray, *, scaled: bool) -> FloatArray:
-    ratio = motion_ratio(evaluate(poses, matches), FINAL_RAD[-1], scaled=scaled)
+def _best(poses: Poses, matches: Bearings, right: FloatArray, noise_rad: float, count: int) -> Poses:
+    """The poses with the most evidence, most first, the noise being so large."""
+    ratio = motion_ratio(evaluate(poses, matches), noise_rad)
+    return poses.of(np.argsort(-evidence(right, ratio).sum(axis=1), kind="stable")[:count])
+
+
+def _score(poses: Poses, matches: Bearings, right: FloatArray) -> FloatArray:
+    ratio = motion_ratio(evaluate(poses, matches), FINAL_RAD[-1])
     return np.asarray(evidence(right, ratio).sum(axis=1) - unlikely(poses), dtype=np.float64)
 
 
-def _unexplained(poses: Poses, matches: Bearings, right: FloatArray, *, scaled: bool) -> bool:
+def _unexplained(poses: Poses, matches: Bearings, right: FloatArray) -> bool:
     """Whether many likely matches fit no pose so far: the cameras may lean far from each other."""
     sure = right >= SURE
     if sure.sum() < SURE_COUNT:
         return False
-    fit = motion_ratio(evaluate(poses, matches), FINAL_RAD[-1], scaled=scaled)[:, sure] > 1.0
+    fit = motion_ratio(evaluate(poses, matches), FINAL_RAD[-1])[:, sure] > 1.0
     return bool(fit.mean(axis=1).max() < EXPLAINED)
 
 
