@@ -2,7 +2,7 @@
 
 pytest -q -s tests/benchmarks/test_two_view_effort.py
 
-Synthetic rooms, 16 to 160 matches of which 30 to 85 % are wrong, over 0.1 to 4 m; for the general model the
+Synthetic rooms, 16 to 160 matches of which 30 to 85 % are wrong, over 0.1 to 4 m; for cameras that lean the
 camera is tilted by 5 degrees. `right` is answered within 3 degrees, `wrong` answered otherwise.
 """
 
@@ -12,7 +12,8 @@ import time
 import numpy as np
 import pytest
 
-from shared.geometry import essential, planar, planar_fit, rotation
+from shared.geometry import planar, planar_fit, rotation
+from shared.geometry.tilted import search
 from shared.geometry.two_view import TwoViewSettings, two_view
 from tests.unit.shared.geometry.synthetic_room import error_deg, make_scene
 
@@ -20,16 +21,16 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(1200)]
 
 DISTANCES_M = (0.1, 0.2, 0.5, 1.0, 2.0, 4.0)
 PLANAR = TwoViewSettings(tilting=False)
-GENERAL = TwoViewSettings(fallback_probe=0.0)
+TILTED = TwoViewSettings()
 FIGURES = {
     planar_fit: ("SIGNED", "REFINED", "PARALLAX_REACH", "PARALLAX_FLOOR_RAD", "REACH"),
     planar: ("CHANCE_SHIFTS",),
     PLANAR: ("pairs", "threshold_rad", "min_inliers", "no_baseline_rad", "no_baseline_noise",
              "min_parallax_z", "max_log_nfa", "max_heading_std_rad"),
-    essential: ("CHANCE_SHIFTS", "REFINED"),
+    search: ("PAIRS", "LINES", "STARTS", "LEFT", "RIVALS", "HOPELESS", "WIDE_RAD", "FIVES", "SURE_COUNT"),
     rotation: ("PAIRS",),
-    GENERAL: ("fallback_samples", "fallback_gain", "fallback_min_matches", "fallback_noise", "fallback_near",
-              "fallback_share"),
+    TILTED: ("tilting_min_right", "settled_noise", "settled_near", "settled_share", "min_nats",
+             "min_parallax_nats"),
 }  # fmt: skip
 
 
@@ -72,11 +73,11 @@ def measured(limits, rooms):
     [pytest.param(where, name, id=name) for where, names in FIGURES.items() for name in names],
 )
 def test_half_and_twice(where, name, monkeypatch, keep):
-    general = where in (essential, rotation, GENERAL)
-    rooms = scenes(5.0, 60) if general else scenes(0.0, 200)
+    tilted = where in (search, rotation, TILTED)
+    rooms = scenes(5.0, 60) if tilted else scenes(0.0, 200)
     usual, found = getattr(where, name), {}
     for factor in (0.5, 1.0, 2.0):
-        value, limits = type(usual)(usual * factor), GENERAL if general else PLANAR
+        value, limits = type(usual)(usual * factor), TILTED if tilted else PLANAR
         if isinstance(where, TwoViewSettings):
             limits = dataclasses.replace(limits, **{name: value})
         else:
