@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from simulator.furniture.office import STEEL
 from simulator.furniture.stacks import book_pile
 from simulator.scene.parts import Material, Part, Piece, Rgb
 from simulator.scene.shapes import around, box, detail, post, rounded
 
-STEEL = Material("metal", (176, 178, 182), 4)
 LINEN = Material("fabric", (236, 232, 224), 1)
 
 

@@ -2,12 +2,12 @@
 
 import numpy as np
 
+from simulator.furniture.office import STEEL
 from simulator.furniture.stacks import any_colour, book_pile
 from simulator.scene.parts import Material, Part, Piece, Rgb
 from simulator.scene.shapes import around, box, detail, label, post, rounded
 from simulator.textures.noise import one_of
 
-STEEL = Material("metal", (176, 178, 182), 4)
 DARK = Material("lacquer", (40, 42, 46), 3)
 WHITE = Material("lacquer", (236, 236, 232), 6)
 MUGS: tuple[Rgb, ...] = ((178, 60, 52), (56, 92, 140), (226, 222, 210), (84, 116, 84))

@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from simulator.furniture.office import STEEL
 from simulator.furniture.stacks import any_colour, ornament
 from simulator.scene.parts import Material, Part, Piece, Rgb
 from simulator.scene.shapes import around, box, detail, label, post
 
-STEEL = Material("metal", (176, 178, 182), 4)
 DARK = Material("lacquer", (40, 42, 46), 3)
 
 
