@@ -27,6 +27,7 @@ class MessageMaker:
             angles_rad=tuple(self._simulation.range_angles_rad().tolist()),
             distances_m=tuple(self._simulation.ranges().tolist()),
             max_range_m=self._settings.range_max_m,
+            step_s=self._settings.control_period_s if self._settings.lockstep else None,
         )  # fmt: skip
 
     def frame(self, seq: int, stamp_ns: int) -> Frame:

@@ -88,6 +88,7 @@ class PlaneWorld:
     seq: int = 0
     collisions: int = 0
     driven_m: float = 0.0
+    moved_m: tuple[float, float] = (0.0, 0.0)
     walkers: list["Walker"] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -136,12 +137,13 @@ class PlaneWorld:
             distances_m=tuple(np.where(hits < MAX_RANGE_M, noisy, MAX_RANGE_M)),
             max_range_m=MAX_RANGE_M,
         )
-        return Observation(picture(self.pose, self.seq), ranges)
+        return Observation(picture(self.pose, self.seq), ranges, self.moved_m)
 
     def move(self, steer_rad: float, wheel_speed_radps: float) -> None:
         """Drive one control step; an obstacle stops the robot and counts as a collision."""
         length_m = wheel_speed_radps * WHEEL_RADIUS_M * STEP_S
         heading = self.pose[2] + steer_rad
+        self.moved_m = (length_m * math.cos(steer_rad), length_m * math.sin(steer_rad))
         for _ in range(4):
             x = self.pose[0] + math.cos(heading) * length_m / 4
             y = self.pose[1] + math.sin(heading) * length_m / 4

@@ -17,10 +17,15 @@ Matches = dict[int, NodeMatch]
 
 @dataclass(frozen=True)
 class Observation:
-    """One frame: what it looks like and the distances around."""
+    """One frame: what it looks like, the distances around, and what the robot did since the one before.
+
+    Attributes:
+        moved_m: displacement since then by its own commands or odometry, robot frame.
+    """
 
     features: Features
     ranges: Ranges
+    moved_m: tuple[float, float] = (0.0, 0.0)
 
 
 class Matcher(Protocol):

@@ -6,6 +6,7 @@ import time
 
 from services.planner.control import MissionControl
 from services.planner.mission_kinds import MissionError, mission_kinds
+from services.planner.odometry import CommandedMotion
 from services.planner.ports import Decision, Observation
 from services.planner.profiles import Profile
 from services.planner.settings import PlannerSettings
@@ -17,6 +18,7 @@ from shared.messages.missions import Event, EventValue, MissionKinds, MissionReq
 from shared.messages.sensors import Ranges
 from shared.queries import QueryError, RefusedError, Request
 from shared.topics import (
+    COMMAND,
     ESTOP_STATE,
     EVENT,
     FEATURES,
@@ -47,6 +49,7 @@ class Planner:
         robot = settings.robot
         self._features_in = bus.subscribe(FEATURES, robot=robot)
         self._ranges_in = bus.subscribe(RANGES, robot=robot)
+        self._commands = bus.subscribe(COMMAND, robot=robot)
         self._deltas = bus.subscribe(MAP_DELTA, map="*")
         self._stops = bus.subscribe(ESTOP_STATE, robot=robot)
         self._planners = bus.subscribe(STATUS, robot=robot)
@@ -59,6 +62,7 @@ class Planner:
         self.control = MissionControl(settings, self._profile, self._kinds, bus)
         self._replaced = False
         self._stopped: EStopState | None = None
+        self._motion = CommandedMotion(settings.wheel_radius_m)
         self._features: Features | None = None
         self._ranges: Ranges | None = None
         self._answered: Heading | None = None
@@ -80,6 +84,8 @@ class Planner:
             self._publish_status(now_s)
         for delta in self._deltas.take_all():
             self.control.follow_store(delta)
+        for command in self._commands.take_all():
+            self._motion.follow(command)
         self._ranges = self._ranges_in.take() or self._ranges
         self._features = self._features_in.take() or self._features
         if (
@@ -87,7 +93,8 @@ class Planner:
             and self._ranges is not None
             and self._ready(self._features, self._ranges)
         ):
-            self._answer(Observation(self._features, self._ranges))
+            moved_m = self._motion.until(self._features.stamp_ns, self._ranges.step_s)
+            self._answer(Observation(self._features, self._ranges, moved_m))
         if now_s - self._heartbeat_s > HEARTBEAT_S:
             self._publish_status(now_s)
 

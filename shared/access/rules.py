@@ -88,7 +88,7 @@ STREAMS: dict[Topic[Any], Grant] = {
     topics.RANGES: _grant(BODIES, [Role.DRIVE, Role.PLANNER, *WATCHERS]),
     topics.FEATURES: _grant([Role.FEATURES], [Role.PLANNER, *WATCHERS]),
     topics.HEADING: _grant([Role.PLANNER], [Role.DRIVE, *WATCHERS]),
-    topics.COMMAND: _grant([Role.DRIVE], [*BODIES, *WATCHERS]),
+    topics.COMMAND: _grant([Role.DRIVE], [*BODIES, Role.PLANNER, *WATCHERS]),
     topics.ESTOP_STATE: _grant([Role.DRIVE], [*BODIES, Role.PLANNER, *WATCHERS]),
     topics.ROBOT_ESTOP_STATE: _grant(BODIES, [Role.DRIVE, *WATCHERS]),
     topics.STATUS: _grant([Role.PLANNER], [Role.PLANNER, *WATCHERS]),

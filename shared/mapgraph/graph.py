@@ -73,6 +73,17 @@ class MapGraph:
         """Nodes at most so many edges from `start`, suspended ones excluded; `start` is one of them."""
         return set(nx.single_source_shortest_path_length(self._links(), start, cutoff=hops))
 
+    def nearest(self, start: int, most: int) -> list[int]:
+        """`start` and the nodes that edges join to it, nearest by number of edges first, at most so many."""
+        links = self._links()
+        order, known = [start], {start}
+        for node in order:
+            for neighbour in sorted(links[node]):
+                if neighbour not in known and len(order) < most:
+                    known.add(neighbour)
+                    order.append(neighbour)
+        return order
+
     def components(self) -> int:
         """Number of connected parts, suspended edges excluded."""
         return int(nx.number_connected_components(self._links()))

@@ -42,6 +42,8 @@ class Edge(Part):
         yaw_ab_rad: rotation from a's camera to b's.
         s_min, s_max: thresholds in force when it was made.
         clear: the distance sensors saw free ground all the way.
+        length_m: how far the robot went from one to the other when it made the edge, by its own commands or
+            odometry; None where it did not.
         traversals: times the robot drove it; failures: times it tried in vain.
     """
 
@@ -58,6 +60,7 @@ class Edge(Part):
     s_max: int = Field(default=0, ge=0)
     pipeline: str = ""
     clear: bool = False
+    length_m: float | None = Field(default=None, ge=0.0)
     traversals: int = Field(default=0, ge=0)
     failures: int = Field(default=0, ge=0)
     suspended: bool = False

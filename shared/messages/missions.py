@@ -10,7 +10,15 @@ from shared.messages.features import Features
 
 MissionState = Literal["idle", "running", "paused", "succeeded", "failed", "cancelled"]
 FailureKind = Literal[
-    "", "goal_not_in_map", "lost", "blocked", "cancelled", "no_path", "timeout", "service_lost"
+    "",
+    "goal_not_in_map",
+    "ambiguous",
+    "lost",
+    "blocked",
+    "cancelled",
+    "no_path",
+    "timeout",
+    "service_lost",
 ]
 
 

@@ -49,7 +49,11 @@ class Frame(Message):
 
 
 class Ranges(Message):
-    """Distances from the robot's centre, sector i centred on 30 i degrees, counter-clockwise."""
+    """Distances from the robot's centre, sector i centred on 30 i degrees, counter-clockwise.
+
+    Attributes:
+        step_s: in lockstep, simulated time from one frame to the next: stamps are of the wall clock.
+    """
 
     SCHEMA: ClassVar[str] = "ranges.v1"
 
@@ -62,3 +66,4 @@ class Ranges(Message):
         min_length=SECTORS, max_length=SECTORS, fail_fast=True
     )
     max_range_m: float = Field(gt=0.0, le=1000.0)
+    step_s: float | None = Field(default=None, gt=0.0, le=60.0)

@@ -73,6 +73,7 @@ def edge() -> maps.Edge:
         s_max=60,
         pipeline="sift",
         clear=True,
+        length_m=1.4,
         traversals=2,
         failures=1,
         suspended=True,
@@ -156,7 +157,13 @@ def seen() -> tuple[Message, ...]:
     return (
         frame(),
         sensors.Ranges(
-            **AT, robot="r1", lockstep=True, angles_rad=(0.5,) * 12, distances_m=(2.5,) * 12, max_range_m=5.0
+            **AT,
+            robot="r1",
+            lockstep=True,
+            angles_rad=(0.5,) * 12,
+            distances_m=(2.5,) * 12,
+            max_range_m=5.0,
+            step_s=0.3,
         ),
         features(),
         looks.ExtractRequest(**AT, frame=frame()),

@@ -1,6 +1,6 @@
 """How well a goal picture localises in a map."""
 
-from typing import Any, Literal
+from typing import Any
 
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, ConfigDict
@@ -8,15 +8,16 @@ from pydantic import BaseModel, ConfigDict
 from services.gateway.http.bodies import PICTURE_TYPES
 from services.gateway.state import GatewayDep, MapQuery, RobotPath
 from services.gateway.uploads.goal import Goal, goal_of
-from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
+from services.gateway.uploads.places import Places, Verdict, places_of
+from shared.messages.matching import MatchReply, MatchRequest
 from shared.topics import MATCH
 
 router = APIRouter(tags=["goals"])
 
-BEST_K = 5
+SHOWN = 5
 """Nodes in an answer; chosen: as many as fit beside the picture in the console."""
-SURE = 0.5
-"""Confidence from which on the answer says "found": advice to people (chosen), the planner decides itself."""
+COMPARED = 24
+"""Nodes compared: as many as the planner compares a goal with, so that no rival is missed."""
 
 FILE = {"type": "string", "format": "binary"}
 PICTURE_BODY: dict[str, Any] = {
@@ -56,16 +57,31 @@ class PictureAnswer(BaseModel):
     keypoints: int
 
 
+class PlaceAnswer(BaseModel):
+    """Where the picture can have been taken: nodes of one place, and their matches together."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    nodes: list[int]
+    similarity: int
+    support: int
+
+
 class GoalAnswer(BaseModel):
-    """The best nodes first. found: a node is seen with confidence; weak: only just; not_found: none is."""
+    """The best nodes first.
+
+    found: the picture was taken at one place of the map; ambiguous: at one of several that look alike, see
+    `places`; weak: it resembles nodes less than a picture taken there would; not_found: it resembles none.
+    """
 
     robot: str
     map: str
     map_revision: int
     pipeline: str
     picture: PictureAnswer
-    verdict: Literal["found", "weak", "not_found"]
+    verdict: Verdict
     max_similarity: int
+    places: list[PlaceAnswer]
     nodes: list[NodeAnswer]
 
 
@@ -75,13 +91,13 @@ async def check_goal(
 ) -> GoalAnswer:
     """Say where in the map the uploaded picture was taken."""
     goal = await goal_of(request, gateway, robot)
-    question = MatchRequest(map=map_name, features=goal.features, best_k=BEST_K, with_matches=False)
+    question = MatchRequest(map=map_name, features=goal.features, best_k=COMPARED, with_matches=False)
     timeout_s = gateway.settings.compute_timeout_s
     reply = await gateway.asker_for(robot).ask("features", MATCH, question, timeout_s, robot=robot)
-    return _answer(robot, goal, reply)
+    return _answer(robot, goal, reply, await places_of(gateway, reply))
 
 
-def _answer(robot: str, goal: Goal, reply: MatchReply) -> GoalAnswer:
+def _answer(robot: str, goal: Goal, reply: MatchReply, places: Places) -> GoalAnswer:
     nodes = sorted(reply.results, key=lambda node: (node.inliers, node.confidence), reverse=True)
     return GoalAnswer(
         robot=robot,
@@ -89,15 +105,8 @@ def _answer(robot: str, goal: Goal, reply: MatchReply) -> GoalAnswer:
         map_revision=reply.map_revision,
         pipeline=reply.pipeline,
         picture=PictureAnswer(**goal.header._asdict(), keypoints=len(goal.features.lonlat_rad)),
-        verdict=_verdict(nodes),
+        verdict=places.verdict,
         max_similarity=reply.max_similarity,
-        nodes=[NodeAnswer.model_validate(node) for node in nodes],
+        places=[PlaceAnswer.model_validate(place) for place in places.likely],
+        nodes=[NodeAnswer.model_validate(node) for node in nodes[:SHOWN]],
     )
-
-
-def _verdict(nodes: list[NodeMatch]) -> Literal["found", "weak", "not_found"]:
-    """A picture taken exactly at a node has no baseline, hence no heading: it is found all the same."""
-    agreeing = [node for node in nodes if node.status in ("ok", "no_baseline")]
-    if any(node.confidence >= SURE or node.status == "no_baseline" for node in agreeing):
-        return "found"
-    return "weak" if agreeing else "not_found"

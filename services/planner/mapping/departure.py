@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from services.planner.mapping.back_bearing import BackBearing
 from services.planner.mapping.edges import judge_edges
 from services.planner.mapping.nodes import add_node, is_new_node
+from services.planner.mapping.reach import nodes_nearby
 from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.similarity import ranked, similarity, trusted
@@ -13,6 +14,7 @@ from services.planner.surroundings import free_way_m, hidden_openings, through_g
 from shared.mapgraph.cycle_consistency import far_nodes
 from shared.mapgraph.frontiers import mark_explored, sector_rad
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.displacement import Displacement
 from shared.messages.maps import UpdateNode
 from shared.messages.sensors import Ranges
 
@@ -40,6 +42,8 @@ class Departure:
 
     Attributes:
         heading_rad: where it leads, robot frame; held by the yaw towards the node left.
+        here: where the robot is, by what it did since.
+        unseen: whether the last frame showed nothing of the map.
     """
 
     def __init__(
@@ -50,13 +54,15 @@ class Departure:
         node_id: int,
         sector: int,
         heading_rad: float,
+        start: Displacement,
     ) -> None:
         self._profile, self._maps, self._matcher = profile, maps, matcher
         self.node_id, self.sector, self.heading_rad = node_id, sector, heading_rad
+        self.here = start
         self._back = BackBearing()
         self._steps = self._unseen_frames = 0
         self._retreating = False
-        self.done = False
+        self.done = self.unseen = False
         self.progress = Progress()
 
     def step(self, observation: Observation) -> Decision | NewNode:
@@ -65,12 +71,15 @@ class Departure:
         rules = self._profile.mapping
         matches = self._matcher.match(self._near(), 0)
         origin = matches.get(self.node_id)
+        self.here = self.here.moved(observation.moved_m)
         best = ranked(matches, self._profile)
         s_best = similarity(best[0][1], self._profile) if best else 0
         self.progress = Progress(nearest_node=best[0][0] if best else None, similarity=s_best)
         if origin is not None and trusted(origin, self._profile) and origin.yaw_rad is not None:
             self.heading_rad = math.remainder(sector_rad(self.sector) + origin.yaw_rad, math.tau)
-        if s_best <= rules.s_edge_min:
+            self.here = self.here.turned(origin.yaw_rad, origin.heading_rad)
+        self.unseen = s_best <= rules.s_edge_min
+        if self.unseen:
             return self._out_of_sight(s_best)
         verified = self._profile.sensing.similarity == "verified"
         if verified and not self._back.follows(origin, self.heading_rad, self._profile):
@@ -90,7 +99,7 @@ class Departure:
     def _new_or_known(self, observation: Observation, matches: Matches) -> Decision | NewNode:
         """New unless some node of the whole map is too similar; aliased views make no node known."""
         graph = self._maps.graph
-        edges = judge_edges(graph, observation, matches, self._profile, self.node_id)
+        edges = judge_edges(graph, observation, matches, self._profile, self.node_id, self.here)
         credible = {n: m for n, m in matches.items() if n not in edges.refused or n == self.node_id}
         closes_loop = self._profile.mapping.s_far and far_nodes(graph, edges.admitted, self.node_id)
         if is_new_node(credible, self._profile) or closes_loop:
@@ -124,11 +133,13 @@ class Departure:
         return bool(near) and bool(hidden_openings(ranges, near, self._profile))
 
     def _new_node(self, observation: Observation, matches: Matches) -> Decision | NewNode:
-        edges = judge_edges(self._maps.graph, observation, matches, self._profile, self.node_id)
+        graph = self._maps.graph
+        edges = judge_edges(graph, observation, matches, self._profile, self.node_id, self.here)
         if not edges.admitted:
             return self._close("no view back to be sure of", lost=True)
         self._mark_explored()
-        node_id, refused = add_node(self._maps, observation, edges, self._profile, self.node_id)
+        driven_m = self.here.length_m
+        node_id, refused = add_node(self._maps, observation, edges, self._profile, self.node_id, driven_m)
         count = len(self._maps.graph.neighbours(node_id))
         nearest, match = ranked(matches, self._profile)[0]
         values: dict[str, float | int | str | bool | None] = {
@@ -158,7 +169,9 @@ class Departure:
         """Nodes that may get an edge: the most similar ones, or the newest (thesis section 6.1.1)."""
         newest = self._profile.mapping.edge_window
         if not newest:
-            return self._matcher.match([], self._profile.mapping.edge_candidates)
+            count = self._profile.mapping.edge_candidates
+            around = nodes_nearby(self._maps.graph, self.here, self._profile, count)
+            return self._matcher.match(around, count)
         return self._matcher.match(sorted(self._maps.graph.nodes)[-newest:], 0)
 
     def _near(self) -> list[int]:

@@ -5,8 +5,9 @@ A match becomes an edge when
 1. its similarity is above s_edge_min and two-view geometry is sure of its bearing (`_admitted`),
 2. it is the node the robot came from; or the node is not far away, free ground leads there or the match is
    far above doubt, and enough of the raw matches agree (`_credible`),
-3. one motion alone explains it (`is_ambiguous`),
-4. a neighbour supports it where it would close a loop, and its neighbours do not contradict it
+3. the node lies where the frame sees it, as far as the robot knows what it did (`reach`),
+4. one motion alone explains it (`is_ambiguous`),
+5. a neighbour supports it where it would close a loop, and its neighbours do not contradict it
    (`shared.mapgraph.cycle_consistency`).
 """
 
@@ -15,6 +16,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from services.planner.mapping.reach import elsewhere
 from services.planner.ports import Matches, Observation
 from services.planner.profiles import Profile
 from services.planner.similarity import similarity, trusted
@@ -22,6 +24,7 @@ from services.planner.surroundings import is_clear_from, is_surely_clear
 from shared.geometry.two_view import TwoViewSettings, two_view
 from shared.mapgraph.cycle_consistency import contradicted, supported_by, unsupported_loop_closures
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.displacement import Displacement
 from shared.messages.matching import NodeMatch
 
 CONFIDENCE_MIN = 0.5
@@ -58,7 +61,12 @@ class NewEdges:
 
 
 def judge_edges(
-    graph: MapGraph, observation: Observation, matches: Matches, profile: Profile, driven_from: int | None
+    graph: MapGraph,
+    observation: Observation,
+    matches: Matches,
+    profile: Profile,
+    driven_from: int | None,
+    here: Displacement | None = None,
 ) -> NewEdges:
     """Which edges a new node gets.
 
@@ -68,8 +76,11 @@ def judge_edges(
         matches: the frame against the nodes of the map.
         profile: thresholds.
         driven_from: node the robot came from.
+        here: what it did since it was there.
     """
-    similar = {n: m for n, m in matches.items() if n in graph.nodes and _admitted(m, profile)}
+    known = {n: m for n, m in matches.items() if n in graph.nodes}
+    away = elsewhere(graph, known, here, profile)
+    similar = {n: m for n, m in known.items() if n not in away and _admitted(m, profile)}
     clear = frozenset(
         n
         for n, m in similar.items()
@@ -81,7 +92,7 @@ def judge_edges(
     refused = {} if profile.sensing.similarity == "raw" else _refused(graph, credible, profile, driven_from)
     admitted = {n: m for n, m in credible.items() if n not in refused}
     covered = {n: similar[n] for n in supported_by(graph, similar, set(admitted))}
-    return NewEdges(admitted, clear, refused, covered)
+    return NewEdges(admitted, clear, away | refused, covered)
 
 
 def stands_alone(match: NodeMatch, profile: Profile) -> bool:

@@ -22,7 +22,12 @@ def is_new_node(matches: Matches, profile: Profile) -> bool:
 
 
 def add_node(
-    maps: MapAccess, observation: Observation, edges: NewEdges, profile: Profile, driven_from: int | None
+    maps: MapAccess,
+    observation: Observation,
+    edges: NewEdges,
+    profile: Profile,
+    driven_from: int | None,
+    length_m: float | None = None,
 ) -> tuple[int, tuple[Note, ...]]:
     """Write the frame as a node with its edges, in one transaction.
 
@@ -32,12 +37,15 @@ def add_node(
         edges: the edges it gets.
         profile: thresholds.
         driven_from: node the robot came from; its edge counts as driven.
+        length_m: how far it went from there.
 
     Returns:
         The new node's id, and a note for each edge that was refused.
     """
     node_id = maps.graph.next_id()
     admitted = edges_to(node_id, edges.admitted, edges, profile, driven_from)
+    driven = [edge.model_copy(update={"length_m": length_m}) for edge in admitted if edge.traversals]
+    admitted = [edge for edge in admitted if not edge.traversals] + driven
     features = observation.features
     node = Node(
         node_id=node_id,

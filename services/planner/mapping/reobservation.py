@@ -4,6 +4,7 @@ import math
 
 from services.planner.mapping.edges import judge_edges
 from services.planner.mapping.nodes import edges_to, explored_along
+from services.planner.mapping.reach import standing_at
 from services.planner.ports import MapAccess, Matches, Note, Observation
 from services.planner.profiles import Profile
 from shared.mapgraph.frontiers import frontier_sectors
@@ -35,7 +36,8 @@ def close_known_directions(
     """
     graph, node = maps.graph, maps.graph.nodes[node_id]
     others = {n: m for n, m in matches.items() if n != node_id}
-    judged = judge_edges(graph, observation, others, profile, node_id)
+    here = standing_at(node_id, matches.get(node_id), yaw_rad, profile)
+    judged = judge_edges(graph, observation, others, profile, node_id, here)
     new = {n: m for n, m in (judged.admitted | judged.covered).items() if graph.edge(node_id, n) is None}
     seen = [_turned(edge, node_id, yaw_rad) for edge in edges_to(node_id, new, judged, profile)]
     looked, *changed = explored_along(graph, node, seen, profile)

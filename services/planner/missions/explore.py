@@ -11,6 +11,7 @@ import numpy as np
 from services.planner.mapping.departure import Departure, NewNode
 from services.planner.mapping.edges import NewEdges
 from services.planner.mapping.nodes import add_node
+from services.planner.mapping.reach import nodes_nearby, standing_at
 from services.planner.mapping.reobservation import close_known_directions
 from services.planner.mapping.strategies import ThesisExploration
 from services.planner.mission_kinds import MissionContext, MissionKind, NoParameters
@@ -21,6 +22,7 @@ from services.planner.travel.frontier_destination import FrontierDestination
 from services.planner.travel.machine import Travel
 from services.planner.travel.states import State
 from shared.mapgraph.frontiers import best_sector, sector_rad
+from shared.mapgraph.local.displacement import Displacement
 
 
 class FrontierExploration:
@@ -55,37 +57,50 @@ class FrontierExploration:
         """The only node: random heading (thesis section 4.2)."""
         node_id, _ = add_node(self._maps, observation, NewEdges(), self._profile, None)
         self._head(float(self._rng.uniform(-math.pi, math.pi)))
-        return self._leave(node_id, 0.0, (Note("node_added", "first node of the map", {"node": node_id}),))
+        note = Note("node_added", "first node of the map", {"node": node_id})
+        return self._leave(Displacement(node_id), (note,))
 
     def _arrived(self, observation: Observation, notes: tuple[Note, ...]) -> Decision:
         """At a node with a frontier: what the map has grown by since it was made may have closed some."""
         node_id, yaw_rad = self._destination.reached
-        matches = self._matcher.match([], self._profile.mapping.edge_candidates)
+        count = self._profile.mapping.edge_candidates
+        around = nodes_nearby(self._maps.graph, Displacement(node_id), self._profile, count)
+        matches = self._matcher.match(around, count)
         closed = close_known_directions(self._maps, observation, matches, self._profile, node_id, yaw_rad)
-        return self._leave(node_id, yaw_rad, (*notes, *closed))
+        here = standing_at(node_id, matches.get(node_id), yaw_rad, self._profile)
+        return self._leave(here, (*notes, *closed))
 
-    def _leave(self, node_id: int, yaw_rad: float, notes: tuple[Note, ...]) -> Decision:
+    def _leave(self, here: Displacement, notes: tuple[Note, ...]) -> Decision:
         """Start a departure from a node the robot stands at, or hold when it has no frontier."""
-        self._travel.set_out(node_id)
+        node_id, yaw_rad = here.node_id, -here.yaw_rad
+        self._travel.set_out(here)
         node = self._maps.graph.nodes[node_id]
         sector = best_sector(node, self._heading_rad - yaw_rad)
         if sector is None:
             return Decision("hold", why=f"node {node_id} has no unexplored direction", notes=notes)
         heading_rad = math.remainder(sector_rad(sector) + yaw_rad, math.tau)
-        self._departure = Departure(self._profile, self._maps, self._matcher, node_id, sector, heading_rad)
+        self._departure = Departure(
+            self._profile, self._maps, self._matcher, node_id, sector, heading_rad, here
+        )
         self._head(heading_rad)
         why = f"leaving node {node_id} by direction {sector}"
         return Decision("go", heading_rad, method="frontier", why=why, notes=notes)
 
     def _go_on(self, observation: Observation, departure: Departure) -> Decision:
+        self._travel.tracker.observe(observation)
         result = departure.step(observation)
         self.progress = departure.progress
+        if departure.unseen and self._travel.tracker.was_carried():
+            self._departure = None
+            self._travel.tracker.stand_at(None)
+            return Decision("hold", why="this is another place than a moment ago: looking where I am")
         if isinstance(result, NewNode):
             self._departure = None
             self._head(departure.heading_rad)
-            return self._leave(result.node_id, 0.0, result.notes)
+            return self._leave(Displacement(result.node_id), result.notes)
         if departure.done:
             self._departure = None
+            self._travel.tracker.stand_at(departure.here)
         return result
 
     def _head(self, heading_rad: float) -> None:

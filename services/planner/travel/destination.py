@@ -6,6 +6,7 @@ from typing import Protocol
 
 from services.planner.ports import Matches, Note
 from services.planner.travel.states import Event
+from services.planner.travel.tracking import Tracker
 from shared.mapgraph.graph import EdgeKey
 from shared.messages.features import Features
 from shared.messages.missions import FailureKind
@@ -38,13 +39,11 @@ class Verdict:
     Attributes:
         notes: what it changed.
         failure: why the travel is given up; "" to go on.
-        still_there: whether the robot is believed to be near where it was last seen.
         why: for people, where there is no setback that says it.
     """
 
     notes: tuple[Note, ...] = ()
     failure: FailureKind = ""
-    still_there: bool = True
     why: str = ""
 
 
@@ -86,11 +85,14 @@ class Destination(Protocol):
     def setback(self, setback: Setback) -> Verdict:
         """A path ended early."""
 
-    def refutes_arrival(self, end: int, similarity: int, last: int | None) -> str:
+    def unreachable(self) -> tuple[FailureKind, str]:
+        """Why there is nowhere to go, once there are no targets."""
+
+    def refutes_arrival(self, end: int, similarity: int, tracker: Tracker) -> str:
         """Why the end of the path is not the destination after all; "" confirms it.
 
         Args:
             end: node at which the path ends, or GOAL.
             similarity: of the view and the end.
-            last: node the robot was last seen at.
+            tracker: where the robot is.
         """

@@ -6,10 +6,11 @@ from services.planner.ports import MapAccess, Matcher, Matches, Note
 from services.planner.profiles import Profile
 from services.planner.travel.destination import Setback, Verdict
 from services.planner.travel.edge_experience import EdgeExperience
-from services.planner.travel.localisation import nodes_around
+from services.planner.travel.tracking import Tracker
 from shared.mapgraph.frontiers import frontier_sectors, without_frontiers
 from shared.messages.features import Features
 from shared.messages.maps import UpdateNode
+from shared.messages.missions import FailureKind
 from shared.messages.sensors import Ranges
 
 COMPARED = 5
@@ -100,12 +101,16 @@ class FrontierDestination:
         if self._failures[end] >= FAILURES_MAX:
             self._maps.commit([UpdateNode(node=without_frontiers(self._maps.graph.nodes[end]))])
             notes.append(Note("node_unreachable", f"node {end}: its directions are closed"))
-        return Verdict(tuple(notes), still_there=self._in_vain <= 1)
+        return Verdict(tuple(notes))
 
-    def refutes_arrival(self, end: int, similarity: int, last: int | None) -> str:  # noqa: ARG002
+    def unreachable(self) -> tuple[FailureKind, str]:
+        """All is explored; the mission ends before it asks."""
+        return "no_path", "nothing unexplored is left"
+
+    def refutes_arrival(self, end: int, similarity: int, tracker: Tracker) -> str:  # noqa: ARG002
         """Whether the view belongs to another part of the map."""
-        matches = self._matcher.match([end], COMPARED)
-        if end not in nodes_around(self._maps.graph, matches, self._profile, last):
+        matches = self._matcher.match([end, *tracker.nearby()], COMPARED)
+        if end not in tracker.possible(matches):
             return f"aliased: other nodes resemble this view more than node {end}"
         self._bad_starts, self._in_vain = set(), 0
         match = matches.get(end)

@@ -1,4 +1,4 @@
-"""Where the robot can be, and which nodes it can start from, by a frame compared with the map. Pure."""
+"""Which nodes the robot can start from, by a frame compared with the map. Pure."""
 
 from collections.abc import Collection
 
@@ -6,8 +6,6 @@ from services.planner.ports import Matches
 from services.planner.profiles import Profile
 from services.planner.similarity import apart_rad, ranked, similarity, trusted
 from services.planner.surroundings import is_clear
-from shared.mapgraph.cycle_consistency import FAR_HOPS
-from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.routing import (
     HOP_RAD,
     UNKNOWN_DISPARITY_RAD,
@@ -18,40 +16,6 @@ from shared.mapgraph.routing import (
 )
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
-
-
-def nodes_around(graph: MapGraph, matches: Matches, profile: Profile, last: int | None = None) -> set[int]:
-    """The matched nodes of one part of the map: where the robot can be under perceptual aliasing.
-
-    A robot does not jump: the part round the node it was last seen at counts, as long as one of its nodes
-    resembles the view and it stands at no other node of the map. Without such a node the part counts whose
-    nodes resemble the view most in all: beside the robot several do, each for itself; an aliased one
-    elsewhere stands alone, or its neighbours fit less. Where `s_far` asks for no such care all is one part.
-
-    Args:
-        graph: the map.
-        matches: the current frame against nodes of the map.
-        profile: thresholds.
-        last: where the robot was; None when it was lost or carried.
-    """
-    if not profile.mapping.s_far:
-        return set(matches)
-    seen = {
-        node: similarity(match, profile)
-        for node, match in matches.items()
-        if node in graph.nodes
-        and trusted(match, profile)
-        and similarity(match, profile) > profile.travel.s_via_min
-    }
-    if last in graph.nodes and last is not None:
-        near = graph.within(last, FAR_HOPS) & seen.keys()
-        elsewhere = max((s for node, s in seen.items() if node not in near), default=0)
-        if elsewhere < profile.mapping.s_far and any(
-            seen[node] > profile.mapping.s_edge_min for node in near
-        ):
-            return near
-    parts = [graph.within(node, FAR_HOPS) & seen.keys() for node in sorted(seen)]
-    return max(parts, key=lambda part: sum(seen[node] for node in part), default=set())
 
 
 def starts_in_sight(matches: Matches, ranges: Ranges, profile: Profile) -> dict[int, float]:

@@ -11,11 +11,13 @@ from services.planner.profiles import Profile
 from services.planner.similarity import ranked, similarity
 from services.planner.travel.destination import Destination, Setback
 from services.planner.travel.edge_experience import EdgeExperience
-from services.planner.travel.localisation import edge_cost, in_sight, nodes_around, starts_in_sight
+from services.planner.travel.localisation import edge_cost, in_sight, starts_in_sight
 from services.planner.travel.path_follower import PathFollower
 from services.planner.travel.search import Search, search_back
 from services.planner.travel.states import TRANSITIONS, Event, State
+from services.planner.travel.tracking import Tracker
 from shared.mapgraph.graph import EdgeKey
+from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.routing import GOAL, plan_path
 from shared.messages.missions import FailureKind
 
@@ -41,7 +43,7 @@ class Travel:
         self._destination, self._experience = destination, experience
         self.state, self.reason = State.LOCALISING, ""
         self.last_heading_rad = 0.0
-        self._last: int | None = None
+        self.tracker = Tracker(profile, maps, matcher, certain=destination.picture is None)
         self._unclear: set[EdgeKey] = set()
         self._follower: PathFollower | None = None
         self._search: Search | None = None
@@ -53,14 +55,16 @@ class Travel:
         """Where the travel stands, for the mission's status."""
         return replace(self._progress, travel=self.state.value, travel_reason=self.reason)
 
-    def set_out(self, node_id: int) -> None:
+    def set_out(self, here: Displacement) -> None:
         """The robot stands at a node and will want a new destination."""
         self._change(Event.SET_OUT)
-        self._search, self._last = None, node_id
+        self._search = None
+        self.tracker.stand_at(here)
 
     def step(self, observation: Observation) -> Decision:
         """One frame; the matcher has it already."""
         self._notes = []
+        self.tracker.observe(observation)
         decision = None if self.state is State.FOLLOWING else self._find_way(observation)
         if decision is None:
             decision = self._follow(observation)
@@ -70,17 +74,18 @@ class Travel:
         """Localise and plan; None once there is a path to follow."""
         destination, graph, profile = self._destination, self._maps.graph, self._profile
         pictures = () if destination.picture is None else (destination.picture,)
-        seen = self._matcher.match([], destination.compared, pictures)
+        seen = self._matcher.match(self.tracker.nearby(), destination.compared, pictures)
         goal = seen.pop(GOAL, None)
+        seen = self.tracker.possible(seen)
+        self.tracker.confirm(seen)
         self._notes += destination.localised(seen, observation.ranges)
         if goal is not None and destination.goes_straight() and in_sight(goal, observation.ranges, profile):
             self._set_off([GOAL], Event.GOAL_IN_SIGHT)
             return None
         targets = destination.targets()
         if not targets:
-            return self._give_up("goal_not_in_map", "the goal resembles no node of the map")
-        here = {node: seen[node] for node in nodes_around(graph, seen, profile, self._last)}
-        visible = starts_in_sight(here, observation.ranges, profile)
+            return self._give_up(*destination.unreachable())
+        visible = starts_in_sight(seen, observation.ranges, profile)
         starts, banned = destination.starts(visible), self._experience.banned
         path = plan_path(graph, starts, targets, edge_cost(profile), self._unclear, banned)
         if path:
@@ -89,13 +94,19 @@ class Travel:
             return None
         if visible:
             return self._wait()
-        return self._look_around(here)
+        return self._look_around(seen)
 
     def _set_off(self, path: list[int], event: Event) -> None:
         self._change(event)
         self._search = None
         self._follower = PathFollower(
-            self._profile, self._maps, path, self._destination, self._unclear, self._experience
+            self._profile,
+            self._maps,
+            path,
+            self._destination,
+            self._unclear,
+            self._experience,
+            self.tracker,
         )
 
     def _follow(self, observation: Observation) -> Decision:
@@ -105,14 +116,12 @@ class Travel:
         self._progress = follower.progress
         if event is None:
             self.last_heading_rad = decision.heading_rad
-            if self._progress.nearest_node is not None:
-                self._last = self._progress.nearest_node
             return decision
         self._notes += decision.notes
         why = decision.why
         if event is Event.REACHED:
             refuted = self._destination.refutes_arrival(
-                follower.path[-1], self._progress.similarity, self._last
+                follower.path[-1], self._progress.similarity, self.tracker
             )
             if not refuted:
                 self._change(event)
@@ -129,8 +138,6 @@ class Travel:
         """Learn from what ended the path, and plan again from what the next frame shows."""
         verdict = self._destination.setback(setback)
         self._notes += verdict.notes
-        if not verdict.still_there:
-            self._last = None
         if verdict.failure:
             return self._give_up(verdict.failure, setback.why)
         return Decision("hold", why=f"planning again: {setback.why}")

@@ -9,6 +9,7 @@ from services.planner.travel.destination import Destination
 from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.states import Event
 from services.planner.travel.steady_heading import SteadyHeading
+from services.planner.travel.tracking import Tracker
 from services.planner.travel.waypoints import (
     has_arrived,
     is_at,
@@ -52,9 +53,10 @@ class PathFollower:
         destination: Destination,
         unclear: Collection[EdgeKey],
         experience: EdgeExperience,
+        tracker: Tracker,
     ) -> None:
         self._profile, self._maps, self._destination = profile, maps, destination
-        self._unclear, self._experience = unclear, experience
+        self._unclear, self._experience, self._tracker = unclear, experience, tracker
         self.path, self.index = path, 0
         self._strict = is_strict(profile)
         self._unseen_frames = 0
@@ -126,7 +128,11 @@ class PathFollower:
     def _compare(self, matcher: Matcher) -> dict[int, NodeMatch]:
         ahead = self.path[self.index : self.index + WINDOW]
         picture = self._destination.picture
-        return matcher.match([n for n in ahead if n != GOAL], targets=() if picture is None else (picture,))
+        seen = matcher.match([n for n in ahead if n != GOAL], targets=() if picture is None else (picture,))
+        goal = {GOAL: seen.pop(GOAL)} if GOAL in seen else {}
+        possible = self._tracker.possible(seen)
+        self._tracker.confirm(possible)
+        return {**possible, **goal}
 
     def _advance(self, matches: dict[int, NodeMatch], ranges: Ranges) -> tuple[Note, ...]:
         """Go on to the latest waypoint that may be headed for; by the thesis only to the next."""

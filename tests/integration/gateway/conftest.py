@@ -26,7 +26,7 @@ from tests.integration.gateway.gateway_process import (
     send,
     started,
 )
-from tests.integration.gateway.standins import FeatureService, Peer, Planner, served, store_app
+from tests.integration.gateway.standins import FeatureService, MapStore, Peer, Planner, served, store_app
 
 Stored = tuple[int, list[tuple[str, str]]]
 """The map store's port and what it was asked: method and path."""
@@ -55,9 +55,9 @@ def robot_bus(endpoint: str) -> Iterator[Bus]:
 
 @pytest.fixture(scope="module")
 def features(endpoint: str) -> Iterator[FeatureService]:
-    """The feature service's stand-in."""
+    """The feature service's stand-in, beside that of the map store."""
     service = FeatureService()
-    with Peer(endpoint, "features", service.setup):
+    with Peer(endpoint, "map_store", MapStore().setup), Peer(endpoint, "features", service.setup):
         yield service
 
 

@@ -32,13 +32,14 @@ def test_a_raw_picture_is_localised_best_node_first(
     assert body["verdict"] == "found"
     assert [node["node_id"] for node in body["nodes"]] == [7, 3]
     assert body["nodes"][0]["inliers"] == 71
+    assert body["places"] == [{"nodes": [7], "similarity": 71, "support": 71}]
     assert body["nodes"][0]["heading_rad"] == 0.5
     assert body["picture"] == {"format": kind.lower(), "width_px": 256, "height_px": 128, "keypoints": 40}
     frame = features.extracted[-1].frame
     assert (frame.encoding, frame.width_px, frame.height_px) == ("bgr8", 256, 128)
     assert frame.data[2] > 190 > 20 > frame.data[0]  # red comes last
     question = features.matched[-1]
-    assert (question.map, question.best_k, question.with_matches) == ("flat", 5, False)
+    assert (question.map, question.best_k, question.with_matches) == ("flat", 24, False)
     assert question.features is not None
 
 

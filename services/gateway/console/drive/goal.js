@@ -96,7 +96,7 @@ export class Goal {
         same ? TEXT.sameSpot : trust, same ? TEXT.here : node.heading_rad === null ? "–" : side(node.heading_rad)];
     });
     $("goal-answer").replaceChildren(
-      html("p", { class: `verdict ${answer.verdict}` }, TEXT.verdict[answer.verdict]),
+      html("p", { class: `verdict ${answer.verdict}` }, TEXT.verdict[answer.verdict], TEXT.places(answer.places)),
       rows.length ? table(TEXT.goalColumns, rows) : html("p", { class: "answer" }, TEXT.noNode),
     );
     $("go").disabled = false;

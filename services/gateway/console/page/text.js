@@ -25,9 +25,11 @@ export const TEXT = {
     `similarity ${s.similarity}${s.via_points.length ? `, via ${s.via_index + 1} of ${s.via_points.length}` : ""}`,
   verdict: {
     found: "The map knows this place.",
+    ambiguous: "Several places of the map look like this.",
     weak: "The map may know this place, but is not sure.",
     not_found: "The map does not know this place.",
   },
+  places: (places) => (places.length > 1 ? ` Near node ${places.map((place) => place.nodes[0]).join(", or ")}.` : ""),
   noMap: "There is no map yet: explore first.",
   comparing: "Comparing with the map …",
   noNode: "No node to compare with.",

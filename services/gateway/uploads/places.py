@@ -1,0 +1,58 @@
+"""Where in the map a picture was taken: the places that its matches speak for."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from services.gateway.state import Gateway
+from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.claims import Claim, claim_of
+from shared.mapgraph.local.hypotheses import Hypothesis, hypotheses, is_plain, likely, typical_similarity
+from shared.messages.maps import MapRequest
+from shared.messages.matching import MatchReply
+from shared.topics import MAP
+
+RAD_PER_M = 0.16
+"""Disparity by distance, 9 degrees a metre indoors, where no edge of the map was driven that would say it."""
+INLIERS_MIN = 22
+"""Fewer prove nothing: no bearing of a pair with more was wrong by 20 degrees (`topnav calibrate`)."""
+
+Verdict = Literal["found", "ambiguous", "weak", "not_found"]
+
+
+@dataclass(frozen=True)
+class Places:
+    """Where a picture can have been taken, and what people are told; the planner decides itself.
+
+    Attributes:
+        likely: the likeliest first.
+    """
+
+    verdict: Verdict
+    likely: list[Hypothesis]
+
+
+async def places_of(gateway: Gateway, reply: MatchReply) -> Places:
+    """Where the picture of an answer can have been taken.
+
+    Raises:
+        ProblemError: the map cannot be read.
+    """
+    timeout_s = gateway.settings.compute_timeout_s
+    claims = {
+        m.node_id: c for m in reply.results if m.inliers > INLIERS_MIN and (c := claim_of(m)) is not None
+    }
+    if not claims:
+        agreeing = any(match.status in ("ok", "no_baseline") for match in reply.results)
+        return Places("weak" if agreeing else "not_found", [])
+    wish = MapRequest(action="read")
+    found = await gateway.asker.ask("map_store", MAP, wish, timeout_s, map=reply.map)
+    return await gateway.work(lambda: judged(MapGraph(found.nodes, found.edges), claims))
+
+
+def judged(graph: MapGraph, claims: Mapping[int, Claim]) -> Places:
+    """The places that claims speak for."""
+    places = hypotheses(graph, claims, RAD_PER_M)
+    plain = is_plain(places, typical_similarity(graph))
+    rivals = len(likely(places)) > 1
+    return Places("ambiguous" if rivals else "found" if plain else "weak", likely(places))

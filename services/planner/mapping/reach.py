@@ -1,0 +1,47 @@
+"""Which nodes a frame can be looking at, by what the robot did since the last one. Pure."""
+
+from services.planner.ports import Matches
+from services.planner.profiles import Profile
+from services.planner.similarity import apart_rad, trusted
+from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.claims import Claim, claim_of
+from shared.mapgraph.local.displacement import Displacement, seen_from
+from shared.mapgraph.local.hypotheses import NEAR_NODES
+from shared.mapgraph.local.reach import LOOP_NODES, nearby, out_of_reach
+from shared.messages.matching import NodeMatch
+
+
+def claims(matches: Matches, profile: Profile) -> dict[int, Claim]:
+    """What a frame claims of nodes, where two-view geometry is sure of it."""
+    return {node: found for node, match in matches.items() if (found := _claim(match, profile)) is not None}
+
+
+def elsewhere(
+    graph: MapGraph, matches: Matches, here: Displacement | None, profile: Profile, most: int = LOOP_NODES
+) -> dict[int, str]:
+    """Nodes that lie elsewhere than the frame claims, and why; none where nobody knows where it was taken."""
+    if here is None or profile.sensing.similarity == "raw":
+        return {}
+    return out_of_reach(graph, claims(matches, profile), here, profile.sensing.disparity_rad_per_m, most)
+
+
+def nodes_nearby(graph: MapGraph, here: Displacement | None, profile: Profile, count: int) -> list[int]:
+    """Nodes around where the robot is, to be compared with its view whatever else resembles it more."""
+    if here is None or profile.sensing.similarity == "raw":
+        return []
+    return nearby(graph, here, profile.sensing.disparity_rad_per_m, count, NEAR_NODES)
+
+
+def standing_at(node_id: int, match: NodeMatch | None, yaw_rad: float, profile: Profile) -> Displacement:
+    """Where a robot is that travelled to a node: about there, as far off as the view's disparity says."""
+    heading_rad = match.heading_rad if match is not None else None
+    disparity_rad = match.disparity_rad if match is not None else None
+    return seen_from(
+        node_id, heading_rad, yaw_rad, (disparity_rad or 0.0) / profile.sensing.disparity_rad_per_m
+    )
+
+
+def _claim(match: NodeMatch, profile: Profile) -> Claim | None:
+    if not trusted(match, profile):
+        return None
+    return claim_of(match, apart_rad(match.disparity_rad or 0.0, match.inliers, profile))

@@ -1,0 +1,157 @@
+"""Where the robot is while it travels: the last node it surely saw, and what it did since.
+
+A robot does not jump. What a frame claims of nodes that lie elsewhere is perceptual aliasing, however alike
+they look. Only a robot that was carried is elsewhere: then this frame does not resemble the one before it, or
+the robot has looked in vain for long.
+"""
+
+import logging
+from dataclasses import replace
+
+from services.planner.mapping.reach import claims, elsewhere, nodes_nearby, standing_at
+from services.planner.ports import MapAccess, Matcher, Matches, Observation
+from services.planner.profiles import Profile
+from services.planner.similarity import ranked, similarity, trusted
+from shared.mapgraph.local.displacement import Displacement
+from shared.mapgraph.local.hypotheses import NEAR_NODES, Hypothesis, hypotheses, likely
+from shared.mapgraph.routing import GOAL
+from shared.messages.features import Features
+from shared.messages.matching import NodeMatch
+
+PATIENCE_FRAMES = 40
+"""Frames that show nothing within reach after which the robot must have been carried, however smoothly;
+chosen: 5 m of search, twice the way on which it can have gone astray by itself."""
+
+SEEN_SHARE = 0.5
+"""Error of the distance to a node by disparity: things are near here and far there."""
+SEEN_M = 0.15
+"""And at least this much: where the robot believes to stand at a node."""
+
+COMPARED = 8
+"""Nodes around the robot that are compared with its view; chosen: as many as a goto compares."""
+
+log = logging.getLogger(__name__)
+
+
+class Tracker:
+    """Follows one robot through one map.
+
+    Args:
+        profile: thresholds.
+        maps: the map.
+        matcher: compares frames.
+        certain: only a place without rivals counts where nobody knows where the robot is: one that maps would
+            join two places for good.
+
+    Attributes:
+        here: where it is relative to a node; None while nobody knows.
+    """
+
+    def __init__(self, profile: Profile, maps: MapAccess, matcher: Matcher, *, certain: bool) -> None:
+        self._profile, self._maps, self._matcher = profile, maps, matcher
+        self._certain = certain
+        self._strict = profile.sensing.similarity == "raw"
+        self._lost_frames = 0
+        self._now: Features | None = None
+        self._before: Features | None = None
+        self.here: Displacement | None = None
+
+    def observe(self, observation: Observation) -> None:
+        """A new frame, and how far the robot went since the one before."""
+        self._before, self._now = self._now, observation.features
+        if self.here is not None:
+            self.here = self.here.moved(observation.moved_m)
+
+    def nearby(self) -> list[int]:
+        """Nodes around where the robot is."""
+        return nodes_nearby(self._maps.graph, self.here, self._profile, COMPARED)
+
+    def stand_at(self, here: Displacement | None) -> None:
+        """It is known where the robot is, or not any more."""
+        self.here, self._lost_frames = here, 0
+
+    def possible(self, matches: Matches) -> Matches:
+        """The matches that can be what they claim: those within reach, or of the likeliest place."""
+        graph = self._maps.graph
+        if self._strict:
+            return matches
+        if self.here is not None and self.here.node_id in graph.nodes:
+            near = set(graph.nearest(self.here.node_id, NEAR_NODES))
+            refused = elsewhere(graph, matches, self.here, self._profile, NEAR_NODES)
+            within = {node: match for node, match in matches.items() if node in near and node not in refused}
+            if self._shows_any(within):
+                self._lost_frames = 0
+                return self._agreeing(within)
+            self._lost_frames += 1
+            if not self._is_away():
+                return within
+        return self._likeliest(matches)
+
+    def confirm(self, matches: Matches) -> None:
+        """Reckon from the node that the frame shows best, where that is surer than what was driven since.
+
+        Args:
+            matches: those that are possible.
+        """
+        graph = self._maps.graph
+        seen = [(n, m) for n, m in ranked(matches, self._profile) if n in graph.nodes and self._is_sure(m)]
+        if not seen:
+            return
+        best = min((_displacement(node, match, self._profile) for node, match in seen), key=_spread)
+        if self.here is None or best.spread_m <= self.here.spread_m or self.here.node_id not in graph.nodes:
+            self.here = best
+        elif self.here.node_id in matches and (yaw := matches[self.here.node_id].yaw_rad) is not None:
+            self.here = replace(self.here, yaw_rad=-yaw)
+
+    def was_carried(self) -> bool:
+        """Whether this frame shows another place than the one before it."""
+        if self._before is None:
+            return False
+        match = self._matcher.match([], 0, (self._before,)).get(GOAL)
+        return match is None or not self._is_sure(match)
+
+    def _is_away(self) -> bool:
+        """Whether the robot is not where its own motion says; that is forgotten then."""
+        carried = self.was_carried()
+        if not carried and self._lost_frames < PATIENCE_FRAMES:
+            return False
+        why = "the view changed at once" if carried else f"nothing seen for {self._lost_frames} frames"
+        log.info("%s: no longer about node %d", why, self.here.node_id if self.here is not None else -1)
+        self.stand_at(None)
+        return True
+
+    def _agreeing(self, within: Matches) -> Matches:
+        """Without those that put the robot elsewhere than most of them do, though they are in reach."""
+        places = self._places(within)
+        away = {node for place in places[1:] for node in place.nodes}
+        return {node: match for node, match in within.items() if node not in away}
+
+    def _likeliest(self, matches: Matches) -> Matches:
+        """Of several places that look alike the one that resembles the view most."""
+        found = likely(self._places(matches))
+        if not found or (self._certain and len(found) > 1):
+            return {}
+        log.info("about node %d, by what is seen", found[0].nodes[0])
+        return {node: matches[node] for node in found[0].nodes}
+
+    def _places(self, matches: Matches) -> list[Hypothesis]:
+        sure = {node: match for node, match in matches.items() if self._is_sure(match)}
+        sights = claims(sure, self._profile)
+        return hypotheses(self._maps.graph, sights, self._profile.sensing.disparity_rad_per_m)
+
+    def _shows_any(self, matches: Matches) -> bool:
+        return any(self._is_sure(match) for match in matches.values())
+
+    def _is_sure(self, match: NodeMatch) -> bool:
+        enough = similarity(match, self._profile) > self._profile.travel.s_via_min
+        return enough and trusted(match, self._profile)
+
+
+def _displacement(node_id: int, match: NodeMatch, profile: Profile) -> Displacement:
+    """Where the frame is by what it sees of one node."""
+    here = standing_at(node_id, match, match.yaw_rad or 0.0, profile)
+    return replace(here, spread_m=SEEN_SHARE * here.length_m + SEEN_M)
+
+
+def _spread(here: Displacement) -> float:
+    return here.spread_m

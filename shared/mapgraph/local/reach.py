@@ -1,0 +1,106 @@
+"""Which nodes a frame can be looking at, by where it was taken. Pure.
+
+The edges around the node that the robot came from say where the others lie relative to it. A place that
+repeats, such as the next of many equal desks, claims to be seen from elsewhere: a period further. However
+well it resembles, that is out of reach; and yaws round a loop must close.
+"""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.claims import Claim
+from shared.mapgraph.local.displacement import Displacement
+from shared.mapgraph.local.relative_poses import RelativePose, relative_poses
+from shared.mapgraph.local.sights import metres_per_rad
+
+STDS = 3.0
+"""A sight further than so many standard deviations from where its node lies is refused; the usual three."""
+YAW_RAD = math.radians(5.0)
+"""Yaws may differ by so much more: no true edge of four worlds and an office missed by more than 3
+degrees."""
+BEARING_RAD = math.radians(4.0)
+"""Error of the bearing of a sight, generous: what stands near bends it."""
+LENGTH_FACTOR = 2.0
+"""A node may be so many times nearer or further than its disparity says: things are near here and far
+there."""
+SPOT_M = 0.4
+"""Where no baseline is seen the node is this near; and what a length is uncertain by in any case."""
+LOOP_NODES = 200
+"""Nodes reckoned with where a loop may close; chosen: 150 m of way, in 30 ms."""
+
+
+def out_of_reach(
+    graph: MapGraph,
+    claims: Mapping[int, Claim],
+    here: Displacement,
+    rad_per_m: float,
+    most: int = LOOP_NODES,
+) -> dict[int, str]:
+    """Nodes that lie elsewhere than the frame claims, and why.
+
+    Args:
+        graph: the map without the frame.
+        claims: by node.
+        here: where the frame was taken; without its node in the map nothing is known.
+        rad_per_m: disparity by distance, until driven edges say it better.
+        most: nodes of the map reckoned with; of those further off nothing is known, and none is refused.
+    """
+    if here.node_id not in graph.nodes or not claims:
+        return {}
+    scale = metres_per_rad(graph, 1.0 / rad_per_m)
+    poses = relative_poses(graph, here.node_id, claims, scale, most)
+    judged = {
+        node: _contradiction(poses[node], c, here, scale) for node, c in claims.items() if node in poses
+    }
+    return {node: f"node {node} {why}" for node, why in judged.items() if why}
+
+
+def nearby(graph: MapGraph, here: Displacement, rad_per_m: float, count: int, most: int) -> list[int]:
+    """The nodes nearest to a frame, by where they lie, not by what they look like.
+
+    Args:
+        graph: the map.
+        here: where the frame was taken.
+        rad_per_m: as for `out_of_reach`.
+        count: of nodes at most.
+        most: nodes reckoned with, nearest by number of edges first.
+    """
+    if here.node_id not in graph.nodes:
+        return []
+    scale, around = metres_per_rad(graph, 1.0 / rad_per_m), graph.nearest(here.node_id, most)
+    poses = relative_poses(graph, here.node_id, around, scale, most)
+    at = np.array([here.x_m, here.y_m])
+    return sorted(poses, key=lambda node: (float(np.linalg.norm(poses[node].position_m - at)), node))[:count]
+
+
+def _contradiction(pose: RelativePose, claim: Claim, here: Displacement, scale: float) -> str:
+    """Why the node cannot be where the frame sees it; "" when it can."""
+    yaw_miss = abs(math.remainder(here.yaw_rad + claim.yaw_rad - pose.yaw_rad, math.tau))
+    if yaw_miss > YAW_RAD + STDS * pose.yaw_std_rad:
+        return f"would be turned by {math.degrees(yaw_miss):.0f} degrees: yaws round the loop do not close"
+    gap = pose.position_m - np.array([here.x_m, here.y_m])
+    covariance = pose.covariance_m2 + here.spread_m**2 * np.eye(2)
+    far_m = float(np.linalg.norm(gap))
+    if claim.heading_rad is None:
+        spread_m = math.hypot(SPOT_M, _std(covariance, gap / max(far_m, 1e-6)))
+        return f"is {far_m:.1f} m from here, seen as this very spot" if far_m > STDS * spread_m else ""
+    angle_rad = here.yaw_rad + claim.heading_rad
+    along = np.array([math.cos(angle_rad), math.sin(angle_rad)])
+    across = np.array([-along[1], along[0]])
+    claimed_m = claim.disparity_rad * scale
+    least_m, most_m = claimed_m / LENGTH_FACTOR - SPOT_M, claimed_m * LENGTH_FACTOR + SPOT_M
+    ahead_m, aside_m = float(gap @ along), float(gap @ across)
+    beyond = max(least_m - ahead_m, ahead_m - most_m, 0.0) / max(_std(covariance, along), 1e-6)
+    bearing_m = max(BEARING_RAD, claim.heading_std_rad) * far_m
+    aside = aside_m / math.hypot(_std(covariance, across), bearing_m, SPOT_M / STDS)
+    if math.hypot(beyond, aside) <= STDS:
+        return ""
+    return f"is {far_m:.1f} m from here, seen {claimed_m:.1f} m away and {abs(aside_m):.1f} m aside"
+
+
+def _std(covariance: npt.NDArray[np.float64], axis: npt.NDArray[np.float64]) -> float:
+    return float(np.sqrt(axis @ covariance @ axis))

@@ -1,0 +1,151 @@
+"""Where the nodes around one lie, from bearings, yaws and driven lengths: a pose graph in the plane. Pure.
+
+Bearings between nodes fix the shape of a map up to its scale (parallel rigidity); lengths that the robot
+drove give the scale, and hold together what no third node sees. Yaws are solved first, then positions are
+linear: for an edge with unit direction u and normal n in the root's frame
+
+    n . (p_b - p_a) = 0 +- bearing error times length,    u . (p_b - p_a) = length +- length error,
+
+by least squares with Cauchy weights, so that a wrong edge bends little. The inverse of the normal matrix is
+the covariance of the positions relative to the root.
+"""
+
+from collections import deque
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.differences import Differences
+from shared.mapgraph.local.sights import LocalSight, sights_among
+
+FloatArray = npt.NDArray[np.float64]
+IndexArray = npt.NDArray[np.intp]
+
+BEARING_RAD = float(np.deg2rad(1.5))
+"""Error of an edge's bearing; of true edges 99 % are within 2 degrees (`topnav explore`)."""
+YAW_RAD = float(np.deg2rad(0.7))
+"""Error of an edge's yaw; triangles of true edges miss by 1.1 degrees at most."""
+POINT_M = 0.05
+"""What no position is better than: nodes are pictures of a robot that moves."""
+ROUNDS = 3
+"""Of reweighting; the answer then moves by centimetres."""
+CAUCHY = 3.0
+"""Standard deviations at which a measurement counts half: the usual scale of Cauchy weights."""
+
+
+@dataclass(frozen=True)
+class RelativePose:
+    """A node as from the root.
+
+    Attributes:
+        position_m: (2,) in the root's camera frame, x ahead, y left.
+        covariance_m2: (2, 2) of the position.
+        yaw_rad: of the node's camera in the root's frame; yaw_std_rad: its error.
+    """
+
+    position_m: FloatArray
+    covariance_m2: FloatArray
+    yaw_rad: float
+    yaw_std_rad: float
+
+
+def relative_poses(
+    graph: MapGraph, root: int, wanted: Collection[int], metres_per_rad: float, most: int
+) -> dict[int, RelativePose]:
+    """Poses of the wanted nodes that edges join to `root`.
+
+    Args:
+        graph: the map; suspended edges do not count.
+        root: the node to start from.
+        wanted: whose poses are asked for; those out of the part reckoned with are left out.
+        metres_per_rad: rough length of an edge that was not driven, by its disparity.
+        most: nodes to reckon with, nearest by number of edges first.
+    """
+    order = graph.nearest(root, most)
+    index = {node: i for i, node in enumerate(order)}
+    sights = sights_among(graph, index, metres_per_rad)
+    asked = sorted(node for node in set(wanted) if node in index)
+    rows = np.array([index[node] for node in asked], dtype=np.intp)
+    yaws, yaw_std = _solve_yaws(len(order), sights, rows)
+    places, covariance = _solve_positions(len(order), sights, yaws, rows)
+    return {
+        node: RelativePose(places[index[node]], covariance[k], float(yaws[index[node]]), float(yaw_std[k]))
+        for k, node in enumerate(asked)
+    }
+
+
+def _solve_yaws(count: int, sights: Sequence[LocalSight], rows: IndexArray) -> tuple[FloatArray, FloatArray]:
+    """Yaw of each node relative to the first, and the standard deviations of some."""
+    yaws = np.zeros(count)
+    for sight, forward in _tree(count, sights):
+        known, new = (sight.a, sight.b) if forward else (sight.b, sight.a)
+        yaws[new] = yaws[known] + (sight.yaw_rad if forward else -sight.yaw_rad)
+    if not sights:
+        return yaws, np.zeros(len(rows))
+    equations = Differences(_ends(sights), np.ones((len(sights), 1)), count)
+    measured, weight = np.array([s.yaw_rad for s in sights]), np.ones(len(sights))
+    for _ in range(ROUNDS):
+        residual = np.remainder(measured - equations.of(yaws[:, None]) + np.pi, 2.0 * np.pi) - np.pi
+        weight = _cauchy(residual / YAW_RAD) / YAW_RAD**2
+        yaws = yaws + equations.step(weight, residual)[:, 0]
+    variance = equations.covariance(weight, rows)[:, 0, 0]
+    return yaws, np.sqrt(np.maximum(variance, 0.0))
+
+
+def _solve_positions(
+    count: int, sights: Sequence[LocalSight], yaws: FloatArray, rows: IndexArray
+) -> tuple[FloatArray, FloatArray]:
+    """(N, 2) positions in the frame of the first node, and (M, 2, 2) covariances of some."""
+    places = np.zeros((count, 2))
+    for sight, forward in _tree(count, sights):
+        step = sight.length_m * sight.direction(yaws[sight.a])
+        known, new = (sight.a, sight.b) if forward else (sight.b, sight.a)
+        places[new] = places[known] + (step if forward else -step)
+    if not sights:
+        return places, np.zeros((len(rows), 2, 2))
+    ends, along = _ends(sights), np.stack([s.direction(yaws[s.a]) for s in sights])
+    length, spread = np.array([s.length_m for s in sights]), np.array([s.spread_m for s in sights])
+    blind = np.array([s.bearing_rad is None for s in sights])
+    across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    equations = Differences(np.tile(ends, (2, 1)), np.concatenate([across, along]), count)
+    wanted, weight = np.concatenate([np.zeros(len(sights)), length]), np.ones(2 * len(sights))
+    for _ in range(ROUNDS):
+        apart = np.maximum(np.linalg.norm(places[ends[:, 1]] - places[ends[:, 0]], axis=1), length)
+        aside = np.where(blind, spread, np.hypot(BEARING_RAD * apart, POINT_M))
+        residual, scale = wanted - equations.of(places), np.concatenate([aside, spread])
+        weight = _cauchy(residual / scale) / scale**2
+        places = places + equations.step(weight, residual)
+    return places, equations.covariance(weight, rows)
+
+
+def _ends(sights: Sequence[LocalSight]) -> IndexArray:
+    return np.array([(s.a, s.b) for s in sights], dtype=np.intp)
+
+
+def _tree(count: int, sights: Sequence[LocalSight]) -> list[tuple[LocalSight, bool]]:
+    """Sights that reach every node from the first one; True where one leads from a to b.
+
+    Along what was driven before what was only seen: a robot does not drive a wrong edge.
+    """
+    of: list[list[tuple[LocalSight, bool]]] = [[] for _ in range(count)]
+    for sight in sights:
+        of[sight.a].append((sight, True))
+        of[sight.b].append((sight, False))
+    reached, found, waiting = {0}, [], deque(of[0])
+    while waiting:
+        sight, forward = waiting.popleft()
+        new = sight.b if forward else sight.a
+        if new in reached:
+            continue
+        reached.add(new)
+        found.append((sight, forward))
+        for onward in of[new]:
+            (waiting.appendleft if onward[0].driven else waiting.append)(onward)
+    return found
+
+
+def _cauchy(residual: FloatArray) -> FloatArray:
+    return np.asarray(1.0 / (1.0 + (residual / CAUCHY) ** 2), dtype=np.float64)

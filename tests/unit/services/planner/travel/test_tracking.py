@@ -1,0 +1,101 @@
+"""A robot does not jump: what looks alike elsewhere is not where it is."""
+
+import numpy as np
+import pytest
+
+from services.planner.ports import Observation
+from services.planner.profiles import DEFAULT, THESIS
+from services.planner.travel.tracking import PATIENCE_FRAMES, Tracker
+from shared.mapgraph.local.displacement import Displacement
+from shared.messages.sensors import Ranges
+from tests.unit.services.planner.travel.seen import Maps, Matcher, by_node, features, match
+from tests.unit.shared.mapgraph.local.grid import grid
+
+GRAPH = grid(20, 2)
+RANGES = Ranges(robot="r1", angles_rad=(0.0,) * 12, distances_m=(4.0,) * 12, max_range_m=4.0)
+HERE = by_node(match(0, 0.0, 0.0, 60), match(1, 1.0, 0.0, 50))
+ELSEWHERE = by_node(match(9, 0.0, 0.0, 180), match(10, 1.0, 0.0, 120))
+
+
+@pytest.fixture
+def matcher():
+    return Matcher()
+
+
+def tracker_of(matcher, *, certain=False, profile=DEFAULT):
+    return Tracker(profile, Maps(GRAPH), matcher, certain=certain)
+
+
+@pytest.fixture
+def tracker(matcher):
+    standing = tracker_of(matcher)
+    standing.stand_at(Displacement(0, spread_m=0.1))
+    drive(standing)
+    return standing
+
+
+def drive(tracker, moved_m=(0.12, 0.0), seq=0):
+    tracker.observe(Observation(features(seq), RANGES, moved_m))
+
+
+def test_a_look_alike_elsewhere_is_not_where_the_robot_is(tracker):
+    assert set(tracker.possible(HERE | ELSEWHERE)) == {0, 1}
+
+
+def test_while_only_look_alikes_show_it_waits_for_what_is_near(tracker):
+    for seq in range(5):
+        drive(tracker, seq=seq)
+        assert tracker.possible(ELSEWHERE) == {}
+    assert set(tracker.possible(HERE | ELSEWHERE)) == {0, 1}
+
+
+def test_a_robot_that_was_carried_is_where_it_stands(tracker, matcher):
+    matcher.inliers = 5
+    drive(tracker)
+    assert set(tracker.possible(ELSEWHERE)) == {9, 10}
+
+
+def test_one_that_was_carried_smoothly_is_found_after_a_while(tracker):
+    for seq in range(PATIENCE_FRAMES):
+        drive(tracker, (0.0, 0.0), seq)
+        seen = tracker.possible(ELSEWHERE)
+    assert set(seen) == {9, 10}
+
+
+def test_without_history_the_likeliest_place_counts(matcher):
+    assert set(tracker_of(matcher).possible(HERE | ELSEWHERE)) == {9, 10}
+
+
+def test_one_that_maps_wants_to_be_certain(matcher):
+    alike = by_node(match(9, 0.0, 0.0, 60), match(10, 1.0, 0.0, 50))
+    assert tracker_of(matcher, certain=True).possible(HERE | alike) == {}
+    assert set(tracker_of(matcher, certain=True).possible(HERE | ELSEWHERE)) == {9, 10}
+
+
+def test_what_the_frame_shows_takes_over_from_what_was_driven(tracker):
+    drive(tracker, (0.9, 0.0))
+    spread_m = tracker.here.spread_m
+    tracker.confirm(by_node(match(1, 0.2, 0.0, 150)))
+    assert tracker.here.node_id == 1
+    assert tracker.here.spread_m < spread_m
+    np.testing.assert_allclose((tracker.here.x_m, tracker.here.y_m), (-0.2, 0.0), atol=0.02)
+
+
+def test_the_nodes_around_are_those_that_lie_there(tracker):
+    for _ in range(4):
+        drive(tracker, (1.0, 0.0))
+    assert {4, 5, 24, 25} <= set(tracker.nearby())
+    assert 0 not in tracker.nearby()
+
+
+def test_the_thesis_takes_every_match(matcher):
+    tracker = tracker_of(matcher, profile=THESIS)
+    tracker.stand_at(Displacement(0, spread_m=0.1))
+    assert set(tracker.possible(HERE | ELSEWHERE)) == {0, 1, 9, 10}
+    assert tracker.nearby() == []
+
+
+def test_weak_or_doubtful_matches_do_not_say_where_it_is(matcher):
+    weak = match(3, 0.0, 0.0, DEFAULT.travel.s_via_min)
+    doubtful = match(5, 1.0, 0.0, 300).model_copy(update={"status": "inconsistent"})
+    assert tracker_of(matcher).possible(by_node(weak, doubtful)) == {}

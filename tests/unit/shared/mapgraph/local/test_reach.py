@@ -1,0 +1,64 @@
+"""A sight of a node that lies elsewhere is refused."""
+
+import math
+
+from shared.mapgraph.local.displacement import Displacement, seen_from
+from shared.mapgraph.local.reach import out_of_reach
+from tests.unit.shared.mapgraph.local.grid import RAD_PER_M, claim, grid
+
+GRAPH = grid(8, 3)
+HERE = Displacement(0, x_m=0.5, y_m=0.0, spread_m=0.1)
+"""Half a metre from node 0 towards node 1."""
+
+
+def refused(claims, here=HERE):
+    return set(out_of_reach(GRAPH, claims, here, RAD_PER_M))
+
+
+def test_a_node_where_it_is_seen_is_in_reach():
+    assert refused({1: claim(0.5, 0.0), 2: claim(1.5, 0.0), 9: claim(0.5, 1.0)}) == set()
+
+
+def test_a_node_a_period_further_is_out_of_reach():
+    assert refused({5: claim(0.5, 0.0), 6: claim(0.5, 0.2), 1: claim(0.5, 0.0)}) == {5, 6}
+
+
+def test_what_is_seen_on_the_wrong_side_is_out_of_reach():
+    assert refused({2: claim(-1.5, 0.0)}) == {2}
+
+
+def test_yaws_round_a_loop_must_close():
+    reasons = out_of_reach(GRAPH, {1: claim(0.5, 0.0, yaw_rad=math.radians(90))}, HERE, RAD_PER_M)
+    assert "turned by 90 degrees" in reasons[1]
+    assert refused({1: claim(0.5, 0.0, yaw_rad=math.radians(4))}) == set()
+
+
+def test_a_spot_is_no_other_spot():
+    assert refused({0: claim(0.0, 0.0), 4: claim(0.0, 0.0)}) == {4}
+
+
+def test_a_robot_that_drove_far_without_a_sight_may_be_further():
+    strayed = Displacement(0, x_m=0.5, spread_m=2.0)
+    assert refused({5: claim(0.5, 0.0)}, strayed) == set()
+
+
+def test_nothing_is_known_of_what_no_edge_joins_or_without_a_node_to_start_from():
+    assert refused({1: claim(9.0, 0.0)}, Displacement(99)) == set()
+
+
+def test_driving_adds_up_in_the_frame_of_the_node_and_grows_uncertain():
+    here = Displacement(3, yaw_rad=math.pi / 2).moved((1.0, 0.0)).moved((0.0, 1.0))
+    assert math.dist((here.x_m, here.y_m), (-1.0, 1.0)) < 1e-9
+    assert 0.2 < here.spread_m < 0.4
+
+
+def test_the_bearing_of_the_node_left_corrects_the_direction():
+    drifted = Displacement(3, x_m=1.0, y_m=0.2)
+    seen = drifted.turned(yaw_rad=0.1, heading_rad=math.pi + 0.1)
+    assert math.dist((seen.x_m, seen.y_m), (drifted.length_m, 0.0)) < 1e-9
+    assert seen.yaw_rad == -0.1
+
+
+def test_where_a_frame_is_by_what_it_sees_of_one_node():
+    here = seen_from(3, heading_rad=0.0, yaw_rad=0.0, length_m=2.0)
+    assert math.dist((here.x_m, here.y_m), (-2.0, 0.0)) < 1e-9
