@@ -40,6 +40,8 @@ def summary(rounds: Sequence[Figures]) -> dict[str, Any]:
         "steps_mean": rounded(np.mean([r["steps"] for r in rounds]), 1),
         "path_ratio_median": rounded(np.median([r["path_ratio"] for r in found]), 3) if found else None,
         "edges_suspended": sum(int(r["edges_suspended"]) for r in rounds),
+        "wrong_place": sum(r["failure"] == "wrong_place" for r in rounds),
+        "ambiguous": sum(r["failure"] == "ambiguous" for r in rounds),
     }
 
 
@@ -98,6 +100,8 @@ def run_row(run: Figures) -> dict[str, Any]:
         "collisions": total["collisions"],
         "moved by hand": total["manual_moves"],
         "edges suspended": total["edges_suspended"],
+        "wrong place": total["wrong_place"],
+        "ambiguous": total["ambiguous"],
         "steps/s": total["steps_per_s"],
         "rendering": f"{rendering:.0%}" if rendering is not None else "",
         "memory (MB)": round(sum(run.get("memory_mb", {}).values())) or "",

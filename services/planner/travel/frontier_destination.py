@@ -23,6 +23,10 @@ FAILURES_MAX = 2
 IN_VAIN_MAX = 4
 """Travels in vain, one after the other, after which their ends are blamed too; chosen: twice FAILURES_MAX."""
 
+STRANDED_STEPS = 12
+"""Steps of searching after which starts that failed are tried again; chosen: 1.4 m, round one piece of
+furniture."""
+
 SEARCH_STEPS = 120
 """Steps of searching before exploration ends as lost; chosen: the third growing sweep, 14 m at 0.12 m a
 step."""
@@ -49,15 +53,20 @@ class FrontierDestination:
         self._end = 0
         self._failures: dict[int, int] = {}
         self._bad_starts: set[int] = set()
-        self._in_vain = self._cut_off = 0
+        self._in_vain = self._cut_off = self._stranded = 0
 
     def targets(self) -> dict[int, float]:
         """Nodes with a frontier."""
         return {n: 0.0 for n, node in self._maps.graph.nodes.items() if frontier_sectors(node)}
 
     def starts(self, visible: Mapping[int, float]) -> Mapping[int, float]:
-        """Those in sight that did not fail as a start, if there are any."""
-        return {n: cost for n, cost in visible.items() if n not in self._bad_starts} or visible
+        """Those in sight that did not fail as a start; all again once the robot has moved on for a while."""
+        starts = {n: cost for n, cost in visible.items() if n not in self._bad_starts}
+        if visible and not starts:
+            self._stranded += 1
+            if self._stranded > STRANDED_STEPS:
+                self._bad_starts, self._stranded = set(), 0
+        return starts
 
     def goes_straight(self) -> bool:
         """There is no picture to head for."""
@@ -87,11 +96,11 @@ class FrontierDestination:
         """Twice in vain: that node's directions are closed.
 
         A way that ended early blames its end only when others ended before it; one that ended before its
-        first waypoint is tried from another node in sight.
+        first waypoint says nothing of the end, and is tried from another node in sight.
         """
         end = setback.path[-1]
-        self._in_vain += 1
-        blamed = setback.waypoint == end or self._in_vain > IN_VAIN_MAX
+        self._in_vain += setback.edge is not None
+        blamed = setback.waypoint == end or (setback.edge is not None and self._in_vain > IN_VAIN_MAX)
         self._failures[end] = self._failures.get(end, 0) + blamed
         notes = [Note("travel_failed", f"to node {end}: {setback.why}")]
         if setback.edge is None:

@@ -4,6 +4,7 @@
 frame.
 """
 
+import logging
 from dataclasses import replace
 
 from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
@@ -20,6 +21,8 @@ from shared.mapgraph.graph import EdgeKey
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.routing import GOAL, plan_path
 from shared.messages.missions import FailureKind
+
+log = logging.getLogger(__name__)
 
 
 class Travel:
@@ -92,7 +95,7 @@ class Travel:
             destination.set_out()
             self._set_off([*path, GOAL] if pictures else path, Event.PATH_FOUND)
             return None
-        if visible:
+        if starts:
             return self._wait()
         return self._look_around(seen)
 
@@ -136,6 +139,7 @@ class Travel:
 
     def _recover(self, setback: Setback) -> Decision:
         """Learn from what ended the path, and plan again from what the next frame shows."""
+        log.info("%s on the way %s: %s", setback.event.value, setback.path[:8], setback.why)
         verdict = self._destination.setback(setback)
         self._notes += verdict.notes
         if verdict.failure:

@@ -15,6 +15,7 @@ def one(success=True, **changes):
         "success": success, "final_distance_m": 0.1 if success else 4.0, "spl": 0.8 if success else 0.0,
         "steps": 100, "collisions": 0, "manual_moves": 0, "wall_s": 20.0, "path_ratio": 1.25,
         "edges_suspended": 1, "reason": "arrived" if success else "lost: no place",
+        "failure": "" if success else "lost",
     }  # fmt: skip
     return figures | changes
 
@@ -28,6 +29,13 @@ def test_a_summary_counts_and_averages():
     assert told["final_distance_median_m"] == 0.1
     assert told["steps_per_s"] == 5.0
     assert told["edges_suspended"] == 3
+
+
+def test_wrong_places_and_places_that_look_alike_are_counted_apart():
+    told = summary(
+        [one(), one(success=False, failure="wrong_place"), one(success=False, failure="ambiguous")]
+    )
+    assert (told["wrong_place"], told["ambiguous"]) == (1, 1)
 
 
 def test_without_success_there_is_no_path_ratio():
