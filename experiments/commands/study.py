@@ -9,6 +9,7 @@ from experiments.commands import (
     failures,
     heading,
     heading_frames,
+    localisation,
     matching,
     photographs,
     recovery,
@@ -21,6 +22,7 @@ app = typer.Typer(
 for study in (
     heading,
     heading_frames,
+    localisation,
     cycles,
     disturbance,
     disturbance_matches,

@@ -1,28 +1,38 @@
 """Which nodes a frame can be looking at, by what the robot did since the last one. Pure."""
 
+from services.planner.heading.choose import CONFIDENCE_MIN as HEADING_CONFIDENCE_MIN
 from services.planner.ports import Matches
 from services.planner.profiles import Profile
 from services.planner.similarity import apart_rad, trusted
 from shared.mapgraph.graph import MapGraph
-from shared.mapgraph.local.claims import Claim, claim_of
+from shared.mapgraph.local.claims import CONFIDENCE_MIN, Claim, claim_of
 from shared.mapgraph.local.displacement import Displacement, seen_from
 from shared.mapgraph.local.hypotheses import NEAR_NODES
-from shared.mapgraph.local.reach import LOOP_NODES, nearby, out_of_reach
+from shared.mapgraph.local.reach import nearby, out_of_reach
 from shared.messages.matching import NodeMatch
 
 
-def claims(matches: Matches, profile: Profile) -> dict[int, Claim]:
+def claims(matches: Matches, profile: Profile, confidence_min: float = CONFIDENCE_MIN) -> dict[int, Claim]:
     """What a frame claims of nodes, where two-view geometry is sure of it."""
-    return {node: found for node, match in matches.items() if (found := _claim(match, profile)) is not None}
+    found = {node: _claim(match, profile, confidence_min) for node, match in matches.items()}
+    return {node: claim for node, claim in found.items() if claim is not None}
+
+
+def in_reach(graph: MapGraph, matches: Matches, here: Displacement, profile: Profile) -> Matches:
+    """Matches with nodes around that lie where they are seen; what claims nothing is not among them."""
+    sights = claims(matches, profile, HEADING_CONFIDENCE_MIN)
+    near = set(graph.nearest(here.node_id, NEAR_NODES))
+    away = out_of_reach(graph, sights, here, profile.sensing.disparity_rad_per_m, NEAR_NODES)
+    return {node: match for node, match in matches.items() if node in sights and node in near - away.keys()}
 
 
 def elsewhere(
-    graph: MapGraph, matches: Matches, here: Displacement | None, profile: Profile, most: int = LOOP_NODES
+    graph: MapGraph, matches: Matches, here: Displacement | None, profile: Profile
 ) -> dict[int, str]:
     """Nodes that lie elsewhere than the frame claims, and why; none where nobody knows where it was taken."""
     if here is None or profile.sensing.similarity == "raw":
         return {}
-    return out_of_reach(graph, claims(matches, profile), here, profile.sensing.disparity_rad_per_m, most)
+    return out_of_reach(graph, claims(matches, profile), here, profile.sensing.disparity_rad_per_m)
 
 
 def nodes_nearby(graph: MapGraph, here: Displacement | None, profile: Profile, count: int) -> list[int]:
@@ -41,7 +51,7 @@ def standing_at(node_id: int, match: NodeMatch | None, yaw_rad: float, profile: 
     )
 
 
-def _claim(match: NodeMatch, profile: Profile) -> Claim | None:
+def _claim(match: NodeMatch, profile: Profile, confidence_min: float) -> Claim | None:
     if not trusted(match, profile):
         return None
-    return claim_of(match, apart_rad(match.disparity_rad or 0.0, match.inliers, profile))
+    return claim_of(match, apart_rad(match.disparity_rad or 0.0, match.inliers, profile), confidence_min)

@@ -8,12 +8,12 @@ the robot has looked in vain for long.
 import logging
 from dataclasses import replace
 
-from services.planner.mapping.reach import claims, elsewhere, nodes_nearby, standing_at
+from services.planner.mapping.reach import claims, in_reach, nodes_nearby, standing_at
 from services.planner.ports import MapAccess, Matcher, Matches, Observation
 from services.planner.profiles import Profile
 from services.planner.similarity import ranked, similarity, trusted
 from shared.mapgraph.local.displacement import Displacement
-from shared.mapgraph.local.hypotheses import NEAR_NODES, Hypothesis, hypotheses, likely
+from shared.mapgraph.local.hypotheses import Hypothesis, hypotheses, likely
 from shared.mapgraph.routing import GOAL
 from shared.messages.features import Features
 from shared.messages.matching import NodeMatch
@@ -76,9 +76,7 @@ class Tracker:
         if self._strict:
             return matches
         if self.here is not None and self.here.node_id in graph.nodes:
-            near = set(graph.nearest(self.here.node_id, NEAR_NODES))
-            refused = elsewhere(graph, matches, self.here, self._profile, NEAR_NODES)
-            within = {node: match for node, match in matches.items() if node in near and node not in refused}
+            within = in_reach(graph, matches, self.here, self._profile)
             if self._shows_any(within):
                 self._lost_frames = 0
                 return self._agreeing(within)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from shared.messages.matching import NodeMatch
 
 CONFIDENCE_MIN = 0.5
-"""Below it a match claims nothing: its two directions explain it equally well."""
+"""Below it a match claims no edge and no place: its two directions explain it equally well."""
 
 
 @dataclass(frozen=True)
@@ -27,18 +27,21 @@ class Claim:
     disparity_rad: float
 
 
-def claim_of(match: NodeMatch, disparity_rad: float | None = None) -> Claim | None:
+def claim_of(
+    match: NodeMatch, disparity_rad: float | None = None, confidence_min: float = CONFIDENCE_MIN
+) -> Claim | None:
     """What a match claims; None where two-view geometry is not sure of anything.
 
     Args:
         match: picture against node.
+        confidence_min: below it a match claims nothing.
         disparity_rad: takes the place of the match's, where something else says more.
     """
     if match.yaw_rad is None or match.status not in ("ok", "no_baseline"):
         return None
     if match.status == "no_baseline" or match.heading_rad is None or match.disparity_rad is None:
         return Claim(match.inliers, None, 0.0, match.yaw_rad, 0.0)
-    if match.confidence < CONFIDENCE_MIN:
+    if match.confidence < confidence_min:
         return None
     apart_rad = match.disparity_rad if disparity_rad is None else disparity_rad
     return Claim(match.inliers, match.heading_rad, match.heading_std_rad or 0.0, match.yaw_rad, apart_rad)

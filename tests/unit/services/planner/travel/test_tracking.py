@@ -49,6 +49,11 @@ def test_while_only_look_alikes_show_it_waits_for_what_is_near(tracker):
     assert set(tracker.possible(HERE | ELSEWHERE)) == {0, 1}
 
 
+def test_a_match_unsure_of_its_direction_is_none_to_follow(tracker):
+    unsure = match(0, 0.5, 0.0, 60).model_copy(update={"confidence": 0.2})
+    assert tracker.possible(by_node(unsure)) == {}
+
+
 def test_a_robot_that_was_carried_is_where_it_stands(tracker, matcher):
     matcher.inliers = 5
     drive(tracker)
