@@ -154,7 +154,7 @@ class GoalDestination:
         s_map = max((similarity_of(match, self._profile) for match in here.values()), default=0)
         if similarity >= GOAL_SHARE * s_map:
             here_node = tracker.here.node_id if tracker.here is not None else None
-            return self._settle(self.places.arrived(here_node, similarity))
+            return self._settle(self.places.arrived(here_node, tracker.likeness(similarity)))
         self._rule_out(here)
         return f"aliased: a node of the map resembles this view more than the goal does, S {s_map}"
 

@@ -20,10 +20,10 @@ from shared.mapgraph.local.hypotheses import (
 )
 from shared.messages.missions import FailureKind
 
-SPOT_FACTOR = 1.8
-"""At the very spot the goal has this many times the matches of neighbours on a driven way, where its place
-was in doubt: 150 where those have 84. At 34 spots of an office and a hostel 159 and more, at an equal desk
-of another row 112 at the median, 159 at most."""
+SPOT_SHARE = 0.6
+"""At the very spot view and goal share so much of what two frames in a row share, where its place was in
+doubt; noise and light take from both alike. At 34 spots of an office and a hostel 0.65 and more, at an equal
+desk of another row 0.45 at the median."""
 EXCLUDED_SHARE = 0.8
 """A place that resembles the goal by less than this share of the best one is excluded. Rooms furnished alike
 but for a few small things have 0.85 and more: they exclude nothing."""
@@ -49,14 +49,14 @@ class GoalPlaces:
     """
 
     def __init__(self, maps: MapAccess, found: Matches, profile: Profile) -> None:
-        self._maps, self._typical = maps, typical_similarity(maps.graph)
+        self._maps = maps
         similar = {n: m for n, m in found.items() if similarity(m, profile) > profile.travel.s_via_min}
         strict = profile.sensing.similarity == "raw"
         sights = {} if strict else claims(similar, profile)
         places = hypotheses(maps.graph, sights, profile.sensing.disparity_rad_per_m)
         self._places = likely(places)
-        self.plain = not places or is_plain(places, self._typical)
-        self._seen: dict[Hypothesis, int] = {}
+        self.plain = not places or is_plain(places, typical_similarity(maps.graph))
+        self._seen: dict[Hypothesis, float] = {}
         self._lost: dict[Hypothesis, int] = {}
 
     @property
@@ -72,19 +72,19 @@ class GoalPlaces:
         nodes = {node for place in left or self._best() for node in place.nodes}
         return {node: cost for node, cost in targets.items() if node in nodes}
 
-    def arrived(self, node: int | None, s_spot: int) -> Ruling:
-        """The robot stands where the goal picture agrees with the view, by `s_spot` matches.
+    def arrived(self, node: int | None, likeness: float) -> Ruling:
+        """The robot stands where the goal picture agrees with the view.
 
         Args:
             node: of the map, near there.
-            s_spot: similarity of view and goal.
+            likeness: similarity of view and goal, as a share of that of two frames in a row.
         """
         place = self._nearest(node)
         if self.plain or place is None:
             return Ruling()
         if place in self._seen and self._best() == [place]:
             return Ruling()
-        self._seen[place] = max(s_spot, self._seen.get(place, 0))
+        self._seen[place] = max(likeness, self._seen.get(place, 0.0))
         return self._judge(place)
 
     def lost(self, node: int | None) -> Ruling:
@@ -95,24 +95,26 @@ class GoalPlaces:
         self._lost[place] = self._lost.get(place, 0) + 1
         if self._lost[place] < TRIES or place in self._seen:
             return Ruling("not seen")
-        self._seen[place] = 0
+        self._seen[place] = 0.0
         return self._judge(place)
 
     def _judge(self, here: Hypothesis) -> Ruling:
         ranked = sorted(self._seen.values(), reverse=True)
-        s_best, s_next = ranked[0], ranked[1] if len(ranked) > 1 else 0
-        enough = s_best >= SPOT_FACTOR * self._typical
-        if enough and s_next >= EXCLUDED_SHARE * s_best:
+        best, second = ranked[0], ranked[1] if len(ranked) > 1 else 0.0
+        enough = best >= SPOT_SHARE
+        if enough and second >= EXCLUDED_SHARE * best:
             return Ruling(f"one of the places of nodes {self.names}, which look alike", "ambiguous")
         left = [place for place in self._places if place not in self._seen]
         if left:
-            return Ruling(f"S {self._seen[here]} here; {len(left)} places that look alike are not excluded")
+            return Ruling(
+                f"{self._seen[here]:.0%} alike; {len(left)} places that look alike are not excluded"
+            )
         if not enough:
-            why = f"the goal resembles nodes {self.names}, but is at none of them, S {s_best} at most"
+            why = f"the goal resembles nodes {self.names}, but is at none of them, {best:.0%} alike at most"
             return Ruling(why, "goal_not_in_map")
         if self._best() == [here]:
             return Ruling()
-        return Ruling(f"another place resembles the goal more, S {s_best}")
+        return Ruling(f"another place resembles the goal more, by {best:.0%}")
 
     def _best(self) -> list[Hypothesis]:
         return [max(self._seen, key=lambda place: self._seen[place])] if self._seen else []

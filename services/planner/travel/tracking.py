@@ -108,6 +108,11 @@ class Tracker:
         match = self._matcher.match([], 0, (self._before,)).get(GOAL)
         return match is None or not self._is_sure(match)
 
+    def likeness(self, s_goal: int) -> float:
+        """Similarity of this frame to a picture, as a share of its similarity to the frame before."""
+        match = self._matcher.match([], 0, (self._before,)).get(GOAL) if self._before is not None else None
+        return s_goal / max(similarity(match, self._profile) if match is not None else s_goal, 1)
+
     def _is_away(self) -> bool:
         """Whether the robot is not where its own motion says; that is forgotten then."""
         carried = self.was_carried()

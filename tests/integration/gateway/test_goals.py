@@ -43,6 +43,31 @@ def test_a_raw_picture_is_localised_best_node_first(
     assert question.features is not None
 
 
+def test_places_that_look_alike_are_named_both(http: httpx.Client, features: FeatureService) -> None:
+    before, seen = features.results, features.results[1]
+    features.results = (seen, seen.model_copy(update={"node_id": 3, "inliers": 60}))
+    try:
+        answer = http.post(
+            "/api/robots/r1/goal-check?map=flat", content=picture(), headers={"content-type": "image/png"}
+        )
+    finally:
+        features.results = before
+    body = answer.json()
+    assert body["verdict"] == "ambiguous"
+    assert [place["nodes"] for place in body["places"]] == [[7], [3]]
+
+
+def test_what_resembles_no_node_is_not_found(http: httpx.Client, features: FeatureService) -> None:
+    before, features.results = features.results, features.results[:1]
+    try:
+        answer = http.post(
+            "/api/robots/r1/goal-check?map=flat", content=picture(), headers={"content-type": "image/png"}
+        )
+    finally:
+        features.results = before
+    assert (answer.json()["verdict"], answer.json()["places"]) == ("not_found", [])
+
+
 def test_a_form_with_one_file_is_the_same(http: httpx.Client) -> None:
     answer = http.post(
         "/api/robots/r1/goal-check?map=flat", files={"picture": ("goal.png", picture(), "image/png")}

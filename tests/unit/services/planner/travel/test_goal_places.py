@@ -8,7 +8,6 @@ from tests.unit.services.planner.travel.seen import Maps, by_node, match
 from tests.unit.shared.mapgraph.local.grid import grid
 
 GRAPH = grid(20, 2)
-"""Neighbours of it have 80 matches, so 144 are needed at the spot."""
 FIRST = by_node(match(1, 0.0, 0.0, 150), match(2, 1.0, 0.0, 80))
 SECOND = by_node(match(9, 0.0, 0.0, 140), match(10, 1.0, 0.0, 80))
 THIRD = by_node(match(17, 0.0, 0.0, 140), match(18, 1.0, 0.0, 80))
@@ -27,45 +26,45 @@ def two():
 def test_a_place_without_rivals_is_arrived_at_at_once():
     places = places_of(FIRST)
     assert places.plain
-    assert places.arrived(2, 100).why == ""
+    assert places.arrived(2, 0.40).why == ""
     assert set(places.open_targets(TARGETS)) == {1, 2}
 
 
 def test_a_look_alike_is_visited_before_arrival_is_claimed(two):
     assert not two.plain
     assert set(two.open_targets(TARGETS)) == {1, 2, 9, 10}
-    assert "not excluded" in two.arrived(2, 220).why
+    assert "not excluded" in two.arrived(2, 0.88).why
     assert set(two.open_targets(TARGETS)) == {9, 10}
-    assert "another place" in two.arrived(10, 120).why
+    assert "another place" in two.arrived(10, 0.48).why
     assert set(two.open_targets(TARGETS)) == {1, 2}
-    assert two.arrived(1, 215).why == ""
+    assert two.arrived(1, 0.86).why == ""
 
 
 def test_the_last_one_visited_may_be_it(two):
-    two.arrived(2, 120)
-    assert two.arrived(9, 220).why == ""
+    two.arrived(2, 0.48)
+    assert two.arrived(9, 0.88).why == ""
 
 
 def test_places_that_resemble_it_equally_are_ambiguous(two):
-    two.arrived(2, 220)
-    ruling = two.arrived(9, 210)
+    two.arrived(2, 0.88)
+    ruling = two.arrived(9, 0.84)
     assert ruling.failure == "ambiguous"
     assert "1, 9" in ruling.why
 
 
 def test_two_that_cannot_be_told_apart_end_the_search_for_a_third():
     places = places_of(FIRST | SECOND | THIRD)
-    places.arrived(1, 220)
-    assert places.arrived(9, 210).failure == "ambiguous"
+    places.arrived(1, 0.88)
+    assert places.arrived(9, 0.84).failure == "ambiguous"
 
 
 def test_a_goal_at_none_of_the_places_is_not_in_the_map(two):
-    two.arrived(2, 110)
-    assert two.arrived(9, 100).failure == "goal_not_in_map"
+    two.arrived(2, 0.44)
+    assert two.arrived(9, 0.40).failure == "goal_not_in_map"
 
 
 def test_a_place_where_the_picture_is_lost_twice_is_excluded(two):
-    assert two.arrived(2, 220).why
+    assert two.arrived(2, 0.88).why
     assert two.lost(9).failure == ""
     assert "another place" in two.lost(9).why
     assert set(two.open_targets(TARGETS)) == {1, 2}

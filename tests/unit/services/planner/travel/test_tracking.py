@@ -100,6 +100,14 @@ def test_the_thesis_takes_every_match(matcher):
     assert tracker.nearby() == []
 
 
+def test_likeness_is_a_share_of_what_two_frames_in_a_row_have_in_common(matcher):
+    tracker = tracker_of(matcher)
+    drive(tracker, seq=1)
+    assert tracker.likeness(100) == 1.0
+    drive(tracker, seq=2)
+    assert tracker.likeness(100) == 0.5
+
+
 def test_weak_or_doubtful_matches_do_not_say_where_it_is(matcher):
     weak = match(3, 0.0, 0.0, DEFAULT.travel.s_via_min)
     doubtful = match(5, 1.0, 0.0, 300).model_copy(update={"status": "inconsistent"})
