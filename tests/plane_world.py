@@ -165,6 +165,10 @@ def _open(here: Pose, there: Pose, shapes: Footprints) -> bool:
     return bool(free_m[0] >= distance_m - 1e-6)
 
 
+ALIKE = 0.8
+"""Share of its matches that a look-alike of a spot has: what is far away differs."""
+
+
 def picture(pose: Pose, seq: int = 0) -> Features:
     """What a camera at `pose` sees: here, the pose itself."""
     return Features(
@@ -193,10 +197,13 @@ class PlaneMap:
 
 
 class PlaneMatcher:
-    """Matches by true distance and line of sight; `blind` sees nothing that resembles anything."""
+    """Matches by true distance and line of sight; `blind` sees nothing that resembles anything.
 
-    def __init__(self, world: PlaneWorld, maps: PlaneMap) -> None:
-        self._world, self._maps = world, maps
+    With a `period_m` all looks alike again so far along x: nodes are seen where the nearest image of them is.
+    """
+
+    def __init__(self, world: PlaneWorld, maps: PlaneMap, period_m: float = math.inf) -> None:
+        self._world, self._maps, self._period_m = world, maps, period_m
         self.blind = False
 
     def match(
@@ -214,14 +221,21 @@ class PlaneMatcher:
 
     def _compare(self, pose: Pose, node_ids: Sequence[int], best_k: int) -> dict[int, NodeMatch]:
         poses = self._maps.poses
-        near = sorted(poses, key=lambda n: math.dist(pose[:2], poses[n][:2]))[:best_k]
+        near = sorted(poses, key=lambda n: math.dist(pose[:2], self._image(pose, poses[n])[:2]))[:best_k]
         pairs = [self._pair(n, pose, poses[n]) for n in dict.fromkeys([*node_ids, *near])]
         return {match.node_id: match for match in sorted(pairs, key=lambda m: -m.inliers)}
 
+    def _image(self, here: Pose, there: Pose) -> Pose:
+        """The nearest of the spots that look like `there`."""
+        periods = round((here[0] - there[0]) / self._period_m)
+        return (there[0] + (periods * self._period_m if periods else 0.0), there[1], there[2])
+
     def _pair(self, node_id: int, here: Pose, there: Pose) -> NodeMatch:
+        there, true = self._image(here, there), there
+        alike = 1.0 if there == true else ALIKE
         distance_m = math.dist(here[:2], there[:2])
         rng = self._world.rng
-        seen = 0.0 if self.blind else self._world.view(here, there)
+        seen = 0.0 if self.blind else alike * self._world.view(here, there)
         inliers = int(np.interp(distance_m, DISTANCES_M, INLIERS) * seen * rng.uniform(0.85, 1.15))
         disparity_deg = float(np.interp(distance_m, DISTANCES_M, DISPARITY_DEG))
         heading = math.atan2(there[1] - here[1], there[0] - here[0]) - here[2]

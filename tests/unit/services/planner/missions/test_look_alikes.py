@@ -1,0 +1,61 @@
+"""Where desks repeat no edge leads a period further, and a goal that repeats is told apart or named."""
+
+import math
+
+import numpy as np
+import pytest
+
+from services.drive.core import DriveLimits
+from services.planner.missions.explore import FrontierExploration
+from services.planner.missions.goto import Goto
+from services.planner.profiles import DEFAULT
+from simulator.world.freespace import free_space
+from simulator.world.world_file import load_world
+from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, picture, run
+
+START = (2.0, 1.3, 0.0)
+PERIOD_M = 4.8
+STEPS = 500
+
+
+@pytest.fixture(scope="module")
+def explored():
+    space = free_space(load_world("office"))
+    world = PlaneWorld(START, np.random.default_rng(3), space)
+    maps = PlaneMap()
+    matcher = PlaneMatcher(world, maps, PERIOD_M)
+    run(world, FrontierExploration(DEFAULT, maps, matcher, np.random.default_rng(3)), DriveLimits(), STEPS)
+    return world, maps, matcher
+
+
+def bearing(here, there):
+    return math.atan2(there[1] - here[1], there[0] - here[0]) - here[2]
+
+
+def test_no_edge_leads_a_period_further(explored):
+    _, maps, _ = explored
+    edges = maps.graph.edges.values()
+    errors = [abs(math.remainder(e.heading_ab_rad - bearing(maps.poses[e.a], maps.poses[e.b]), math.tau))
+              for e in edges if e.heading_ab_rad is not None]  # fmt: skip
+    spread_m = max(pose[0] for pose in maps.poses.values()) - min(pose[0] for pose in maps.poses.values())
+    assert spread_m > 1.5 * PERIOD_M
+    assert len(errors) > 100
+    assert max(errors) < math.radians(20.0)
+
+
+def test_driven_edges_are_as_long_as_the_robot_drove(explored):
+    _, maps, _ = explored
+    driven = [edge for edge in maps.graph.edges.values() if edge.length_m]
+    true_m = [math.dist(maps.poses[e.a][:2], maps.poses[e.b][:2]) for e in driven]
+    assert len(driven) >= len(maps.poses) // 2
+    assert np.median([e.length_m / m for e, m in zip(driven, true_m, strict=True)]) == pytest.approx(
+        1.0, abs=0.1
+    )
+
+
+def test_a_goal_that_looks_like_another_spot_is_reached_or_named_ambiguous(explored):
+    world, maps, matcher = explored
+    goal = max(maps.poses.values(), key=lambda pose: pose[0])
+    decision, _ = run(world, Goto(DEFAULT, maps, matcher, picture(goal)), DriveLimits(), 1500)
+    arrived = decision.outcome == "succeeded" and math.dist(world.pose[:2], goal[:2]) < 0.5
+    assert arrived or decision.failure == "ambiguous", decision.why
