@@ -11,6 +11,9 @@ from shared.geometry.sphere import BoolArray, FloatArray
 Status = Literal["ok", "no_baseline", "too_few", "inconsistent"]
 Model = Literal["planar", "tilted", "rotation", "none"]
 
+MOVED_RAD = float(np.deg2rad(2.0))
+"""Change of bearing that only a way explains: four times what noise and a turn that is a little off leave."""
+
 
 @dataclass(frozen=True)
 class TwoViewSettings:
@@ -90,6 +93,8 @@ class TwoViewResult:
         noise_rad: standard deviation of the inliers' residuals, radians; None unless a model with travel was
             fitted.
         model: which model gave the answer.
+        moved: inliers whose bearing changed by more than MOVED_RAD beside the rotation: what is far away, out
+            of a window or down a corridor, agrees with many places and proves none; None where `yaw_rad` is.
         near_misses: matches just beyond the threshold that chance does not explain; many of them mean that
             the model, not the matches, is wrong. Planar model only.
     """
@@ -106,6 +111,7 @@ class TwoViewResult:
     sign_margin: float
     noise_rad: float | None
     model: Model
+    moved: int | None = None
     near_misses: float = 0.0
 
     @property
@@ -117,6 +123,11 @@ class TwoViewResult:
 def refused(status: Status, mask: BoolArray) -> TwoViewResult:
     """Result without a pose; `mask` still tells which matches agreed best."""
     return TwoViewResult(status, None, None, mask, int(mask.sum()), 0.0, None, None, None, 0.0, None, "none")
+
+
+def moved(apart_rad: FloatArray) -> int:
+    """How many of the inliers, this far apart beside the rotation, have moved."""
+    return int((apart_rad > MOVED_RAD).sum())
 
 
 def checked_matches(current: npt.ArrayLike, target: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:

@@ -15,7 +15,7 @@ from shared.geometry.sphere import BoolArray, FloatArray, angle_between_rad, bea
 from shared.geometry.tilted.match_evidence import NOISE_RAD, Cues, belongs, evidence, motion_ratio, turn_ratio
 from shared.geometry.tilted.poses import Bearings, Evaluated, Poses, evaluate, yaw_of
 from shared.geometry.tilted.search import search
-from shared.geometry.two_view_types import TwoViewResult, TwoViewSettings, refused
+from shared.geometry.two_view_types import TwoViewResult, TwoViewSettings, moved, refused
 
 FAR_SHARES = (0.1, 0.5, 0.9)
 """Shares of what is seen that may be too far to move: the likeliest of them counts."""
@@ -131,6 +131,7 @@ def _turn(matches: Bearings, cues: Cues, rng: np.random.Generator) -> tuple[Floa
 
 
 def _turned(rotation: FloatArray, mask: BoolArray, matches: Bearings) -> TwoViewResult:
+    apart = _apart_rad(matches, rotation @ matches.target)[mask]
     return TwoViewResult(
         status="no_baseline",
         heading_rad=None,
@@ -138,12 +139,13 @@ def _turned(rotation: FloatArray, mask: BoolArray, matches: Bearings) -> TwoView
         inlier_mask=mask,
         inliers=int(mask.sum()),
         confidence=0.0,
-        disparity_rad=float(np.median(_apart_rad(matches, rotation @ matches.target)[mask])),
+        disparity_rad=float(np.median(apart)),
         heading_std_rad=None,
         yaw_std_rad=None,
         sign_margin=0.0,
         noise_rad=None,
         model="rotation",
+        moved=moved(apart),
     )
 
 
@@ -151,7 +153,8 @@ def _accepted(motion: Motion, matches: Bearings, settings: TwoViewSettings) -> T
     inliers, mask, travel = int(motion.mask.sum()), motion.mask, motion.pose.travel[0]
     if inliers < settings.min_inliers or motion.score < settings.min_nats:
         return refused("inconsistent", mask)
-    disparity = float(np.median(_apart_rad(matches, motion.seen.turned[0])[mask]))
+    apart = _apart_rad(matches, motion.seen.turned[0])[mask]
+    disparity = float(np.median(apart))
     heading_std = motion.heading_std_rad / parallax_share(disparity, motion.noise_rad)
     if heading_std > settings.max_heading_std_rad or float(np.hypot(travel[0], travel[1])) < MIN_LEVEL:
         return refused("inconsistent", mask)
@@ -168,6 +171,7 @@ def _accepted(motion: Motion, matches: Bearings, settings: TwoViewSettings) -> T
         sign_margin=1.0,
         noise_rad=motion.noise_rad,
         model="tilted",
+        moved=moved(apart),
     )
 
 
