@@ -45,12 +45,14 @@ class TwoViewSettings:
             worth the price of it, three times that of level cameras.
         settled_noise: an answer of level cameras whose residuals spread over more than this share of the
             threshold is too noisy: those of a wrong model fill the band evenly: 1 / sqrt(3) = 0.58.
+        settled_blur: ... or over more than this share of the disparity: a camera that also went up or down
+            leaves as much as a tenth of a short way; chosen.
         settled_near: ... or which leaves more than this share of the matches, plus two, just out of reach;
             chosen.
         settled_share: ... or which explains less than this share of the matches; chosen: below
             the half that is right at 1 to 3 m (decision 0003).
-        min_nats: evidence below which a motion is chance, nats: unrelated pictures reach 11 once in sixty.
-        min_parallax_nats: ... or below which a turn on the spot explains as much; chosen alike.
+        min_nats: evidence below which a motion is chance, nats: of 1091 unrelated pictures one is answered.
+        min_parallax_nats: ... or below which its rotation explains as much; chosen.
     """
 
     pairs: int = 320
@@ -65,9 +67,10 @@ class TwoViewSettings:
     tilting: bool = True
     tilting_min_right: float = 8.0
     settled_noise: float = 0.45
+    settled_blur: float = 0.08
     settled_near: float = 0.15
     settled_share: float = 0.5
-    min_nats: float = 11.0
+    min_nats: float = 8.0
     min_parallax_nats: float = 11.0
 
 

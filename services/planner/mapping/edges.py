@@ -130,8 +130,10 @@ def _here(match: NodeMatch, profile: Profile) -> bool:
     refuses both.
     """
     rules = profile.mapping
-    noisy = rules.noise_max_rad and (match.noise_rad is None or match.noise_rad > rules.noise_max_rad)
-    return not noisy and (match.moved or 0) >= rules.moved_min
+    noise, disparity = match.noise_rad, match.disparity_rad
+    noisy = rules.noise_max_rad and (noise is None or noise > rules.noise_max_rad)
+    blurred = rules.blur_max and (noise is None or disparity is None or noise > rules.blur_max * disparity)
+    return not (noisy or blurred) and (match.moved or 0) >= rules.moved_min
 
 
 def _credible(match: NodeMatch, profile: Profile, *, clear: bool) -> bool:

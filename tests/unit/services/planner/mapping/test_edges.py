@@ -117,7 +117,8 @@ def test_what_is_seen_alike_from_far_away_is_no_edge():
     assert stands_alone(near, PHOTO)
     assert not stands_alone(near.model_copy(update={"moved": 20}), PHOTO)
     assert not stands_alone(near.model_copy(update={"moved": None}), PHOTO)
-    assert not stands_alone(near.model_copy(update={"noise_rad": math.radians(0.5)}), PHOTO)
+    assert not stands_alone(near.model_copy(update={"noise_rad": math.radians(0.6)}), PHOTO)
+    assert not stands_alone(near.model_copy(update={"disparity_rad": math.radians(1.8)}), PHOTO)
     assert stands_alone(near.model_copy(update={"moved": 20}), DEFAULT)
     few = near.model_copy(update={"inliers": 44, "moved": 42})
     assert not stands_alone(few, PHOTO)  # who stands that near shares more
