@@ -61,6 +61,10 @@ class MappingRules(_Rules):
             free ground seen. The edge to the node the robot came from needs no more than s_edge_min.
         noise_max_rad: an edge's matches spread less about its motion: in another room of the same kind things
             stand a little differently. 0 leaves it out.
+        blur_max: ... and by less than this share of its disparity: who stands nearly there sees nearly the
+            same. 0 leaves it out.
+        moved_min: an edge's matches whose bearing changed beside the camera's turn are at least so many: far
+            things look alike from many places. 0 leaves it out.
         s_blind_min: S of an edge along which no free ground was seen.
         far_rad: with less disparity than this an edge needs s_sure: few matches that hardly move are far
             away, and so may the node be.
@@ -79,6 +83,8 @@ class MappingRules(_Rules):
     s_sure: PositiveInt = 45  # medians are 57 at 1 to 1.5 m, 38 beyond: `topnav calibrate`
     share_min: float = Field(default=0.0, ge=0.0, le=1.0)
     noise_max_rad: float = Field(default=0.0, ge=0.0)
+    blur_max: float = Field(default=0.0, ge=0.0)
+    moved_min: NonNegativeInt = 0
     s_blind_min: NonNegativeInt = 0
     far_rad: float = Field(default=0.0, ge=0.0)
     s_far: NonNegativeInt = 0
@@ -234,9 +240,12 @@ THESIS_OUTDOOR = THESIS.replaced(name="thesis_outdoor", heading_method="4", **OU
 
 PHOTO = DEFAULT.replaced(
     name="photo",
-    s_edge_min=40,  # no two equal rooms of photographs have more with so little noise; 28 % of the links have
-    noise_max_rad=math.radians(0.4),  # links 0.32 at the median, equal rooms 0.5
-    s_sure=60,  # as s_edge_min, in the ratio of the default
+    s_edge_min=34,
+    noise_max_rad=math.radians(0.52),  # of equal rooms 0.56 and more, or a quarter of the disparity
+    blur_max=0.15,
+    moved_min=30,  # all but the view out of the window
+    far_rad=math.radians(7.0),  # who stands that near shares more: links 50 to 400
+    s_sure=50,
     s_node_max=250,  # of 1000 keypoints: as 90 of 300, less for the ratio of 0.95
     s_via_min=30,
     s_near=250,

@@ -9,8 +9,8 @@ from shared.geometry.evidence import confidence, log_nfa, parallax_share
 from shared.geometry.planar_fit import NoFit, PlanarFit, fit_planar, leverage_weights
 from shared.geometry.planar_model import PlanarMatches, evaluate
 from shared.geometry.rotation import RotationFit, fit_yaw
-from shared.geometry.sphere import BoolArray
-from shared.geometry.two_view_types import TwoViewResult, TwoViewSettings, checked_matches, refused
+from shared.geometry.sphere import BoolArray, FloatArray
+from shared.geometry.two_view_types import TwoViewResult, TwoViewSettings, checked_matches, moved, refused
 
 CHANCE_SHIFTS = 16
 """Wrong pairings of each match that tell what chance does: with 8, 1 in 100 unrelated pairs of frames is
@@ -74,6 +74,7 @@ def _only_turned(rotation: RotationFit, fit: PlanarFit, chance: float, settings:
 
 
 def _rotation_result(fit: RotationFit) -> TwoViewResult:
+    apart = fit.residual_rad[fit.mask]
     return TwoViewResult(
         status="no_baseline",
         heading_rad=None,
@@ -81,12 +82,13 @@ def _rotation_result(fit: RotationFit) -> TwoViewResult:
         inlier_mask=fit.mask,
         inliers=int(fit.mask.sum()),
         confidence=0.0,
-        disparity_rad=float(np.median(fit.residual_rad[fit.mask])),
+        disparity_rad=float(np.median(apart)),
         heading_std_rad=None,
         yaw_std_rad=fit.std_rad,
         sign_margin=0.0,
         noise_rad=None,
         model="rotation",
+        moved=moved(apart),
     )
 
 
@@ -94,7 +96,8 @@ def _accept(
     fit: PlanarFit, matches: PlanarMatches, chance: float, evidence: float, settings: TwoViewSettings
 ) -> TwoViewResult:
     """Result of a model that chance does not explain, unless its direction is too loose to follow."""
-    disparity = _disparity_rad(fit.yaw_rad, matches, fit.mask)
+    apart = _apart_rad(fit.yaw_rad, matches, fit.mask)
+    disparity = float(np.median(apart))
     share = parallax_share(disparity, fit.noise_rad)
     heading_std = float(np.sqrt(fit.covariance[0, 0]) / share)
     if heading_std > settings.max_heading_std_rad:
@@ -114,14 +117,15 @@ def _accept(
         sign_margin=fit.sign_margin,
         noise_rad=fit.noise_rad,
         model="planar",
+        moved=moved(apart),
     )
 
 
-def _disparity_rad(yaw_rad: float, matches: PlanarMatches, mask: BoolArray) -> float:
-    """Median angle between the current and the yaw-compensated target bearing over the inliers, radians."""
+def _apart_rad(yaw_rad: float, matches: PlanarMatches, mask: BoolArray) -> FloatArray:
+    """Angle between the current and the yaw-compensated target bearing of each inlier, radians."""
     level = matches.h_current[mask] * (matches.h_target[mask] * np.exp(1j * yaw_rad)).conj()
     dot = level.real + matches.z_current[mask] * matches.z_target[mask]
-    return float(np.median(np.arccos(np.clip(dot, -1.0, 1.0))))
+    return np.asarray(np.arccos(np.clip(dot, -1.0, 1.0)), dtype=np.float64)
 
 
 def _chance_rates(fit: PlanarFit, matches: PlanarMatches, thresholds: list[float]) -> list[float]:

@@ -15,7 +15,7 @@ __all__ = ["Cues", "TwoViewResult", "TwoViewSettings", "two_view"]
 
 SHORT_RAD = float(np.deg2rad(3.0))
 """Disparity up to which leaning may pass for a way; more than that level cameras cannot explain."""
-AS_WELL = 0.9
+AS_WELL = 0.7
 """Share of the inliers of level cameras that a turn must explain to be considered; chosen."""
 
 
@@ -67,10 +67,11 @@ def _only_leans(planar: TwoViewResult, current: FloatArray, target: FloatArray, 
 
 def _settled(planar: TwoViewResult, limits: TwoViewSettings) -> bool:
     """Whether the answer of level cameras leaves no doubt."""
-    if planar.noise_rad is None:
+    if planar.noise_rad is None or planar.disparity_rad is None:
         return False
     count = len(planar.inlier_mask)
-    noisy = planar.noise_rad > limits.settled_noise * limits.threshold_rad
+    most = min(limits.settled_noise * limits.threshold_rad, limits.settled_blur * planar.disparity_rad)
+    noisy = planar.noise_rad > most
     out_of_reach = planar.near_misses > limits.settled_near * count + 2.0
     few = planar.inliers < limits.settled_share * count
     return not (noisy or out_of_reach or few) and planar.confidence >= 0.5

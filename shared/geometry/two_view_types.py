@@ -11,6 +11,9 @@ from shared.geometry.sphere import BoolArray, FloatArray
 Status = Literal["ok", "no_baseline", "too_few", "inconsistent"]
 Model = Literal["planar", "tilted", "rotation", "none"]
 
+MOVED_RAD = float(np.deg2rad(2.0))
+"""Change of bearing that only a way explains: four times what noise and a turn that is a little off leave."""
+
 
 @dataclass(frozen=True)
 class TwoViewSettings:
@@ -42,12 +45,14 @@ class TwoViewSettings:
             worth the price of it, three times that of level cameras.
         settled_noise: an answer of level cameras whose residuals spread over more than this share of the
             threshold is too noisy: those of a wrong model fill the band evenly: 1 / sqrt(3) = 0.58.
+        settled_blur: ... or over more than this share of the disparity: a camera that also went up or down
+            leaves as much as a tenth of a short way; chosen.
         settled_near: ... or which leaves more than this share of the matches, plus two, just out of reach;
             chosen.
         settled_share: ... or which explains less than this share of the matches; chosen: below
             the half that is right at 1 to 3 m (decision 0003).
-        min_nats: evidence below which a motion is chance, nats: unrelated pictures reach 11 once in sixty.
-        min_parallax_nats: ... or below which a turn on the spot explains as much; chosen alike.
+        min_nats: evidence below which a motion is chance, nats: of 1091 unrelated pictures one is answered.
+        min_parallax_nats: ... or below which its rotation explains as much; chosen.
     """
 
     pairs: int = 320
@@ -62,9 +67,10 @@ class TwoViewSettings:
     tilting: bool = True
     tilting_min_right: float = 8.0
     settled_noise: float = 0.45
+    settled_blur: float = 0.08
     settled_near: float = 0.15
     settled_share: float = 0.5
-    min_nats: float = 11.0
+    min_nats: float = 8.0
     min_parallax_nats: float = 11.0
 
 
@@ -90,6 +96,8 @@ class TwoViewResult:
         noise_rad: standard deviation of the inliers' residuals, radians; None unless a model with travel was
             fitted.
         model: which model gave the answer.
+        moved: inliers whose bearing changed by more than MOVED_RAD beside the rotation: what is far away, out
+            of a window or down a corridor, agrees with many places and proves none; None where `yaw_rad` is.
         near_misses: matches just beyond the threshold that chance does not explain; many of them mean that
             the model, not the matches, is wrong. Planar model only.
     """
@@ -106,6 +114,7 @@ class TwoViewResult:
     sign_margin: float
     noise_rad: float | None
     model: Model
+    moved: int | None = None
     near_misses: float = 0.0
 
     @property
@@ -117,6 +126,11 @@ class TwoViewResult:
 def refused(status: Status, mask: BoolArray) -> TwoViewResult:
     """Result without a pose; `mask` still tells which matches agreed best."""
     return TwoViewResult(status, None, None, mask, int(mask.sum()), 0.0, None, None, None, 0.0, None, "none")
+
+
+def moved(apart_rad: FloatArray) -> int:
+    """How many of the inliers, this far apart beside the rotation, have moved."""
+    return int((apart_rad > MOVED_RAD).sum())
 
 
 def checked_matches(current: npt.ArrayLike, target: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:

@@ -46,6 +46,8 @@ class NodeMatch(Part):
         disparity_rad: median change of bearing after yaw: falls to zero on arrival.
         confidence: probability that heading_rad is right to 20 degrees, as far as one pair of views tells.
         noise_rad: spread of the inliers about the motion: what only looks alike stands a little differently.
+        moved: inliers whose bearing changed by more than 2 degrees beside the camera's turn: the others are
+            far away and look alike from many places.
         matches_rad: (M, 4) lon, lat in the frame, then lon, lat in the node, all raw matches.
         inlier_mask: (M,) 1 where the match is an inlier.
     """
@@ -60,6 +62,7 @@ class NodeMatch(Part):
     disparity_rad: float | None = None
     confidence: float = Field(default=0.0, ge=0.0, le=1.0)
     noise_rad: float | None = Field(default=None, ge=0.0)
+    moved: int | None = Field(default=None, ge=0)
     matches_rad: Annotated[Array, ArraySpec(("float32",), (None, 4), MAX_KEYPOINTS)] | None = None
     inlier_mask: Annotated[Array, ArraySpec(("uint8",), (None,), MAX_KEYPOINTS)] | None = None
 

@@ -30,10 +30,12 @@ BATCH = 4
 
 TINY = np.float32(1e-9)
 """Keeps two equal descriptors from being divided by zero."""
-RATIOS = (0.0, 0.4, 0.5, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1.0)
-RIGHT = (0.95, 0.93, 0.85, 0.72, 0.58, 0.42, 0.3, 0.19, 0.12, 0.075, 0.045, 0.02)
-"""Share of right ones among mutual neighbours of root SIFT by the ratio of distances: 76 pairs of photographs
-1.5 to 5 m apart, chance taken off. Renderings have more."""
+RATIOS = (0.0, 0.36, 0.49, 0.56, 0.65, 0.68, 0.72, 0.77, 0.81, 0.85, 0.9, 0.95, 1.0, 1.05, 1.1)
+RIGHT = (0.98, 0.97, 0.95, 0.87, 0.72, 0.65, 0.57, 0.4, 0.3, 0.22, 0.13, 0.1, 0.065, 0.05, 0.03)
+"""Share of right ones among nearest neighbours of root SIFT by the product of the ratios of distances from
+both sides: linked photographs with many matches, chance taken off; where few are right it says too much."""
+SHARED = 1.05
+"""Ratio from the other side where that has a nearer one: how much nearer tells nothing more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,23 +47,34 @@ class Neighbours:
         first: (Q,) squared distance to it.
         second: (Q,) squared distance to the second nearest; infinite where there is only one.
         mutual: (Q,) the nearest descriptor's nearest is this one.
+        rival: (Q,) squared distance from the nearest descriptor to the nearest of the others on this side.
     """
 
     nearest: IndexArray
     first: Float32Array
     second: Float32Array
     mutual: BoolArray
+    rival: Float32Array
 
     def ratio(self, distance: Distance) -> FloatArray:
         """(Q,) distance to the nearest over that to the second nearest, [0, 1]; 0 where there is only one."""
-        squared = self.first / np.maximum(self.second, TINY)
-        # Squared Euclidean distances of +1/-1 vectors are proportional to the Hamming distance itself.
-        return np.asarray(squared if distance == "hamming" else np.sqrt(squared), dtype=np.float64)
+        return _ratio(self.first, self.second, distance)
+
+    def right(self, distance: Distance) -> FloatArray:
+        """(Q,) probability that each nearest one is right, by how unlike all others are, on both sides."""
+        back = np.minimum(_ratio(self.first, self.rival, distance), SHARED)
+        return right_by_ratios(self.ratio(distance) * back)
 
 
-def right_by_ratio(ratio: FloatArray) -> FloatArray:
-    """Probability (M,) that matches with these ratios are right."""
-    return np.asarray(np.interp(ratio, RATIOS, RIGHT), dtype=np.float64)
+def right_by_ratios(product: FloatArray) -> FloatArray:
+    """Probability (M,) that matches are right, by the product of their ratios from both sides."""
+    return np.asarray(np.interp(product, RATIOS, RIGHT), dtype=np.float64)
+
+
+def _ratio(nearest: Float32Array, other: Float32Array, distance: Distance) -> FloatArray:
+    squared = nearest / np.maximum(other, TINY)
+    # Squared Euclidean distances of +1/-1 vectors are proportional to the Hamming distance itself.
+    return np.asarray(squared if distance == "hamming" else np.sqrt(squared), dtype=np.float64)
 
 
 def as_vectors(descriptors: npt.NDArray[Any], distance: Distance) -> Float32Array:
@@ -106,7 +119,7 @@ def match_by(
             continue
         rows = choose(found)
         pairs = np.stack([rows, found.nearest[rows]], axis=1)
-        matches.append(Matched(pairs, right_by_ratio(found.ratio(distance)[rows])))
+        matches.append(Matched(pairs, found.right(distance)[rows]))
     return matches
 
 
@@ -116,11 +129,16 @@ def _neighbours(block: Float32Array) -> Neighbours:
     nearest = block.argmin(axis=1)
     first = block[rows, nearest]
     closest = block.min(axis=0)  # argmin along this axis takes thirty times as long
-    block[rows, nearest] = np.inf
-    second = block.min(axis=1)
     mutual = first == closest[nearest]
     # Equal descriptors tie: the first row keeps the column.
     tied = np.flatnonzero(mutual)
     _, keepers = np.unique(nearest[tied], return_index=True)
     mutual[np.delete(tied, keepers)] = False
-    return Neighbours(nearest, np.maximum(first, 0.0), np.maximum(second, 0.0), mutual)
+    kept = rows[mutual]
+    block[kept, nearest[kept]] = np.inf
+    rival = np.where(mutual, block.min(axis=0)[nearest], closest[nearest])
+    block[rows, nearest] = np.inf
+    second = block.min(axis=1)
+    return Neighbours(
+        nearest, np.maximum(first, 0.0), np.maximum(second, 0.0), mutual, np.maximum(rival, 0.0)
+    )

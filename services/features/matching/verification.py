@@ -51,6 +51,7 @@ def verify(
         disparity_rad=result.disparity_rad,
         confidence=result.confidence,
         noise_rad=result.noise_rad,
+        moved=result.moved,
         matches_rad=np.concatenate([current, target], axis=1) if with_matches else None,
         inlier_mask=_mask(result) if with_matches else None,
     )

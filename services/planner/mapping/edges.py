@@ -130,10 +130,21 @@ def _admitted(match: NodeMatch, profile: Profile) -> bool:
         return False
     if profile.sensing.similarity == "raw":
         return True
-    limit_rad = profile.mapping.noise_max_rad
-    if limit_rad and (match.noise_rad is None or match.noise_rad > limit_rad):
-        return False
-    return trusted(match, profile) and match.heading_rad is not None and match.confidence >= CONFIDENCE_MIN
+    sure = match.heading_rad is not None and match.confidence >= CONFIDENCE_MIN
+    return sure and trusted(match, profile) and _here(match, profile)
+
+
+def _here(match: NodeMatch, profile: Profile) -> bool:
+    """Whether what agrees stands in this very place: it moves as the camera does, and fits it closely.
+
+    A view that has hardly changed is close by, or far things alone agree: a profile that asks for what moved
+    refuses both.
+    """
+    rules = profile.mapping
+    noise, disparity = match.noise_rad, match.disparity_rad
+    noisy = rules.noise_max_rad and (noise is None or noise > rules.noise_max_rad)
+    blurred = rules.blur_max and (noise is None or disparity is None or noise > rules.blur_max * disparity)
+    return not (noisy or blurred) and (match.moved or 0) >= rules.moved_min
 
 
 def _credible(match: NodeMatch, profile: Profile, *, clear: bool) -> bool:

@@ -62,6 +62,19 @@ def test_a_short_way_is_one_all_the_same(tilt_deg):
     assert np.median(errors) < 3.0
 
 
+@pytest.mark.parametrize("tilt_deg", [0.0, 5.0])
+def test_what_hardly_moves_is_told_from_what_does(tilt_deg):
+    rng = np.random.default_rng(18)
+    near = make_scene(rng, 60, distance_m=1.0, tilt_deg=tilt_deg, noise_deg=0.1)
+    turned = make_scene(rng, 60, distance_m=0.0, tilt_deg=tilt_deg, noise_deg=0.1)
+    for scene, most in ((near, 60), (turned, 0)):
+        found = two_view(scene.current, scene.target, np.random.default_rng(0))
+        assert found.moved is not None
+        assert 0.8 * most <= found.moved <= min(most, found.inliers)
+    nothing = two_view(near.current[:3], near.target[:3], np.random.default_rng(0))
+    assert nothing.moved is None
+
+
 def test_wrong_matches_alone_are_refused():
     rng, usable = np.random.default_rng(15), 0
     for k in range(30):

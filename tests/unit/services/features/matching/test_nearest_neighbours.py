@@ -36,6 +36,10 @@ def test_neighbours_equal_the_definition_in_frames_of_any_size(distance):
         np.testing.assert_array_equal(found.second, ordered[:, 1] if len(other) > 1 else np.inf)
         closest = table.min(axis=0)[found.nearest]
         assert (found.first[found.mutual] == closest[found.mutual]).all()
+        for row in np.flatnonzero(found.mutual):
+            rest = np.delete(table[:, found.nearest[row]], row)
+            assert found.rival[row] == rest.min()
+        assert (found.rival[~found.mutual] == closest[~found.mutual]).all()
         assert sorted(found.nearest[found.mutual]) == sorted(set(found.nearest[found.first == closest]))
 
 
@@ -44,6 +48,14 @@ def test_float_descriptors_are_compared_as_they_are():
     other = np.array([[0.0, 0.5], [1.0, 1.0]], np.float16)
     (found,) = find_neighbours(query, [other], "euclidean")
     assert (found.nearest[0], found.first[0], found.second[0]) == (0, 0.25, 1.0)
+
+
+@pytest.mark.parametrize("distance", ["euclidean", "hamming"])
+def test_a_match_is_the_likelier_right_the_less_others_are_alike_on_either_side(distance):
+    first, again = np.array([[0]], np.uint8), np.array([[0], [0b1111_1100]], np.uint8)
+    other = np.array([[0b0000_1111], [0b0011_1111]], np.uint8)
+    (alone,), (rivalled,) = (find_neighbours(query, [other], distance) for query in (first, again))
+    assert alone.right(distance)[0] > rivalled.right(distance)[0]
 
 
 def test_the_ratio_is_one_of_distances_not_of_squares():

@@ -9,7 +9,7 @@ import pytest
 from services.planner.mapping.edges import judge_edges, stands_alone
 from services.planner.mapping.nodes import add_node
 from services.planner.ports import Observation
-from services.planner.profiles import DEFAULT, OUTDOOR, THESIS
+from services.planner.profiles import DEFAULT, OUTDOOR, PHOTO, THESIS
 from shared.mapgraph.graph import MapGraph
 from shared.messages.features import Features
 from shared.messages.maps import Edge, Node, PutEdge
@@ -109,6 +109,20 @@ def test_a_match_that_stands_alone_is_an_edge_without_free_ground():
     assert not stands_alone(match(0, 25, 80), DEFAULT)
     assert not stands_alone(match(0, 35, 80), OUTDOOR)  # driven there it would be one
     assert not stands_alone(match(0, 35, 80).model_copy(update={"confidence": 0.4}), DEFAULT)
+
+
+def test_what_is_seen_alike_from_far_away_is_no_edge():
+    """Two rooms with one view out of the window, and a room whose furniture stands a little differently."""
+    near = match(0, 90, 120).model_copy(update={"noise_rad": math.radians(0.3), "moved": 60})
+    assert stands_alone(near, PHOTO)
+    assert not stands_alone(near.model_copy(update={"moved": 20}), PHOTO)
+    assert not stands_alone(near.model_copy(update={"moved": None}), PHOTO)
+    assert not stands_alone(near.model_copy(update={"noise_rad": math.radians(0.6)}), PHOTO)
+    assert not stands_alone(near.model_copy(update={"disparity_rad": math.radians(1.8)}), PHOTO)
+    assert stands_alone(near.model_copy(update={"moved": 20}), DEFAULT)
+    few = near.model_copy(update={"inliers": 44, "moved": 42})
+    assert not stands_alone(few, PHOTO)  # who stands that near shares more
+    assert stands_alone(few.model_copy(update={"disparity_rad": 0.3}), PHOTO)
 
 
 def test_a_match_that_two_motions_explain_does_not_stand_alone(monkeypatch):
