@@ -78,10 +78,10 @@ def test_one_that_maps_wants_to_be_certain(matcher):
 
 
 def test_what_the_frame_shows_takes_over_from_what_was_driven(tracker):
-    drive(tracker, (0.9, 0.0))
+    drive(tracker, (1.9, 0.0))
     spread_m = tracker.here.spread_m
-    tracker.confirm(by_node(match(1, 0.2, 0.0, 150)))
-    assert tracker.here.node_id == 1
+    tracker.confirm(by_node(match(2, 0.2, 0.0, 150)))
+    assert tracker.here.node_id == 2
     assert tracker.here.spread_m < spread_m
     np.testing.assert_allclose((tracker.here.x_m, tracker.here.y_m), (-0.2, 0.0), atol=0.02)
 
