@@ -16,9 +16,11 @@ DRIVEN_M = 0.08
 """A driven length is good to 10 % and 8 cm from node to node: wheels slip, and what is common to all of them
 is scale, which bearings leave open anyway."""
 
-SEEN_SHARE = 0.8
-SEEN_M = 0.5
-"""A length by disparity is a guess: things are near here and far there."""
+SEEN_SHARE = 3.0
+SEEN_M = 2.0
+"""A length by disparity is a guess that only keeps the solution finite: along a corridor all of them are
+half of what they are in a room, and many wrong ones together would outweigh what bearings and driven lengths
+say."""
 
 SPOT_M = 0.3
 """Two nodes without a baseline lie this near."""
