@@ -10,6 +10,8 @@ KEEP ?=
 PYTEST_ARGS ?=
 # Most tests wait for processes: twice as many workers as the smallest machine has cores. 0: in one process.
 WORKERS ?= 4
+# The matrices are small: more threads only wait for each other, and tests run side by side.
+export OPENBLAS_NUM_THREADS = 1
 FUZZ_ARGS ?= --seconds 60 --json runs/fuzz/report.json
 
 BIN := $(VENV)/bin

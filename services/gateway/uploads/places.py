@@ -11,11 +11,15 @@ from shared.mapgraph.local.hypotheses import Hypothesis, hypotheses, is_plain, l
 from shared.messages.maps import MapRequest
 from shared.messages.matching import MatchReply
 from shared.topics import MAP
+from shared.web.problems import ProblemError
 
 RAD_PER_M = 0.16
 """Disparity by distance, 9 degrees a metre indoors, where no edge of the map was driven that would say it."""
 INLIERS_MIN = 22
 """Fewer prove nothing: no bearing of a pair with more was wrong by 20 degrees (`topnav calibrate`)."""
+
+AWAY = (503, 504)
+"""Of a service that is absent or too slow."""
 
 Verdict = Literal["found", "ambiguous", "weak", "not_found"]
 
@@ -35,8 +39,7 @@ class Places:
 async def places_of(gateway: Gateway, reply: MatchReply) -> Places:
     """Where the picture of an answer can have been taken.
 
-    Raises:
-        ProblemError: the map cannot be read.
+    While the map store is away nobody knows which nodes are one place: then no place is named.
     """
     timeout_s = gateway.settings.compute_timeout_s
     claims = {
@@ -46,7 +49,12 @@ async def places_of(gateway: Gateway, reply: MatchReply) -> Places:
         agreeing = any(match.status in ("ok", "no_baseline") for match in reply.results)
         return Places("weak" if agreeing else "not_found", [])
     wish = MapRequest(action="read")
-    found = await gateway.asker.ask("map_store", MAP, wish, timeout_s, map=reply.map)
+    try:
+        found = await gateway.asker.ask("map_store", MAP, wish, timeout_s, map=reply.map)
+    except ProblemError as problem:
+        if problem.status_code not in AWAY:
+            raise
+        return Places("weak", [])
     return await gateway.work(lambda: judged(MapGraph(found.nodes, found.edges), claims))
 
 

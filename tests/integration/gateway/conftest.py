@@ -55,10 +55,18 @@ def robot_bus(endpoint: str) -> Iterator[Bus]:
 
 @pytest.fixture(scope="module")
 def features(endpoint: str) -> Iterator[FeatureService]:
-    """The feature service's stand-in, beside that of the map store."""
+    """The feature service's stand-in."""
     service = FeatureService()
-    with Peer(endpoint, "map_store", MapStore().setup), Peer(endpoint, "features", service.setup):
+    with Peer(endpoint, "features", service.setup):
         yield service
+
+
+@pytest.fixture
+def map_store(endpoint: str, gateway: str) -> Iterator[None]:
+    """The map store on the bus, where the gateway has met it."""
+    with Peer(endpoint, "map_store", MapStore().setup):
+        assert wait_until(lambda: sees(gateway, ["map_store"]), WAIT_S)
+        yield
 
 
 @pytest.fixture(scope="module")

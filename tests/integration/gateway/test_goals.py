@@ -9,6 +9,8 @@ from PIL import Image
 
 from tests.integration.gateway.standins import FeatureService, Planner
 
+pytestmark = pytest.mark.usefixtures("map_store")
+
 
 def picture(kind: str = "PNG", width: int = 256) -> bytes:
     out = io.BytesIO()

@@ -41,6 +41,7 @@ def picture() -> bytes:
     return out.getvalue()
 
 
+@pytest.mark.usefixtures("map_store")
 def test_an_uploaded_picture_is_localised_and_driven_to(page: "Page", planner: Planner) -> None:
     page.wait_for_selector('#graph[data-nodes="5"]', timeout=WAIT_MS)
     goal = {"name": "goal.png", "mimeType": "image/png", "buffer": picture()}

@@ -3,29 +3,19 @@
 import os
 import shutil
 import subprocess
-from collections.abc import Iterator
 
 import httpx
 import pytest
 
 from shared.bus import Bus, wait_until
 from shared.topics import FRAME
-from tests.integration.gateway.gateway_process import WAIT_S, sees
-from tests.integration.gateway.standins import MapStore, Peer
+from tests.integration.gateway.gateway_process import WAIT_S
 from tests.integration.gateway.test_robots import frame
 from tests.readme import examples
 
 pytestmark = pytest.mark.skipif(shutil.which("curl") is None, reason="the examples are written with curl")
 
 STRICT = 'set -euo pipefail; curl() { command curl --silent --show-error --fail-with-body "$@"; }\n'
-
-
-@pytest.fixture
-def map_store(endpoint: str, gateway: str) -> Iterator[None]:
-    """The map store on the bus, where the gateway has met it."""
-    with Peer(endpoint, "map_store", MapStore().setup):
-        assert wait_until(lambda: sees(gateway, ["map_store"]), WAIT_S)
-        yield
 
 
 @pytest.mark.usefixtures("map_store")
