@@ -59,7 +59,6 @@ class Departure:
         self._profile, self._maps, self._matcher = profile, maps, matcher
         self.node_id, self.sector, self.heading_rad = node_id, sector, heading_rad
         self.here = start
-        self._from_the_node = start.spread_m == 0.0
         self._back = BackBearing()
         self._steps = self._unseen_frames = 0
         self._retreating = False
@@ -139,7 +138,7 @@ class Departure:
         if not edges.admitted:
             return self._close("no view back to be sure of", lost=True)
         self._mark_explored()
-        driven_m = self.here.length_m if self._from_the_node else None  # else the start is a guess
+        driven_m = self.here.length_m
         node_id, refused = add_node(self._maps, observation, edges, self._profile, self.node_id, driven_m)
         count = len(self._maps.graph.neighbours(node_id))
         nearest, match = ranked(matches, self._profile)[0]

@@ -22,8 +22,8 @@ PATIENCE_FRAMES = 40
 """Frames that show nothing within reach after which the robot must have been carried, however smoothly;
 chosen: 5 m of search, twice the way on which it can have gone astray by itself."""
 
-SEEN_SHARE = 1.0
-"""Error of the distance to a node by disparity: along a corridor it is half of what it is in a room."""
+SEEN_SHARE = 0.5
+"""Error of the distance to a node by disparity: things are near here and far there."""
 SEEN_M = 0.15
 """And at least this much: where the robot believes to stand at a node."""
 
