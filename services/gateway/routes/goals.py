@@ -9,6 +9,7 @@ from services.gateway.http.bodies import PICTURE_TYPES
 from services.gateway.state import GatewayDep, MapQuery, RobotPath
 from services.gateway.uploads.goal import Goal, goal_of
 from services.gateway.uploads.places import Places, Verdict, places_of
+from shared.mapgraph.local.hypotheses import COMPARED_NODES
 from shared.messages.matching import MatchReply, MatchRequest
 from shared.topics import MATCH
 
@@ -16,8 +17,6 @@ router = APIRouter(tags=["goals"])
 
 SHOWN = 5
 """Nodes in an answer; chosen: as many as fit beside the picture in the console."""
-COMPARED = 24
-"""Nodes compared: as many as the planner compares a goal with, so that no rival is missed."""
 
 FILE = {"type": "string", "format": "binary"}
 PICTURE_BODY: dict[str, Any] = {
@@ -91,7 +90,7 @@ async def check_goal(
 ) -> GoalAnswer:
     """Say where in the map the uploaded picture was taken."""
     goal = await goal_of(request, gateway, robot)
-    question = MatchRequest(map=map_name, features=goal.features, best_k=COMPARED, with_matches=False)
+    question = MatchRequest(map=map_name, features=goal.features, best_k=COMPARED_NODES, with_matches=False)
     timeout_s = gateway.settings.compute_timeout_s
     reply = await gateway.asker_for(robot).ask("features", MATCH, question, timeout_s, robot=robot)
     return _answer(robot, goal, reply, await places_of(gateway, reply))

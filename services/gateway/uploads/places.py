@@ -62,5 +62,5 @@ def judged(graph: MapGraph, claims: Mapping[int, Claim]) -> Places:
     """The places that claims speak for."""
     places = hypotheses(graph, claims, RAD_PER_M)
     plain = is_plain(places, typical_similarity(graph))
-    rivals = len(likely(places)) > 1
-    return Places("ambiguous" if rivals else "found" if plain else "weak", likely(places))
+    left = likely(places)
+    return Places("ambiguous" if len(left) > 1 else "found" if plain else "weak", left)

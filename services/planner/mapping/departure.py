@@ -38,9 +38,10 @@ class NewNode:
 
 
 class Departure:
-    """Leaving `node_id` through `sector`. `done` once the direction is closed; a NewNode ends it as well.
+    """Leaving the node of `start` through `sector`, until `done` or a NewNode.
 
     Attributes:
+        done: whether the direction is closed.
         heading_rad: where it leads, robot frame; held by the yaw towards the node left.
         here: where the robot is, by what it did since.
         unseen: whether the last frame showed nothing of the map.
@@ -51,13 +52,12 @@ class Departure:
         profile: Profile,
         maps: MapAccess,
         matcher: Matcher,
-        node_id: int,
         sector: int,
         heading_rad: float,
         start: Displacement,
     ) -> None:
         self._profile, self._maps, self._matcher = profile, maps, matcher
-        self.node_id, self.sector, self.heading_rad = node_id, sector, heading_rad
+        self.node_id, self.sector, self.heading_rad = start.node_id, sector, heading_rad
         self.here = start
         self._back = BackBearing()
         self._steps = self._unseen_frames = 0

@@ -43,9 +43,7 @@ def add_node(
         The new node's id, and a note for each edge that was refused.
     """
     node_id = maps.graph.next_id()
-    admitted = edges_to(node_id, edges.admitted, edges, profile, driven_from)
-    driven = [edge.model_copy(update={"length_m": length_m}) for edge in admitted if edge.traversals]
-    admitted = [edge for edge in admitted if not edge.traversals] + driven
+    admitted = edges_to(node_id, edges.admitted, edges, profile, driven_from, length_m)
     features = observation.features
     node = Node(
         node_id=node_id,
@@ -77,16 +75,20 @@ def explored_along(graph: MapGraph, node: Node, seen: Sequence[Edge], profile: P
 
 
 def edges_to(
-    node_id: int, matches: Matches, judged: NewEdges, profile: Profile, driven_from: int | None = None
+    node_id: int,
+    matches: Matches,
+    judged: NewEdges,
+    profile: Profile,
+    driven_from: int | None = None,
+    length_m: float | None = None,
 ) -> list[Edge]:
-    """Edges from a node, whose frame was matched, to the nodes of `matches`."""
-    return [
-        _edge(node_id, other, match, profile, clear=other in judged.clear, driven=other == driven_from)
-        for other, match in matches.items()
-    ]
+    """Edges from a node, whose frame was matched, to the nodes of `matches`; `length_m` of the driven one."""
+    edges = [_edge(node_id, n, match, profile, clear=n in judged.clear) for n, match in matches.items()]
+    driven = {"traversals": 1, "why": "driven", "length_m": length_m}
+    return [e.model_copy(update=driven) if driven_from in (e.a, e.b) else e for e in edges]
 
 
-def _edge(node_id: int, other: int, match: NodeMatch, profile: Profile, *, clear: bool, driven: bool) -> Edge:
+def _edge(node_id: int, other: int, match: NodeMatch, profile: Profile, *, clear: bool) -> Edge:
     found = heading_of(match, profile)
     return Edge.model_validate(
         {
@@ -98,7 +100,6 @@ def _edge(node_id: int, other: int, match: NodeMatch, profile: Profile, *, clear
             "s_min": profile.mapping.s_edge_min,
             "s_max": profile.mapping.s_node_max,
             "clear": clear,
-            "traversals": int(driven),
-            "why": "driven" if driven else "seen",
+            "why": "seen",
         }
     )

@@ -79,9 +79,7 @@ class FrontierExploration:
         if sector is None:
             return Decision("hold", why=f"node {node_id} has no unexplored direction", notes=notes)
         heading_rad = math.remainder(sector_rad(sector) + yaw_rad, math.tau)
-        self._departure = Departure(
-            self._profile, self._maps, self._matcher, node_id, sector, heading_rad, here
-        )
+        self._departure = Departure(self._profile, self._maps, self._matcher, sector, heading_rad, here)
         self._head(heading_rad)
         why = f"leaving node {node_id} by direction {sector}"
         return Decision("go", heading_rad, method="frontier", why=why, notes=notes)

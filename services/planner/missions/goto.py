@@ -19,6 +19,7 @@ from services.planner.travel.machine import Travel
 from services.planner.travel.states import Event, State
 from services.planner.travel.tracking import Tracker
 from shared.mapgraph.graph import EdgeKey, edge_key
+from shared.mapgraph.local.hypotheses import COMPARED_NODES
 from shared.mapgraph.routing import GOAL
 from shared.messages.features import Features
 from shared.messages.missions import FailureKind
@@ -26,10 +27,6 @@ from shared.messages.sensors import Ranges
 
 COMPARED = 8
 """Nodes compared to localise a frame; chosen: about the neighbours of a node of the apartment's map."""
-
-GOAL_COMPARED = 24
-"""Nodes compared to locate the goal, once: with 16 a wrong place of a hostel had no rival in 1 of 80
-pictures, with 24 in none."""
 
 LOST_MAX = 12
 """Times a mission may lose its waypoint; chosen: more than any round of `topnav hide-and-seek` needed."""
@@ -74,7 +71,7 @@ class GoalDestination:
         self.arrival_rad = profile.arrival.arrival_rad
         self.aliased = False
         self._failure: tuple[FailureKind, str] = ("goal_not_in_map", "the goal resembles no node of the map")
-        found = self._matcher.locate(goal, GOAL_COMPARED)
+        found = self._matcher.locate(goal, COMPARED_NODES)
         self.places = GoalPlaces(maps, found, profile)
         self._targets = self._reachable(found)
         self._avoid: dict[int, float] = {}

@@ -103,15 +103,17 @@ class Tracker:
 
     def was_carried(self) -> bool:
         """Whether this frame shows another place than the one before it."""
-        if self._before is None:
-            return False
-        match = self._matcher.match([], 0, (self._before,)).get(GOAL)
-        return match is None or not self._is_sure(match)
+        match = self._against_before()
+        return self._before is not None and (match is None or not self._is_sure(match))
 
     def likeness(self, s_goal: int) -> float:
         """Similarity of this frame to a picture, as a share of its similarity to the frame before."""
-        match = self._matcher.match([], 0, (self._before,)).get(GOAL) if self._before is not None else None
+        match = self._against_before()
         return s_goal / max(similarity(match, self._profile) if match is not None else s_goal, 1)
+
+    def _against_before(self) -> NodeMatch | None:
+        """This frame against the one before it."""
+        return None if self._before is None else self._matcher.match([], 0, (self._before,)).get(GOAL)
 
     def _is_away(self) -> bool:
         """Whether the robot is not where its own motion says; that is forgotten then."""

@@ -43,7 +43,6 @@ class Motion:
         mask: (N,) matches that rather belong to it than not.
         score: nats of evidence, less how unlikely its tilt and climb are.
         rival: the same of the best pose with another heading, at least 0: chance.
-        explained: share of the matches that likely are right which belong to it.
         moving: evidence of the motion, part of the scene being far.
         parallax: nats by which this is more than that of its rotation alone.
         heading_std_rad: spread of its heading.
@@ -55,7 +54,6 @@ class Motion:
     mask: BoolArray
     score: float
     rival: float
-    explained: float
     moving: float
     parallax: float
     heading_std_rad: float
@@ -110,7 +108,6 @@ def likeliest_motion(
         mask=mask,
         score=float(found.score[0]),
         rival=max(0.0, *found.score[other].tolist()) if other.any() else 0.0,
-        explained=float(cues.right[mask].sum() / max(cues.right.sum(), 1e-9)),
         moving=moving,
         parallax=moving - still,
         heading_std_rad=float(np.sqrt(found.covariance[0, SIDEWAYS, SIDEWAYS])) / level,

@@ -23,6 +23,7 @@ from shared.mapgraph.local.sights import LocalSight, sights_among
 
 FloatArray = npt.NDArray[np.float64]
 IndexArray = npt.NDArray[np.intp]
+Tree = Sequence[tuple[LocalSight, bool]]
 
 BEARING_RAD = float(np.deg2rad(1.5))
 """Error of an edge's bearing; of true edges 99 % are within 2 degrees (`topnav explore`)."""
@@ -69,18 +70,21 @@ def relative_poses(
     sights = sights_among(graph, index, metres_per_rad)
     asked = sorted(node for node in set(wanted) if node in index)
     rows = np.array([index[node] for node in asked], dtype=np.intp)
-    yaws, yaw_std = _solve_yaws(len(order), sights, rows)
-    places, covariance = _solve_positions(len(order), sights, yaws, rows)
+    tree = _tree(len(order), sights)
+    yaws, yaw_std = _solve_yaws(len(order), sights, tree, rows)
+    places, covariance = _solve_positions(len(order), sights, tree, yaws, rows)
     return {
         node: RelativePose(places[index[node]], covariance[k], float(yaws[index[node]]), float(yaw_std[k]))
         for k, node in enumerate(asked)
     }
 
 
-def _solve_yaws(count: int, sights: Sequence[LocalSight], rows: IndexArray) -> tuple[FloatArray, FloatArray]:
+def _solve_yaws(
+    count: int, sights: Sequence[LocalSight], tree: Tree, rows: IndexArray
+) -> tuple[FloatArray, FloatArray]:
     """Yaw of each node relative to the first, and the standard deviations of some."""
     yaws = np.zeros(count)
-    for sight, forward in _tree(count, sights):
+    for sight, forward in tree:
         known, new = (sight.a, sight.b) if forward else (sight.b, sight.a)
         yaws[new] = yaws[known] + (sight.yaw_rad if forward else -sight.yaw_rad)
     if not sights:
@@ -96,11 +100,11 @@ def _solve_yaws(count: int, sights: Sequence[LocalSight], rows: IndexArray) -> t
 
 
 def _solve_positions(
-    count: int, sights: Sequence[LocalSight], yaws: FloatArray, rows: IndexArray
+    count: int, sights: Sequence[LocalSight], tree: Tree, yaws: FloatArray, rows: IndexArray
 ) -> tuple[FloatArray, FloatArray]:
     """(N, 2) positions in the frame of the first node, and (M, 2, 2) covariances of some."""
     places = np.zeros((count, 2))
-    for sight, forward in _tree(count, sights):
+    for sight, forward in tree:
         step = sight.length_m * sight.direction(yaws[sight.a])
         known, new = (sight.a, sight.b) if forward else (sight.b, sight.a)
         places[new] = places[known] + (step if forward else -step)
@@ -125,7 +129,7 @@ def _ends(sights: Sequence[LocalSight]) -> IndexArray:
     return np.array([(s.a, s.b) for s in sights], dtype=np.intp)
 
 
-def _tree(count: int, sights: Sequence[LocalSight]) -> list[tuple[LocalSight, bool]]:
+def _tree(count: int, sights: Sequence[LocalSight]) -> Tree:
     """Sights that reach every node from the first one; True where one leads from a to b.
 
     Along what was driven before what was only seen: a robot does not drive a wrong edge.
