@@ -43,7 +43,7 @@ class Edge(Part):
         s_min, s_max: thresholds in force when it was made.
         clear: the distance sensors saw free ground all the way.
         length_m: how far the robot went from one to the other when it made the edge, by its own commands or
-            odometry; None where it did not.
+            odometry; None where it did not. length_std_m: its standard deviation.
         traversals: times the robot drove it; failures: times it tried in vain.
     """
 
@@ -61,6 +61,7 @@ class Edge(Part):
     pipeline: str = ""
     clear: bool = False
     length_m: float | None = Field(default=None, ge=0.0)
+    length_std_m: float | None = Field(default=None, ge=0.0)
     traversals: int = Field(default=0, ge=0)
     failures: int = Field(default=0, ge=0)
     suspended: bool = False

@@ -74,6 +74,7 @@ def edge() -> maps.Edge:
         pipeline="sift",
         clear=True,
         length_m=1.4,
+        length_std_m=0.2,
         traversals=2,
         failures=1,
         suspended=True,

@@ -99,7 +99,7 @@ class Departure:
     def _new_or_known(self, observation: Observation, matches: Matches) -> Decision | NewNode:
         """New unless some node of the whole map is too similar; aliased views make no node known."""
         graph = self._maps.graph
-        edges = judge_edges(graph, observation, matches, self._profile, self.node_id, self.here)
+        edges = judge_edges(graph, observation, matches, self._profile, self.here)
         credible = {n: m for n, m in matches.items() if n not in edges.refused or n == self.node_id}
         closes_loop = self._profile.mapping.s_far and far_nodes(graph, edges.admitted, self.node_id)
         if is_new_node(credible, self._profile) or closes_loop:
@@ -134,12 +134,11 @@ class Departure:
 
     def _new_node(self, observation: Observation, matches: Matches) -> Decision | NewNode:
         graph = self._maps.graph
-        edges = judge_edges(graph, observation, matches, self._profile, self.node_id, self.here)
+        edges = judge_edges(graph, observation, matches, self._profile, self.here)
         if not edges.admitted:
             return self._close("no view back to be sure of", lost=True)
         self._mark_explored()
-        driven_m = self.here.length_m
-        node_id, refused = add_node(self._maps, observation, edges, self._profile, self.node_id, driven_m)
+        node_id, refused = add_node(self._maps, observation, edges, self._profile, self.here)
         count = len(self._maps.graph.neighbours(node_id))
         nearest, match = ranked(matches, self._profile)[0]
         values: dict[str, float | int | str | bool | None] = {

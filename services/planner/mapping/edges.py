@@ -65,8 +65,7 @@ def judge_edges(
     observation: Observation,
     matches: Matches,
     profile: Profile,
-    driven_from: int | None,
-    here: Displacement | None = None,
+    here: Displacement | None,
 ) -> NewEdges:
     """Which edges a new node gets.
 
@@ -75,9 +74,9 @@ def judge_edges(
         observation: the frame and the distances around.
         matches: the frame against the nodes of the map.
         profile: thresholds.
-        driven_from: node the robot came from.
-        here: what it did since it was there.
+        here: where the robot is relative to the node it came from; None where nobody knows.
     """
+    driven_from = here.node_id if here is not None else None
     known = {n: m for n, m in matches.items() if n in graph.nodes}
     away = elsewhere(graph, known, here, profile)
     similar = {n: m for n, m in known.items() if n not in away and _admitted(m, profile)}

@@ -1,6 +1,7 @@
 """Making a node and its edges from the current frame (thesis equations 4.1 and 4.2)."""
 
 from collections.abc import Sequence
+from typing import Any
 
 from services.planner.mapping.edges import NewEdges
 from services.planner.ports import MapAccess, Matches, Note, Observation
@@ -10,6 +11,9 @@ from services.planner.surroundings import openings
 from shared.mapgraph.edge_ends import edge_between
 from shared.mapgraph.frontiers import with_explored
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.displacement import Displacement
+from shared.mapgraph.local.driven_length import driven_length
+from shared.mapgraph.local.reach import LOOP_NODES
 from shared.messages.maps import AddNode, Edge, Node, Operation, PutEdge, UpdateNode
 from shared.messages.matching import NodeMatch
 
@@ -26,8 +30,7 @@ def add_node(
     observation: Observation,
     edges: NewEdges,
     profile: Profile,
-    driven_from: int | None,
-    length_m: float | None = None,
+    here: Displacement | None,
 ) -> tuple[int, tuple[Note, ...]]:
     """Write the frame as a node with its edges, in one transaction.
 
@@ -36,14 +39,14 @@ def add_node(
         observation: the frame and the distances around.
         edges: the edges it gets.
         profile: thresholds.
-        driven_from: node the robot came from; its edge counts as driven.
-        length_m: how far it went from there.
+        here: where the robot is relative to the node it came from, whose edge counts as driven; None where
+            nobody knows.
 
     Returns:
         The new node's id, and a note for each edge that was refused.
     """
     node_id = maps.graph.next_id()
-    admitted = edges_to(node_id, edges.admitted, edges, profile, driven_from, length_m)
+    admitted = _driven(edges_to(node_id, edges.admitted, edges, profile), maps.graph, here, profile)
     features = observation.features
     node = Node(
         node_id=node_id,
@@ -74,18 +77,22 @@ def explored_along(graph: MapGraph, node: Node, seen: Sequence[Edge], profile: P
     return [with_explored(node, grown, rules), *changed]
 
 
-def edges_to(
-    node_id: int,
-    matches: Matches,
-    judged: NewEdges,
-    profile: Profile,
-    driven_from: int | None = None,
-    length_m: float | None = None,
-) -> list[Edge]:
-    """Edges from a node, whose frame was matched, to the nodes of `matches`; `length_m` of the driven one."""
-    edges = [_edge(node_id, n, match, profile, clear=n in judged.clear) for n, match in matches.items()]
-    driven = {"traversals": 1, "why": "driven", "length_m": length_m}
-    return [e.model_copy(update=driven) if driven_from in (e.a, e.b) else e for e in edges]
+def edges_to(node_id: int, matches: Matches, judged: NewEdges, profile: Profile) -> list[Edge]:
+    """Edges from a node, whose frame was matched, to the nodes of `matches`."""
+    return [_edge(node_id, n, match, profile, clear=n in judged.clear) for n, match in matches.items()]
+
+
+def _driven(edges: list[Edge], graph: MapGraph, here: Displacement | None, profile: Profile) -> list[Edge]:
+    """The edges of a new node with what the robot's way to it says of them."""
+    if here is None:
+        return edges
+    others = {edge.a for edge in edges}
+    known = driven_length(graph, here, others, profile.sensing.disparity_rad_per_m, LOOP_NODES)
+    learnt: dict[int, dict[str, Any]] = {here.node_id: {"traversals": 1, "why": "driven"}}
+    if known is not None:
+        length = {"length_m": known.length_m, "length_std_m": known.std_m}
+        learnt[known.node_id] = learnt.get(known.node_id, {}) | length
+    return [edge.model_copy(update=learnt.get(edge.a, {})) for edge in edges]
 
 
 def _edge(node_id: int, other: int, match: NodeMatch, profile: Profile, *, clear: bool) -> Edge:

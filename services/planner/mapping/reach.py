@@ -6,7 +6,7 @@ from services.planner.profiles import Profile
 from services.planner.similarity import apart_rad, trusted
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.claims import CONFIDENCE_MIN, Claim, claim_of
-from shared.mapgraph.local.displacement import Displacement, seen_from
+from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import NEAR_NODES
 from shared.mapgraph.local.reach import nearby, out_of_reach
 from shared.messages.matching import NodeMatch
@@ -40,15 +40,6 @@ def nodes_nearby(graph: MapGraph, here: Displacement | None, profile: Profile, c
     if here is None or profile.sensing.similarity == "raw":
         return []
     return nearby(graph, here, profile.sensing.disparity_rad_per_m, count, NEAR_NODES)
-
-
-def standing_at(node_id: int, match: NodeMatch | None, yaw_rad: float, profile: Profile) -> Displacement:
-    """Where a robot is that travelled to a node: about there, as far off as the view's disparity says."""
-    heading_rad = match.heading_rad if match is not None else None
-    disparity_rad = match.disparity_rad if match is not None else None
-    return seen_from(
-        node_id, heading_rad, yaw_rad, (disparity_rad or 0.0) / profile.sensing.disparity_rad_per_m
-    )
 
 
 def _claim(match: NodeMatch, profile: Profile, confidence_min: float) -> Claim | None:

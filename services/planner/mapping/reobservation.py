@@ -4,10 +4,10 @@ import math
 
 from services.planner.mapping.edges import judge_edges
 from services.planner.mapping.nodes import edges_to, explored_along
-from services.planner.mapping.reach import standing_at
 from services.planner.ports import MapAccess, Matches, Note, Observation
 from services.planner.profiles import Profile
 from shared.mapgraph.frontiers import frontier_sectors
+from shared.mapgraph.local.displacement import Displacement
 from shared.messages.maps import Edge, UpdateNode
 
 
@@ -16,8 +16,7 @@ def close_known_directions(
     observation: Observation,
     matches: Matches,
     profile: Profile,
-    node_id: int,
-    yaw_rad: float,
+    here: Displacement,
 ) -> tuple[Note, ...]:
     """Mark the directions of a node explored in which nodes added since are in sight.
 
@@ -28,16 +27,15 @@ def close_known_directions(
         observation: the frame and the distances around.
         matches: the frame against the nodes most like it.
         profile: thresholds.
-        node_id: the node.
-        yaw_rad: direction of the node's camera in the robot frame.
+        here: where the robot is relative to the node.
 
     Returns:
         A note when directions were closed.
     """
-    graph, node = maps.graph, maps.graph.nodes[node_id]
+    graph, node_id, yaw_rad = maps.graph, here.node_id, -here.yaw_rad
+    node = graph.nodes[node_id]
     others = {n: m for n, m in matches.items() if n != node_id}
-    here = standing_at(node_id, matches.get(node_id), yaw_rad, profile)
-    judged = judge_edges(graph, observation, others, profile, node_id, here)
+    judged = judge_edges(graph, observation, others, profile, here)
     new = {n: m for n, m in (judged.admitted | judged.covered).items() if graph.edge(node_id, n) is None}
     seen = [_turned(edge, node_id, yaw_rad) for edge in edges_to(node_id, new, judged, profile)]
     looked, *changed = explored_along(graph, node, seen, profile)

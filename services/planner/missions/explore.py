@@ -11,7 +11,7 @@ import numpy as np
 from services.planner.mapping.departure import Departure, NewNode
 from services.planner.mapping.edges import NewEdges
 from services.planner.mapping.nodes import add_node
-from services.planner.mapping.reach import nodes_nearby, standing_at
+from services.planner.mapping.reach import nodes_nearby
 from services.planner.mapping.reobservation import close_known_directions
 from services.planner.mapping.strategies import ThesisExploration
 from services.planner.mission_kinds import MissionContext, MissionKind, NoParameters
@@ -62,12 +62,12 @@ class FrontierExploration:
 
     def _arrived(self, observation: Observation, notes: tuple[Note, ...]) -> Decision:
         """At a node with a frontier: what the map has grown by since it was made may have closed some."""
-        node_id, yaw_rad = self._destination.reached
+        node_id = self._destination.reached
         count = self._profile.mapping.edge_candidates
         around = nodes_nearby(self._maps.graph, Displacement(node_id), self._profile, count)
         matches = self._matcher.match(around, count)
-        closed = close_known_directions(self._maps, observation, matches, self._profile, node_id, yaw_rad)
-        here = standing_at(node_id, matches.get(node_id), yaw_rad, self._profile)
+        here = self._travel.tracker.standing_at(node_id, matches)
+        closed = close_known_directions(self._maps, observation, matches, self._profile, here)
         return self._leave(here, (*notes, *closed))
 
     def _leave(self, here: Displacement, notes: tuple[Note, ...]) -> Decision:

@@ -36,7 +36,7 @@ class FrontierDestination:
     """Any node with a frontier; remembers what failed, so that exploration always ends.
 
     Attributes:
-        reached: the node at which the last travel ended, and the yaw of its camera in the robot frame.
+        reached: the node at which the last travel ended.
     """
 
     compared, search_steps = COMPARED, SEARCH_STEPS
@@ -49,7 +49,7 @@ class FrontierDestination:
         self._experience = experience
         self.picture: Features | None = None
         self.arrival_rad = profile.arrival.travel_arrival_rad
-        self.reached = (0, 0.0)
+        self.reached = 0
         self._end = 0
         self._failures: dict[int, int] = {}
         self._bad_starts: set[int] = set()
@@ -122,7 +122,5 @@ class FrontierDestination:
         if end not in tracker.possible(matches):
             return f"aliased: other nodes resemble this view more than node {end}"
         self._bad_starts, self._in_vain = set(), 0
-        match = matches.get(end)
-        yaw_rad = match.yaw_rad if match is not None and match.yaw_rad is not None else 0.0
-        self.reached = (end, yaw_rad)
+        self.reached = end
         return ""

@@ -6,14 +6,17 @@ the robot has looked in vain for long.
 """
 
 import logging
+from collections.abc import Mapping
 from dataclasses import replace
 
-from services.planner.mapping.reach import claims, in_reach, nodes_nearby, standing_at
+from services.planner.mapping.reach import claims, in_reach, nodes_nearby
 from services.planner.ports import MapAccess, Matcher, Matches, Observation
 from services.planner.profiles import Profile
-from services.planner.similarity import ranked, similarity, trusted
+from services.planner.similarity import similarity, trusted
+from shared.mapgraph.local.claims import Claim
 from shared.mapgraph.local.displacement import Displacement
-from shared.mapgraph.local.hypotheses import Hypothesis, hypotheses, likely
+from shared.mapgraph.local.hypotheses import NEAR_NODES, Hypothesis, hypotheses, likely
+from shared.mapgraph.local.resection import resected
 from shared.mapgraph.routing import GOAL
 from shared.messages.features import Features
 from shared.messages.matching import NodeMatch
@@ -22,10 +25,9 @@ PATIENCE_FRAMES = 40
 """Frames that show nothing within reach after which the robot must have been carried, however smoothly;
 chosen: 5 m of search, twice the way on which it can have gone astray by itself."""
 
-SEEN_SHARE = 0.5
-"""Error of the distance to a node by disparity: things are near here and far there."""
-SEEN_M = 0.15
-"""And at least this much: where the robot believes to stand at a node."""
+AT_NODE_M = 0.2
+"""How far a robot is from a node at which it arrived, where nothing more is known: half of what counts as
+there."""
 
 COMPARED = 8
 """Nodes around the robot that are compared with its view; chosen: as many as a goto compares."""
@@ -91,15 +93,31 @@ class Tracker:
         Args:
             matches: those that are possible.
         """
-        graph = self._maps.graph
-        seen = [(n, m) for n, m in ranked(matches, self._profile) if n in graph.nodes and self._is_sure(m)]
-        if not seen:
+        graph, sights = self._maps.graph, self._sights(matches)
+        if not sights:
             return
-        best = min((_displacement(node, match, self._profile) for node, match in seen), key=_spread)
+        nearest = min(sights, key=lambda node: (sights[node].disparity_rad, node))
+        best = self._resected(sights, nearest)
+        if best is None:
+            return
         if self.here is None or best.spread_m <= self.here.spread_m or self.here.node_id not in graph.nodes:
             self.here = best
         elif self.here.node_id in matches and (yaw := matches[self.here.node_id].yaw_rad) is not None:
             self.here = replace(self.here, yaw_rad=-yaw)
+
+    def standing_at(self, node_id: int, matches: Matches) -> Displacement:
+        """Where the robot is relative to a node it travelled to, by what it sees and what it did.
+
+        Args:
+            node_id: the node.
+            matches: of the frame, with the nodes around.
+        """
+        found = self._resected(self._sights(self.possible(matches)), node_id, self.here)
+        if found is not None:
+            return found
+        match = matches.get(node_id)
+        yaw_rad = match.yaw_rad if match is not None and match.yaw_rad is not None else 0.0
+        return Displacement(node_id, yaw_rad=-yaw_rad, spread_m=AT_NODE_M)
 
     def was_carried(self) -> bool:
         """Whether this frame shows another place than the one before it."""
@@ -140,9 +158,20 @@ class Tracker:
         return {node: matches[node] for node in found[0].nodes}
 
     def _places(self, matches: Matches) -> list[Hypothesis]:
-        sure = {node: match for node, match in matches.items() if self._is_sure(match)}
-        sights = claims(sure, self._profile)
-        return hypotheses(self._maps.graph, sights, self._profile.sensing.disparity_rad_per_m)
+        rad_per_m = self._profile.sensing.disparity_rad_per_m
+        return hypotheses(self._maps.graph, self._sights(matches), rad_per_m)
+
+    def _sights(self, matches: Matches) -> dict[int, Claim]:
+        """What the frame claims for sure of nodes of the map."""
+        nodes = self._maps.graph.nodes
+        sure = {node: match for node, match in matches.items() if node in nodes and self._is_sure(match)}
+        return claims(sure, self._profile)
+
+    def _resected(
+        self, sights: Mapping[int, Claim], node_id: int, reckoned: Displacement | None = None
+    ) -> Displacement | None:
+        rad_per_m = self._profile.sensing.disparity_rad_per_m
+        return resected(self._maps.graph, sights, node_id, rad_per_m, NEAR_NODES, reckoned)
 
     def _shows_any(self, matches: Matches) -> bool:
         return any(self._is_sure(match) for match in matches.values())
@@ -150,13 +179,3 @@ class Tracker:
     def _is_sure(self, match: NodeMatch) -> bool:
         enough = similarity(match, self._profile) > self._profile.travel.s_via_min
         return enough and trusted(match, self._profile)
-
-
-def _displacement(node_id: int, match: NodeMatch, profile: Profile) -> Displacement:
-    """Where the frame is by what it sees of one node."""
-    here = standing_at(node_id, match, match.yaw_rad or 0.0, profile)
-    return replace(here, spread_m=SEEN_SHARE * here.length_m + SEEN_M)
-
-
-def _spread(here: Displacement) -> float:
-    return here.spread_m

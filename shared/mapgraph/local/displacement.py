@@ -7,8 +7,6 @@ DRIFT = 0.15
 """Share of a way that the robot may be off its end: wheels slip, walls are touched."""
 BEARING_FROM_M = 0.4
 """From here on the bearing of the node left tells the direction better than the commands do."""
-AT_NODE_M = 0.2
-"""Where a robot stands that travelled to a node, in both directions; half of what counts as arrived."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +52,7 @@ class Displacement:
 
 
 def seen_from(
-    node_id: int, heading_rad: float | None, yaw_rad: float, length_m: float, spread_m: float = AT_NODE_M
+    node_id: int, heading_rad: float | None, yaw_rad: float, length_m: float, spread_m: float
 ) -> Displacement:
     """Where a frame is that sees a node about so far away; at the node where there is no direction."""
     if heading_rad is None:

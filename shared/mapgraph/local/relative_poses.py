@@ -93,7 +93,7 @@ def _solve_yaws(
     measured, weight = np.array([s.yaw_rad for s in sights]), np.ones(len(sights))
     for _ in range(ROUNDS):
         residual = np.remainder(measured - equations.of(yaws[:, None]) + np.pi, 2.0 * np.pi) - np.pi
-        weight = _cauchy(residual / YAW_RAD) / YAW_RAD**2
+        weight = cauchy(residual / YAW_RAD) / YAW_RAD**2
         yaws = yaws + equations.step(weight, residual)[:, 0]
     variance = equations.covariance(weight, rows)[:, 0, 0]
     return yaws, np.sqrt(np.maximum(variance, 0.0))
@@ -120,7 +120,7 @@ def _solve_positions(
         apart = np.maximum(np.linalg.norm(places[ends[:, 1]] - places[ends[:, 0]], axis=1), length)
         aside = np.where(blind, spread, np.hypot(BEARING_RAD * apart, POINT_M))
         residual, scale = wanted - equations.of(places), np.concatenate([aside, spread])
-        weight = _cauchy(residual / scale) / scale**2
+        weight = cauchy(residual / scale) / scale**2
         places = places + equations.step(weight, residual)
     return places, equations.covariance(weight, rows)
 
@@ -151,5 +151,6 @@ def _tree(count: int, sights: Sequence[LocalSight]) -> Tree:
     return found
 
 
-def _cauchy(residual: FloatArray) -> FloatArray:
+def cauchy(residual: FloatArray) -> FloatArray:
+    """Weights of residuals, in standard deviations."""
     return np.asarray(1.0 / (1.0 + (residual / CAUCHY) ** 2), dtype=np.float64)

@@ -13,8 +13,8 @@ from shared.messages.maps import Edge
 
 DRIVEN_SHARE = 0.1
 DRIVEN_M = 0.08
-"""A driven length is good to 10 % and 8 cm from node to node: wheels slip, and what is common to all of them
-is scale, which bearings leave open anyway."""
+"""A driven length is good to 10 % and 8 cm from node to node, if its edge does not say less: wheels slip, and
+what is common to all of them is scale, which bearings leave open anyway."""
 
 SEEN_SHARE = 3.0
 SEEN_M = 2.0
@@ -77,7 +77,8 @@ def metres_per_rad(graph: MapGraph, otherwise: float) -> float:
 def _sight(edge: Edge, index: Mapping[int, int], metres_per_rad: float) -> LocalSight:
     bearing_rad, yaw_rad = edge.heading_ab_rad, edge.yaw_ab_rad or 0.0
     if edge.length_m is not None:
-        length_m, spread_m = edge.length_m, DRIVEN_SHARE * edge.length_m + DRIVEN_M
+        length_m, rough_m = edge.length_m, DRIVEN_SHARE * edge.length_m + DRIVEN_M
+        spread_m = rough_m if edge.length_std_m is None else max(edge.length_std_m, rough_m)
     elif bearing_rad is None or edge.disparity_rad is None:
         length_m, spread_m = 0.0, SPOT_M
     else:

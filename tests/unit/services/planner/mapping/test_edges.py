@@ -11,10 +11,14 @@ from services.planner.mapping.nodes import add_node
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT, OUTDOOR, PHOTO, THESIS
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.displacement import Displacement
 from shared.messages.features import Features
 from shared.messages.maps import Edge, Node, PutEdge
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
+
+HERE = Displacement(0, spread_m=9.0)
+"""From place 0, and gone astray since."""
 
 
 class Memory:
@@ -50,8 +54,9 @@ def match(node_id, inliers, raw):
 
 def edges_of(profile, *matches, driven_from=None):
     maps = Memory()
-    edges = judge_edges(maps.graph, observation(), {m.node_id: m for m in matches}, profile, driven_from)
-    node, _ = add_node(maps, observation(), edges, profile, driven_from)
+    here = Displacement(driven_from, spread_m=9.0) if driven_from is not None else None
+    edges = judge_edges(maps.graph, observation(), {m.node_id: m for m in matches}, profile, here)
+    node, _ = add_node(maps, observation(), edges, profile, here)
     return maps.graph.neighbours(node)
 
 
@@ -97,10 +102,10 @@ def test_a_place_too_uncertain_for_an_edge_leaves_nothing_unexplored_that_way():
         [PutEdge(edge=Edge(a=0, b=1, heading_ab_rad=0.3, heading_ba_rad=0.3 - math.pi, yaw_ab_rad=0.0))]
     )
     weak = match(1, 35, 80)
-    edges = judge_edges(maps.graph, observation(), {0: match(0, 90, 120), 1: weak}, OUTDOOR, 0)
+    edges = judge_edges(maps.graph, observation(), {0: match(0, 90, 120), 1: weak}, OUTDOOR, HERE)
     assert set(edges.admitted) == {0}
     assert set(edges.covered) == {1}, "its neighbour supports it"
-    node, _ = add_node(maps, observation(), edges, OUTDOOR, 0)
+    node, _ = add_node(maps, observation(), edges, OUTDOOR, HERE)
     assert maps.graph.neighbours(node) == [0]
 
 
@@ -129,3 +134,19 @@ def test_a_match_that_two_motions_explain_does_not_stand_alone(monkeypatch):
     monkeypatch.setattr("services.planner.mapping.edges.is_ambiguous", lambda _: True)
     assert not stands_alone(match(0, 60, 80), DEFAULT)
     assert stands_alone(match(0, 60, 80), THESIS)  # its rules know no such thing
+
+
+def test_a_node_knows_how_far_the_robot_came_even_where_a_corner_hides_what_it_left():
+    maps = Memory()
+    behind = Edge(a=0, b=1, heading_ab_rad=0.3, heading_ba_rad=0.3 - math.pi, yaw_ab_rad=0.0, length_m=1.0)
+    maps.commit([PutEdge(edge=behind)])
+    back_rad = 0.3 - math.pi
+    here = Displacement(1, x_m=0.5 * math.cos(0.3), y_m=0.5 * math.sin(0.3), spread_m=0.1)
+    sight = match(0, 90, 120).model_copy(update={"heading_rad": back_rad, "disparity_rad": 0.2})
+    edges = judge_edges(maps.graph, observation(), {0: sight}, DEFAULT, here)
+    node, _ = add_node(maps, observation(), edges, DEFAULT, here)
+    edge = maps.graph.edge(0, node)
+    assert edge is not None
+    assert edge.length_m == pytest.approx(1.5, abs=0.05)
+    assert edge.length_std_m > 0.1
+    assert edge.traversals == 0, "it did not drive along it"

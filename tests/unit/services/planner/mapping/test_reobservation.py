@@ -7,6 +7,7 @@ import pytest
 from services.planner.mapping.reobservation import close_known_directions
 from services.planner.profiles import DEFAULT
 from shared.mapgraph.frontiers import frontier_sectors
+from shared.mapgraph.local.displacement import Displacement
 from shared.messages.maps import Edge, Node, PutEdge, UpdateNode
 from tests.unit.services.planner.mapping.test_edges import Memory, match, observation
 
@@ -15,6 +16,11 @@ QUARTER = 3
 
 AHEAD = {1: match(1, 90, 120), 2: match(2, 80, 110)}
 """Two nodes that support each other."""
+
+
+def standing(yaw_rad):
+    """About place 0, whose camera looks this way."""
+    return Displacement(0, yaw_rad=-yaw_rad, spread_m=0.2)
 
 
 @pytest.fixture
@@ -28,7 +34,9 @@ def maps():
 
 
 def test_a_direction_with_a_known_place_in_sight_is_no_longer_unexplored(maps):
-    notes = close_known_directions(maps, observation(), {0: match(0, 300, 320), **AHEAD}, DEFAULT, 0, 0.0)
+    notes = close_known_directions(
+        maps, observation(), {0: match(0, 300, 320), **AHEAD}, DEFAULT, standing(0.0)
+    )
     assert frontier_sectors(maps.graph.nodes[0]) == [QUARTER]
     assert [note.kind for note in notes] == ["directions_seen"]
     assert maps.graph.neighbours(0) == [], "the robot only stands about there: no edge"
@@ -36,18 +44,18 @@ def test_a_direction_with_a_known_place_in_sight_is_no_longer_unexplored(maps):
 
 def test_directions_are_those_of_the_place_however_the_robot_stands(maps):
     """The robot is turned by 90 degrees to the right: what it sees ahead lies to the place's right."""
-    close_known_directions(maps, observation(), AHEAD, DEFAULT, 0, math.pi / 2)
+    close_known_directions(maps, observation(), AHEAD, DEFAULT, standing(math.pi / 2))
     assert frontier_sectors(maps.graph.nodes[0]) == [0, QUARTER]
-    close_known_directions(maps, observation(), AHEAD, DEFAULT, 0, 0.3 - math.pi / 2)
+    close_known_directions(maps, observation(), AHEAD, DEFAULT, standing(0.3 - math.pi / 2))
     assert frontier_sectors(maps.graph.nodes[0]) == [0]
 
 
 def test_a_look_alike_that_stands_alone_closes_nothing(maps):
-    assert close_known_directions(maps, observation(), {1: match(1, 90, 120)}, DEFAULT, 0, 0.0) == ()
+    assert close_known_directions(maps, observation(), {1: match(1, 90, 120)}, DEFAULT, standing(0.0)) == ()
     assert frontier_sectors(maps.graph.nodes[0]) == [0, QUARTER]
 
 
 def test_without_news_nothing_is_written(maps):
     before = maps.graph.nodes[0]
-    assert close_known_directions(maps, observation(), {0: match(0, 300, 320)}, DEFAULT, 0, 0.0) == ()
+    assert close_known_directions(maps, observation(), {0: match(0, 300, 320)}, DEFAULT, standing(0.0)) == ()
     assert maps.graph.nodes[0] == before

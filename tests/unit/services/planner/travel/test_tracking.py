@@ -112,3 +112,19 @@ def test_weak_or_doubtful_matches_do_not_say_where_it_is(matcher):
     weak = match(3, 0.0, 0.0, DEFAULT.travel.s_via_min)
     doubtful = match(5, 1.0, 0.0, 300).model_copy(update={"status": "inconsistent"})
     assert tracker_of(matcher).possible(by_node(weak, doubtful)) == {}
+
+
+def test_at_the_end_of_a_way_it_knows_where_beside_the_node_it_stands(tracker):
+    for _ in range(4):
+        drive(tracker, (1.0, 0.0))
+    around = by_node(match(4, -0.3, 0.2), match(24, -0.3, 1.2, 60), match(5, 0.7, 0.2, 60))
+    here = tracker.standing_at(4, around | by_node(match(9, 0.3, 0.2, 180)))
+    assert here.node_id == 4
+    np.testing.assert_allclose((here.x_m, here.y_m), (0.3, -0.2), atol=0.03)
+    assert here.spread_m < 0.15
+
+
+def test_a_node_that_does_not_show_is_reached_all_the_same(tracker):
+    here = tracker.standing_at(0, {})
+    assert (here.node_id, here.length_m, here.yaw_rad) == (0, 0.0, 0.0)
+    assert here.spread_m > 0.1

@@ -60,5 +60,5 @@ def test_the_bearing_of_the_node_left_corrects_the_direction():
 
 
 def test_where_a_frame_is_by_what_it_sees_of_one_node():
-    here = seen_from(3, heading_rad=0.0, yaw_rad=0.0, length_m=2.0)
+    here = seen_from(3, heading_rad=0.0, yaw_rad=0.0, length_m=2.0, spread_m=0.1)
     assert math.dist((here.x_m, here.y_m), (-2.0, 0.0)) < 1e-9
