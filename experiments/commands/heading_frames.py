@@ -1,6 +1,7 @@
 """`topnav study heading-frames`: heading errors of all seven methods on rendered frame pairs."""
 
 import math
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -28,14 +29,18 @@ def heading_frames(
     seed: options.Seed = 1,
     pipeline: options.PipelineName = None,
     rocking_deg: Rocking = 0.0,
+    plot: Annotated[Path | None, typer.Option(help="Draw the reliability diagram into this PNG.")] = None,
     json_file: options.JsonFile = None,
     data_dir: options.DataDir = options.DATA_DIR,
 ) -> int:
     """Heading errors of all seven methods from the same matches, frames 0.3 to 3 m apart."""
     from experiments.rendered.headings import measure
-    from experiments.rendered.tables import distance_table, method_table, status_counts
+    from experiments.rendered.tables import confidence_table, distance_table, method_table, status_counts
+    from experiments.work.page import new_figure
+    from experiments.work.reliability import draw_reliability
     from services.features.pipeline.named_pipelines import find_profile
     from services.features.pipeline.pipeline import Pipeline
+    from services.launcher.drawing.pictures import save_figure
     from services.launcher.terminal.output import print_rows, wide_console, write_json
     from simulator.world.world_file import load_world
 
@@ -51,7 +56,7 @@ def heading_frames(
             rocking_rad=math.radians(rocking_deg),
         )
     verified, raw = method_table(results), method_table(results, raw=True)
-    by_distance = distance_table(results)
+    by_distance, calibration = distance_table(results), confidence_table(results)
     report = {
         "pairs": len(results),
         "methods": verified,
@@ -61,10 +66,16 @@ def heading_frames(
         "rocking_deg": rocking_deg,
         "methods_raw_matches": raw,
         "by_distance": by_distance,
+        "calibration": calibration,
         "two_view_status": status_counts(results),
     }
     write_json(json_file, report)
+    if plot is not None:
+        figure = new_figure(5.0, 4.5)
+        draw_reliability(figure.subplots(), calibration)
+        save_figure(figure, plot)
     for title, table in (("verified matches", verified), ("raw matches", raw)):
         print_rows(f"heading error, {title}", [{"method": name, **row} for name, row in table.items()])
     print_rows("by distance, epipolar", by_distance)
+    print_rows("confidence of the two-view method", calibration["bins"])
     return len(results)

@@ -1,14 +1,15 @@
 """Error histograms of the tours and the reliability diagram."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from experiments.photographs.study import Found
-from experiments.photographs.tables import RIGHT_DEG, calibration
+from experiments.photographs.tables import calibration
 from experiments.work.page import SERIES, new_figure
+from experiments.work.reliability import RIGHT_DEG, draw_reliability
 from services.launcher.drawing.pictures import save_figure
 
 BIN_DEG = 10.0
@@ -27,7 +28,7 @@ def draw(path: Path, found: Found) -> None:
     for axes, (name, links) in zip(grid, panels, strict=False):
         offs = [link.off_deg for link in links]
         _errors(axes, name, [off for off in offs if off is not None], len(offs))
-    _reliability(grid[len(panels)], calibration(found.links))
+    draw_reliability(grid[len(panels)], calibration(found.links))
     for axes in grid[len(panels) + 1 :]:
         axes.axis("off")
     save_figure(figure, path)
@@ -43,27 +44,3 @@ def _errors(axes: Any, name: str, errors_deg: Sequence[float], links: int) -> No
     axes.set_xticks(range(0, 181, 30))
     axes.yaxis.get_major_locator().set_params(integer=True)
     axes.set_title(f"{name}: {len(errors_deg)} of {links} links answered", fontsize=9)
-
-
-def _reliability(axes: Any, figures: Mapping[str, Any]) -> None:
-    """Share of right answers against confidence; the area of a point grows with its answers."""
-    bins = figures["bins"]
-    axes.plot((0, 1), (0, 1), color="0.7", linewidth=1)
-    most = max((one["n"] for one in bins), default=1)
-    axes.scatter(
-        [one["confidence"] for one in bins],
-        [one["right"] for one in bins],
-        s=[30 + 270 * one["n"] / most for one in bins],
-        color=SERIES[0],
-        alpha=0.7,
-    )
-    for one in bins:
-        axes.annotate(str(one["n"]), (one["confidence"], one["right"]), fontsize=7, ha="center", va="center")
-    axes.set(
-        xlabel="confidence", ylabel=f"share within {RIGHT_DEG:g} deg", xlim=(-0.05, 1.05), ylim=(-0.05, 1.05)
-    )
-    axes.grid(alpha=0.3)
-    ece = figures["ece"]
-    axes.set_title(
-        "reliability, numbers are answers" + (f"; error {ece:.2f}" if ece is not None else ""), fontsize=9
-    )

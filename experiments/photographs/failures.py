@@ -11,8 +11,9 @@ from experiments.photographs.eyes import Eyes
 from experiments.photographs.looks import picture_of
 from experiments.photographs.pair_picture import Caption, pair_picture
 from experiments.photographs.study import Found
-from experiments.photographs.tables import RIGHT_DEG, LinkAnswer
+from experiments.photographs.tables import LinkAnswer
 from experiments.work.page import markdown_table
+from experiments.work.reliability import RIGHT_DEG
 from services.launcher.client.failure import ExperimentError
 
 UNANSWERED_MOST = 20

@@ -7,13 +7,11 @@ from typing import Any
 import numpy as np
 
 from experiments.photographs.comparing import Answer
+from experiments.work.reliability import RIGHT_DEG, reliability
 from services.launcher.terminal.output import rounded
 
-RIGHT_DEG, OPPOSITE_DEG = 20.0, 90.0
-"""Off by less, a robot gets nearer and looks again; off by more than the other, it drives away."""
-
-BINS = 10
-"""Of confidence: the usual number for an expected calibration error (Guo et al. 2017)."""
+OPPOSITE_DEG = 90.0
+"""Off by more, a robot drives away."""
 
 Row = dict[str, Any]
 
@@ -84,21 +82,8 @@ def tilt_row(deg: float, same: Sequence[Answer], changes_deg: Sequence[float]) -
 
 
 def calibration(links: Sequence[LinkAnswer]) -> Row:
-    """How often answers of a confidence are right, and the expected calibration error (ece).
-
-    ece = sum over bins of n / N |share right - mean confidence|; None without an answer.
-    """
-    answered = [(link.answer.confidence, link.off_deg) for link in links if link.off_deg is not None]
-    confidence = np.array([one for one, _ in answered])
-    right = np.array([off_deg < RIGHT_DEG for _, off_deg in answered], dtype=bool)
-    number = np.minimum((confidence * BINS).astype(int), BINS - 1)
-    bins, ece = [], 0.0
-    for k in np.unique(number):
-        inside = number == k
-        mean, good = float(confidence[inside].mean()), float(right[inside].mean())
-        ece += inside.mean() * abs(good - mean)
-        bins.append({"confidence": rounded(mean), "right": rounded(good), "n": int(inside.sum())})
-    return {"ece": rounded(ece) if bins else None, "bins": bins}
+    """How often answers of a confidence are right, and the expected calibration error (ece)."""
+    return reliability([(link.answer.confidence, link.off_deg) for link in links if link.off_deg is not None])
 
 
 def share(these: Sequence[bool]) -> float | None:

@@ -1,12 +1,15 @@
 """Statistics over pose pairs: errors by method, and matches, disparity and error by distance. Pure."""
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 from experiments.rendered.headings import METHODS, PairResult
+from experiments.work.reliability import reliability
 from services.launcher.terminal.output import rounded
 
 BINS_M = (0.3, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0, 8.0, 12.0)
@@ -29,6 +32,12 @@ def distance_table(results: Sequence[PairResult]) -> list[dict[str, float | str]
         if inside:
             rows.append({"distance_m": f"{low:g}-{high:g}", **_row(inside)})
     return rows
+
+
+def confidence_table(results: Sequence[PairResult]) -> dict[str, Any]:
+    """How often bearings of the two-view method are right, by their confidence."""
+    errors = [(r.confidence, r.verified_errors_rad["epipolar"]) for r in results]
+    return reliability([(confidence, math.degrees(e)) for confidence, e in errors if e is not None])
 
 
 def status_counts(results: Iterable[PairResult]) -> dict[str, int]:

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from experiments.rendered.headings import METHODS, PairResult
-from experiments.rendered.tables import distance_table, method_table, status_counts
+from experiments.rendered.tables import confidence_table, distance_table, method_table, status_counts
 
 
 def result(distance_m, error_deg, verified=30):
@@ -29,3 +29,9 @@ def test_bins_share_no_pair_and_the_last_one_holds_its_end():
         ("0.5-1", 1, 90),
         ("8-12", 1, 10),
     ]
+
+
+def test_confidence_is_compared_with_how_often_a_bearing_is_right():
+    pairs = [result(1, 1.0), result(1, 3.0), result(1, 40.0), result(1, None)]
+    (only,) = confidence_table(pairs)["bins"]
+    assert only == {"confidence": 0.9, "right": pytest.approx(2 / 3, abs=1e-3), "n": 3}

@@ -81,7 +81,10 @@ def test_the_command_passes_the_tilt_on_and_records_it(monkeypatch, tmp_path, op
 
     monkeypatch.setattr(headings, "measure", measured)
     monkeypatch.chdir(tmp_path)
-    done = CliRunner().invoke(heading_frames.app, ["--json", "f.json", *options])
+    done = CliRunner().invoke(heading_frames.app, ["--json", "f.json", "--plot", "f.png", *options])
     assert done.exit_code == 0, done.output
     assert asked == [pytest.approx(np.deg2rad(sigma_deg))]
-    assert json.loads((tmp_path / "f.json").read_text())["rocking_deg"] == sigma_deg
+    report = json.loads((tmp_path / "f.json").read_text())
+    assert report["rocking_deg"] == sigma_deg
+    assert report["calibration"]["bins"] == [{"confidence": 1.0, "right": 1.0, "n": 1}]
+    assert (tmp_path / "f.png").stat().st_size > 0
