@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from services.planner.mapping.back_bearing import BackBearing
-from services.planner.mapping.edges import judge_edges
+from services.planner.mapping.edges import CONFIDENCE_MIN, judge_edges
 from services.planner.mapping.nodes import add_node, is_new_node
 from services.planner.mapping.reach import nodes_nearby
 from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
@@ -16,6 +16,7 @@ from shared.mapgraph.frontiers import mark_explored, sector_rad
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
 from shared.messages.maps import UpdateNode
+from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
 
 COMPARED = 5
@@ -24,6 +25,9 @@ COMPARED = 5
 CORNER_STEPS = 2
 """Steps after which a view that is out of sight of the map means a corner; chosen: before, a frame was
 missed."""
+
+TURN_RAD = math.radians(15.0)
+"""A robot turns less than that between two frames; chosen: half a radian a second."""
 
 DOORWAY_NODES = 3
 """Nearest nodes asked whether they know an opening; chosen: one before, one after and one beside it."""
@@ -75,14 +79,13 @@ class Departure:
         best = ranked(matches, self._profile)
         s_best = similarity(best[0][1], self._profile) if best else 0
         self.progress = Progress(nearest_node=best[0][0] if best else None, similarity=s_best)
-        if origin is not None and trusted(origin, self._profile) and origin.yaw_rad is not None:
-            self.heading_rad = math.remainder(sector_rad(self.sector) + origin.yaw_rad, math.tau)
-            self.here = self.here.turned(origin.yaw_rad, origin.heading_rad)
         self.unseen = s_best <= rules.s_edge_min
+        aliased = self._profile.sensing.similarity == "verified" and self._is_aliased(origin)
+        if not aliased:
+            self._keep_course(origin)
         if self.unseen:
             return self._out_of_sight(s_best)
-        verified = self._profile.sensing.similarity == "verified"
-        if verified and not self._back.follows(origin, self.heading_rad, self._profile):
+        if aliased:
             return self._lost_track()
         if self._retreating or self._doorway(observation.ranges, matches):
             return self._new_node(observation, {**self._candidates(), **matches})
@@ -95,6 +98,25 @@ class Departure:
             return self._close("nothing new on the way")
         heading_rad = through_gap_rad(observation.ranges, self.heading_rad, self._profile)
         return _go(heading_rad, f"leaving node {self.node_id}, S {s_best}")
+
+    def _is_aliased(self, origin: NodeMatch | None) -> bool:
+        """Whether the node left is seen as if the robot had turned at once, or where it cannot lie.
+
+        The two sides of a desk island look the same.
+        """
+        if origin is not None and origin.yaw_rad is not None and trusted(origin, self._profile):
+            turned_rad = abs(math.remainder(origin.yaw_rad + self.here.yaw_rad, math.tau))
+            if turned_rad > TURN_RAD:
+                return True
+        return not (self.unseen or self._back.follows(origin, self.heading_rad, self._profile))
+
+    def _keep_course(self, origin: NodeMatch | None) -> None:
+        """Straight on by the yaw of the node left; and where that and a sure bearing put the robot."""
+        if origin is None or origin.yaw_rad is None or not trusted(origin, self._profile):
+            return
+        self.heading_rad = math.remainder(sector_rad(self.sector) + origin.yaw_rad, math.tau)
+        sure = origin.confidence >= CONFIDENCE_MIN
+        self.here = self.here.turned(origin.yaw_rad, origin.heading_rad if sure else None)
 
     def _new_or_known(self, observation: Observation, matches: Matches) -> Decision | NewNode:
         """New unless some node of the whole map is too similar; aliased views make no node known."""

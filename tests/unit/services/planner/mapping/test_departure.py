@@ -1,0 +1,76 @@
+"""Leaving a node: its view keeps the course, unless it is that of a look-alike."""
+
+import math
+
+import pytest
+
+from services.planner.mapping.departure import Departure
+from services.planner.ports import Observation
+from services.planner.profiles import DEFAULT
+from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.displacement import Displacement
+from shared.messages.maps import Node
+from shared.messages.sensors import Ranges
+from tests.unit.services.planner.travel.seen import Maps, by_node, features, match
+
+STEP_M = (0.12, 0.0)
+ANGLES_RAD = tuple(math.radians(30 * n) for n in range(12))
+RANGES = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(4.0,) * 12, max_range_m=4.0)
+
+
+class Matcher:
+    """Shows one node."""
+
+    def __init__(self):
+        self.seen = match(0, 0.0, 0.0)
+
+    def match(self, node_ids, best_k=0, targets=()):  # noqa: ARG002
+        return by_node(self.seen)
+
+
+@pytest.fixture
+def matcher():
+    return Matcher()
+
+
+@pytest.fixture
+def departure(matcher):
+    """Straight ahead from node 0, whose camera looks along x as the robot's does."""
+    maps = Maps(MapGraph([Node(node_id=0, open=(True,) * 12)]))
+    return Departure(DEFAULT, maps, matcher, 0, 0.0, Displacement(0))
+
+
+def drive(departure, matcher, view):
+    matcher.seen = view
+    return departure.step(Observation(features(), RANGES, STEP_M))
+
+
+def behind(away_m, yaw_rad=0.0, confidence=0.9):
+    sight = match(0, -away_m, 0.0, DEFAULT.mapping.s_node_max + 20)
+    return sight.model_copy(update={"yaw_rad": yaw_rad, "confidence": confidence})
+
+
+def test_the_view_of_the_node_left_keeps_the_course(departure, matcher):
+    for step in range(1, 6):
+        decision = drive(departure, matcher, behind(0.12 * step, yaw_rad=0.05))
+    assert decision.heading_rad == pytest.approx(0.05)
+    assert departure.here.yaw_rad == pytest.approx(-0.05)
+
+
+def test_a_node_seen_as_if_the_robot_had_turned_at_once_is_a_look_alike(departure, matcher):
+    """The two sides of a desk island: half a turn, and all else fits."""
+    for step in range(1, 4):
+        drive(departure, matcher, behind(0.12 * step))
+    where = departure.here
+    decision = drive(departure, matcher, behind(0.48, yaw_rad=math.pi))
+    assert "jumped" in decision.why
+    assert abs(decision.heading_rad) == pytest.approx(math.pi), "back on the way it came"
+    assert departure.here.yaw_rad == where.yaw_rad
+    assert departure.here.x_m == pytest.approx(where.x_m + STEP_M[0])
+
+
+def test_an_unsure_bearing_does_not_say_where_the_robot_is(departure, matcher):
+    for step in range(1, 5):
+        drive(departure, matcher, behind(0.12 * step))
+    drive(departure, matcher, match(0, 0.6, 0.0).model_copy(update={"confidence": 0.4}))
+    assert departure.here.x_m == pytest.approx(0.6, abs=0.01)
