@@ -14,7 +14,9 @@ from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
 
 SECTOR_RAD = math.tau / SECTORS
-ASIDE_RAD = np.deg2rad([0.0, 5.0, -5.0, 10.0, -10.0, 15.0, -15.0, 20.0, -20.0, 25.0, -25.0, 30.0, -30.0])
+ASIDE_RAD = np.deg2rad([0.0, *(side * angle for angle in range(5, 50, 5) for side in (1.0, -1.0))])
+"""Turns aside, the least first, up to one and a half sectors: half a metre from a door jamb the way through
+lies 40 degrees beside the straight one."""
 WITHIN_SECTOR_RAD = np.deg2rad(np.arange(-15.0, 16.0, 5.0))
 
 
@@ -24,15 +26,15 @@ def free_way_m(ranges: Ranges, heading_rad: float, profile: Profile) -> float:
     return float(obstacles.clearance_m(heading_rad + WITHIN_SECTOR_RAD, profile.sensing.robot_slim_m).max())
 
 
-def through_gap_rad(ranges: Ranges, heading_rad: float, profile: Profile) -> float:
-    """The heading, turned aside as little as needed to go on where it is blocked: so gaps are threaded.
+def through_gap(ranges: Ranges, heading_rad: float, profile: Profile) -> tuple[float, float]:
+    """The heading, turned aside as little as needed to go on where it is blocked, and the free way there.
 
     A gap hardly wider than the robot is missed by a straight line that starts a hand's breadth beside it.
     """
     obstacles = Obstacles.from_ranges(ranges.angles_rad, ranges.distances_m, ranges.max_range_m)
     free_m = obstacles.clearance_m(heading_rad + ASIDE_RAD, profile.sensing.robot_slim_m)
-    wanted_m = min(profile.sensing.opening_m, float(free_m.max()))
-    return math.remainder(heading_rad + float(ASIDE_RAD[(free_m >= wanted_m).argmax()]), math.tau)
+    chosen = int((free_m >= min(profile.sensing.opening_m, float(free_m.max()))).argmax())
+    return math.remainder(heading_rad + float(ASIDE_RAD[chosen]), math.tau), float(free_m[chosen])
 
 
 def openings(ranges: Ranges, profile: Profile) -> tuple[bool, ...]:

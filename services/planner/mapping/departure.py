@@ -3,14 +3,13 @@
 import math
 from dataclasses import dataclass
 
-from services.planner.mapping.back_bearing import BackBearing
 from services.planner.mapping.edges import CONFIDENCE_MIN, judge_edges
 from services.planner.mapping.nodes import add_node, is_new_node
-from services.planner.mapping.reach import nodes_nearby
+from services.planner.mapping.reach import elsewhere, nodes_nearby
 from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.similarity import ranked, similarity, trusted
-from services.planner.surroundings import free_way_m, hidden_openings, through_gap_rad
+from services.planner.surroundings import hidden_openings, through_gap
 from shared.mapgraph.cycle_consistency import far_nodes
 from shared.mapgraph.frontiers import mark_explored, sector_rad
 from shared.mapgraph.graph import MapGraph
@@ -25,9 +24,6 @@ COMPARED = 5
 CORNER_STEPS = 2
 """Steps after which a view that is out of sight of the map means a corner; chosen: before, a frame was
 missed."""
-
-TURN_RAD = math.radians(15.0)
-"""A robot turns less than that between two frames; chosen: half a radian a second."""
 
 DOORWAY_NODES = 3
 """Nearest nodes asked whether they know an opening; chosen: one before, one after and one beside it."""
@@ -63,7 +59,6 @@ class Departure:
         self._profile, self._maps, self._matcher = profile, maps, matcher
         self.node_id, self.sector, self.heading_rad = start.node_id, sector, heading_rad
         self.here = start
-        self._back = BackBearing()
         self._steps = self._unseen_frames = 0
         self._retreating = False
         self.done = self.unseen = False
@@ -73,42 +68,31 @@ class Departure:
         """Go straight on, or end."""
         self._steps += 1
         rules = self._profile.mapping
-        matches = self._matcher.match(self._near(), 0)
-        origin = matches.get(self.node_id)
         self.here = self.here.moved(observation.moved_m)
+        matches = self._seen()
         best = ranked(matches, self._profile)
         s_best = similarity(best[0][1], self._profile) if best else 0
         self.progress = Progress(nearest_node=best[0][0] if best else None, similarity=s_best)
         self.unseen = s_best <= rules.s_edge_min
-        aliased = self._profile.sensing.similarity == "verified" and self._is_aliased(origin)
-        if not aliased:
-            self._keep_course(origin)
+        self._keep_course(matches.get(self.node_id))
         if self.unseen:
             return self._out_of_sight(s_best)
-        if aliased:
-            return self._lost_track()
         if self._retreating or self._doorway(observation.ranges, matches):
             return self._new_node(observation, {**self._candidates(), **matches})
         if is_new_node(matches, self._profile):
             return self._new_or_known(observation, {**self._candidates(), **matches})
-        blocked_m = self._profile.sensing.blocked_m
-        if free_way_m(observation.ranges, self.heading_rad, self._profile) < blocked_m:
+        heading_rad, free_m = through_gap(observation.ranges, self.heading_rad, self._profile)
+        if free_m < self._profile.sensing.blocked_m:
             return self._close("blocked by an obstacle")
         if self._steps > rules.departure_steps:
             return self._close("nothing new on the way")
-        heading_rad = through_gap_rad(observation.ranges, self.heading_rad, self._profile)
         return _go(heading_rad, f"leaving node {self.node_id}, S {s_best}")
 
-    def _is_aliased(self, origin: NodeMatch | None) -> bool:
-        """Whether the node left is seen as if the robot had turned at once, or where it cannot lie.
-
-        The two sides of a desk island look the same.
-        """
-        if origin is not None and origin.yaw_rad is not None and trusted(origin, self._profile):
-            turned_rad = abs(math.remainder(origin.yaw_rad + self.here.yaw_rad, math.tau))
-            if turned_rad > TURN_RAD:
-                return True
-        return not (self.unseen or self._back.follows(origin, self.heading_rad, self._profile))
+    def _seen(self) -> Matches:
+        """The nodes around that lie where they are seen: the two sides of a desk island look the same."""
+        matches = self._matcher.match(self._near(), 0)
+        away = elsewhere(self._maps.graph, matches, self.here, self._profile)
+        return {node: match for node, match in matches.items() if node not in away}
 
     def _keep_course(self, origin: NodeMatch | None) -> None:
         """Straight on by the yaw of the node left; and where that and a sure bearing put the robot."""
@@ -136,14 +120,6 @@ class Departure:
         self._retreating = self._steps > CORNER_STEPS
         heading = self.heading_rad + (math.pi if self._retreating else 0.0)
         return _go(heading, f"out of sight of the map, S {s_best}")
-
-    def _lost_track(self) -> Decision:
-        """The node left seems to lie elsewhere all at once: go back to where it did not."""
-        self._unseen_frames += 1
-        if self._unseen_frames > self._profile.mapping.saturation_steps:
-            return self._close("the view back is aliased", lost=True)
-        self._retreating = True
-        return _go(self.heading_rad + math.pi, f"the bearing back to node {self.node_id} jumped")
 
     def _doorway(self, ranges: Ranges, matches: Matches) -> bool:
         """Whether a way out shows beside the way that the nodes around do not know."""

@@ -5,7 +5,8 @@ A match becomes an edge when
 1. its similarity is above s_edge_min and two-view geometry is sure of its bearing (`_admitted`),
 2. it is the node the robot came from; or the node is not far away, free ground leads there or the match is
    far above doubt, and enough of the raw matches agree (`_credible`),
-3. the node lies where the frame sees it, as far as the robot knows what it did (`reach`),
+3. the node lies where the frame sees it and not too far for an edge, as far as the robot knows what it did
+   (`reach`),
 4. one motion alone explains it (`is_ambiguous`),
 5. a neighbour supports it where it would close a loop, and its neighbours do not contradict it
    (`shared.mapgraph.cycle_consistency`).
@@ -16,7 +17,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from services.planner.mapping.reach import elsewhere
+from services.planner.mapping.reach import no_edges
 from services.planner.ports import Matches, Observation
 from services.planner.profiles import Profile
 from services.planner.similarity import similarity, trusted
@@ -78,7 +79,7 @@ def judge_edges(
     """
     driven_from = here.node_id if here is not None else None
     known = {n: m for n, m in matches.items() if n in graph.nodes}
-    away = elsewhere(graph, known, here, profile)
+    away = no_edges(graph, known, here, profile)
     similar = {n: m for n, m in known.items() if n not in away and _admitted(m, profile)}
     clear = frozenset(
         n

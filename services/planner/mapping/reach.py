@@ -1,5 +1,7 @@
 """Which nodes a frame can be looking at, by what the robot did since the last one. Pure."""
 
+import math
+
 from services.planner.heading.choose import CONFIDENCE_MIN as HEADING_CONFIDENCE_MIN
 from services.planner.ports import Matches
 from services.planner.profiles import Profile
@@ -29,10 +31,22 @@ def in_reach(graph: MapGraph, matches: Matches, here: Displacement, profile: Pro
 def elsewhere(
     graph: MapGraph, matches: Matches, here: Displacement | None, profile: Profile
 ) -> dict[int, str]:
-    """Nodes that lie elsewhere than the frame claims, and why; none where nobody knows where it was taken."""
+    """Nodes around that lie elsewhere than the frame claims; none where nobody knows where it was taken."""
     if here is None or profile.sensing.similarity == "raw":
         return {}
-    return out_of_reach(graph, claims(matches, profile), here, profile.sensing.disparity_rad_per_m)
+    found = claims(matches, profile)
+    return out_of_reach(graph, found, here, profile.sensing.disparity_rad_per_m, NEAR_NODES)
+
+
+def no_edges(
+    graph: MapGraph, matches: Matches, here: Displacement | None, profile: Profile
+) -> dict[int, str]:
+    """Nodes of the whole map that lie elsewhere than the frame claims or too far for an edge, and why."""
+    if here is None or profile.sensing.similarity == "raw":
+        return {}
+    longest_m = profile.mapping.edge_longest_m or math.inf
+    found = claims(matches, profile)
+    return out_of_reach(graph, found, here, profile.sensing.disparity_rad_per_m, longest_m=longest_m)
 
 
 def nodes_nearby(graph: MapGraph, here: Displacement | None, profile: Profile, count: int) -> list[int]:

@@ -40,6 +40,7 @@ def out_of_reach(
     here: Displacement,
     rad_per_m: float,
     most: int = LOOP_NODES,
+    longest_m: float = math.inf,
 ) -> dict[int, str]:
     """Nodes that lie elsewhere than the frame claims, and why.
 
@@ -49,13 +50,16 @@ def out_of_reach(
         here: where the frame was taken; without its node in the map nothing is known.
         rad_per_m: disparity by distance, until driven edges say it better.
         most: nodes of the map reckoned with; of those further off nothing is known, and none is refused.
+        longest_m: what surely lies further away is elsewhere, too.
     """
     if here.node_id not in graph.nodes or not claims:
         return {}
     scale = metres_per_rad(graph, 1.0 / rad_per_m)
     poses = relative_poses(graph, here.node_id, claims, scale, most)
     judged = {
-        node: _contradiction(poses[node], c, here, scale) for node, c in claims.items() if node in poses
+        node: _contradiction(poses[node], c, here, scale, longest_m)
+        for node, c in claims.items()
+        if node in poses
     }
     return {node: f"node {node} {why}" for node, why in judged.items() if why}
 
@@ -78,7 +82,9 @@ def nearby(graph: MapGraph, here: Displacement, rad_per_m: float, count: int, mo
     return sorted(poses, key=lambda node: (float(np.linalg.norm(poses[node].position_m - at)), node))[:count]
 
 
-def _contradiction(pose: RelativePose, claim: Claim, here: Displacement, scale: float) -> str:
+def _contradiction(
+    pose: RelativePose, claim: Claim, here: Displacement, scale: float, longest_m: float
+) -> str:
     """Why the node cannot be where the frame sees it; "" when it can."""
     yaw_miss = abs(math.remainder(here.yaw_rad + claim.yaw_rad - pose.yaw_rad, math.tau))
     if yaw_miss > YAW_RAD + STDS * pose.yaw_std_rad:
@@ -89,6 +95,8 @@ def _contradiction(pose: RelativePose, claim: Claim, here: Displacement, scale: 
     if claim.heading_rad is None:
         spread_m = math.hypot(SPOT_M, _std(covariance, gap / max(far_m, 1e-6)))
         return f"is {far_m:.1f} m from here, seen as this very spot" if far_m > STDS * spread_m else ""
+    if far_m - STDS * _std(covariance, gap / max(far_m, 1e-6)) > longest_m:
+        return f"is {far_m:.1f} m from here: too far"
     angle_rad = here.yaw_rad + claim.heading_rad
     along = np.array([math.cos(angle_rad), math.sin(angle_rad)])
     across = np.array([-along[1], along[0]])

@@ -23,6 +23,13 @@ def test_a_node_a_period_further_is_out_of_reach():
     assert refused({5: claim(0.5, 0.0), 6: claim(0.5, 0.2), 1: claim(0.5, 0.0)}) == {5, 6}
 
 
+def test_what_surely_lies_too_far_away_is_refused():
+    seen = {1: claim(0.5, 0.0), 6: claim(5.5, 0.0)}
+    assert refused(seen) == set()
+    assert set(out_of_reach(GRAPH, seen, HERE, RAD_PER_M, longest_m=3.0)) == {6}
+    assert not out_of_reach(GRAPH, {4: claim(3.5, 0.0)}, HERE, RAD_PER_M, longest_m=3.4), "not surely"
+
+
 def test_what_is_seen_on_the_wrong_side_is_out_of_reach():
     assert refused({2: claim(-1.5, 0.0)}) == {2}
 
