@@ -17,9 +17,6 @@ from tests.postgres import PostgresServer, missing
 REPOSITORY = Path(__file__).resolve().parents[1]
 
 
-ONE_STACK = "tests/e2e/one_stack"
-"""Tests that share a running stack: one worker runs all of them, and the others of a file on one as well."""
-
 LONGEST_FIRST = ("tests/e2e", "tests/integration", "tests")
 """In this order workers take files, so that no long one is left for the end."""
 
@@ -27,11 +24,7 @@ LONGEST_FIRST = ("tests/e2e", "tests/integration", "tests")
 @pytest.hookimpl(optionalhook=True)  # of pytest-xdist, which `make test` runs with
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     """Distribute tests by file; those of a shared stack together."""
-    from xdist.scheduler import LoadScopeScheduling
-
-    class ByStackAndFile(LoadScopeScheduling):
-        def _split_scope(self, nodeid: str) -> str:
-            return ONE_STACK if nodeid.startswith(f"{ONE_STACK}/") else nodeid.partition("::")[0]
+    from tests.scheduling import ByStackAndFile
 
     config.option.loadscopereorder = False
     return ByStackAndFile(config, log)
