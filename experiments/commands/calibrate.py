@@ -1,7 +1,7 @@
 """`topnav calibrate`: measure what a pipeline's similarity means, and propose the planner's thresholds."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -9,10 +9,17 @@ from services.launcher.terminal import options
 
 app = typer.Typer()
 
+Tours = Annotated[Path | None, typer.Option(help="Measure on linked photographs instead: a folder of tours.")]
+Recording = Annotated[
+    Path | None, typer.Option(help="Measure on a recorded drive instead: a file of topnav record.")
+]
+
 
 @app.command()
 def calibrate(
     world: options.World = "apartment",
+    tours: Tours = None,
+    recording: Recording = None,
     pipeline: Annotated[
         str | None, typer.Option(help="Feature pipeline to measure; default: the one that suits the world.")
     ] = None,
@@ -24,25 +31,48 @@ def calibrate(
     ] = None,
     data_dir: options.DataDir = options.DATA_DIR,
 ) -> None:
-    """Measure the thresholds of a pipeline on rendered pairs of frames."""
+    """Measure the thresholds of a pipeline: on rendered pairs of frames, a tour or a recording."""
+    from experiments.calibration.measuring import of_rendering
+    from experiments.calibration.recordings import pairs_of_recording
+    from experiments.calibration.thresholds import distance_rows, propose
+    from experiments.calibration.tours import pairs_of_tours
+    from experiments.photographs.tours import read_tours
     from experiments.rendered.headings import measure
     from experiments.rendered.tables import distance_table
-    from experiments.rendered.thresholds import propose
     from services.features.pipeline.named_pipelines import find_profile
     from services.features.pipeline.pipeline import Pipeline
     from services.launcher.client.environments import environment_of
+    from services.launcher.client.failure import ExperimentError
     from services.launcher.terminal.output import print_figures, print_rows, wide_console, write_json
+    from services.planner.profiles import profile_named
     from simulator.world.world_file import load_world
 
-    place, file = environment_of(world), load_world(world)
-    name = pipeline or place.pipeline or "sift"
+    if tours is not None and recording is not None:
+        raise ExperimentError("expected --tours or --recording, got both: calibrate on one at a time")
+    place = environment_of(world)
+    name = pipeline or place.pipeline or ("photo" if tours is not None else "sift")
     chosen = Pipeline(find_profile(name))
+    base = "photo" if name == "photo" else place.profile(None) or "default"
+    facts: dict[str, Any] = {"pipeline": name, "seed": seed}
+    rows: list[dict[str, Any]] = []
     with wide_console(stderr=True).status("") as status:
-        results = measure(file, chosen, pairs, seed, data_dir, status.update, place.spans.pair_m)
-    proposal, rows = propose(results, place.spans), distance_table(results)
-    facts = {"world": world, "pipeline": name, "pairs": len(results), "seed": seed}
+        if tours is not None:
+            facts["tours"] = str(tours)
+            found, alike = pairs_of_tours(read_tours(tours), chosen, profile_named(base), seed, status.update)
+            proposal = propose(found, place.spans, doubtful=True, look_alikes=alike)
+        elif recording is not None:
+            facts["recording"] = str(recording)
+            found = pairs_of_recording(recording, chosen, pairs, seed, place.spans.pair_m, status.update)
+            proposal, rows = propose(found, place.spans, doubtful=True), distance_rows(found)
+        else:
+            facts["world"] = world
+            results = measure(
+                load_world(world), chosen, pairs, seed, data_dir, status.update, place.spans.pair_m
+            )
+            found, rows = [of_rendering(result) for result in results], distance_table(results)
+            proposal = propose(found, place.spans)
+    facts |= {"pairs": len(found), "wrong": sum(pair.is_wrong for pair in found)}
     write_json(json_file, {**facts, "thresholds": proposal, "by_distance": rows})
-    base = place.profile(None) or "default"
     write_json(write, {"base": base, "thresholds": proposal, "measured": facts})
     print_rows(f"{name} by distance", rows)
     print_figures("proposed thresholds", proposal)

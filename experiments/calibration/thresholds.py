@@ -1,0 +1,135 @@
+"""From measured pairs to thresholds of similarity. Pure.
+
+The thesis found 80 and 110 of 150 for its own pipeline by trial. Here the same questions are asked of
+measured pairs: below which S can a bearing not be trusted, and how similar are frames as far apart as
+nodes should be?
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from experiments.rendered.tables import BINS_M
+from services.launcher.client.environments import Spans
+from services.launcher.client.failure import ExperimentError
+from services.launcher.terminal.output import rounded
+
+WRONG_RAD = math.radians(20.0)
+"""As far as the bearing of an edge may be off (services/launcher/evaluation/map_quality.py)."""
+
+SAFETY = 1.333
+"""The thesis's safety factor of the map thresholds over those of driving (section 6.1: 60 becomes 80)."""
+
+DOUBTFUL_SHARE = 0.05
+"""Of bearings that people placed by hand or that commands tell so many may be wrong themselves: of 109 sure
+answers about photographs three differ by 170 degrees, with 93 to 188 matches."""
+
+MIN_VIA = 15
+"""Just below the least that any profile of services/planner/profiles.py was measured to need (16)."""
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two pictures, and what a pipeline made of them.
+
+    Attributes:
+        verified: matches that agree with one motion.
+        error_rad: of the bearing, None without an answer.
+        distance_m: between the two; None where nobody knows.
+        disparity_rad: None without an answer.
+    """
+
+    verified: int
+    error_rad: float | None
+    distance_m: float | None = None
+    disparity_rad: float | None = None
+
+    @property
+    def is_wrong(self) -> bool:
+        """Whether it would mislead."""
+        return self.error_rad is not None and self.error_rad > WRONG_RAD
+
+    def is_within(self, low_m: float, high_m: float) -> bool:
+        """Whether the two are known to be so far apart."""
+        return self.distance_m is not None and low_m <= self.distance_m < high_m
+
+
+def propose(
+    pairs: Sequence[Pair], spans: Spans, *, doubtful: bool = False, look_alikes: Sequence[int] = ()
+) -> dict[str, float]:
+    """Thresholds for `services.planner.profiles`, in verified matches.
+
+    Args:
+        pairs: what was measured.
+        spans: distances between nodes.
+        doubtful: the bearings known may be wrong themselves.
+        look_alikes: verified matches of pairs of different places that nothing else keeps from an edge.
+
+    Returns:
+        s_via_min: no bearing of a pair with more was wrong by 20 degrees, or one in 20 of the doubtful ones;
+            at least MIN_VIA.
+        s_edge_min: the same times the thesis's safety factor, and above all look-alikes.
+        s_node_max: median between frames as far apart as nodes should be.
+        s_via_max: median between frames nearer than a reached via point.
+        disparity_rad_per_m: median of disparity over distance where nodes should be.
+        The last three are left out where nobody knows distances.
+
+    Raises:
+        ExperimentError: no pair at those distances; measure more.
+    """
+    s_via_min = max(MIN_VIA, _floor(pairs, DOUBTFUL_SHARE if doubtful else 0.0))
+    s_edge_min = max(math.ceil(SAFETY * s_via_min), max(look_alikes, default=0) + 1)
+    found: dict[str, float] = {"s_via_min": s_via_min, "s_edge_min": s_edge_min}
+    if all(pair.distance_m is None for pair in pairs):
+        return found
+    return {
+        **found,
+        "s_node_max": _median_within(pairs, *spans.node_m),
+        "s_via_max": _median_within(pairs, 0.0, spans.near_m),
+        "disparity_rad_per_m": _disparity_rad_per_m(pairs, *spans.node_m),
+    }
+
+
+def distance_rows(pairs: Sequence[Pair]) -> list[dict[str, float | str]]:
+    """One row per bin of distance, for those that are known."""
+    rows: list[dict[str, float | str]] = []
+    for low_m, high_m in pairwise(BINS_M):
+        inside = [pair for pair in pairs if pair.is_within(low_m, high_m)]
+        if inside:
+            verified = rounded(np.median([pair.verified for pair in inside]), 1)
+            wrong = sum(pair.is_wrong for pair in inside)
+            of = {"pairs": len(inside), "verified": verified, "wrong": wrong}
+            rows.append({"distance_m": f"{low_m:g}-{high_m:g}", **of})
+    return rows
+
+
+def _floor(pairs: Sequence[Pair], share: float) -> int:
+    """The least number of matches above which at most such a share of the answers is wrong."""
+    answers = sorted((pair for pair in pairs if pair.error_rad is not None), key=lambda pair: pair.verified)
+    for floor in sorted({0, *(pair.verified for pair in answers)}):
+        above = [pair.is_wrong for pair in answers if pair.verified > floor]
+        if sum(above) <= share * len(above):
+            return floor
+    return 0
+
+
+def _median_within(pairs: Sequence[Pair], low_m: float, high_m: float) -> int:
+    inside = [pair.verified for pair in pairs if pair.is_within(low_m, high_m)]
+    if not inside:
+        raise ExperimentError(
+            f"expected pairs of pictures between {low_m} and {high_m} m apart, got none: measure more pairs "
+            "(--pairs)"
+        )
+    return round(float(np.median(inside)))
+
+
+def _disparity_rad_per_m(pairs: Sequence[Pair], low_m: float, high_m: float) -> float:
+    ratios = [
+        pair.disparity_rad / pair.distance_m
+        for pair in pairs
+        if pair.distance_m and pair.is_within(low_m, high_m) and pair.disparity_rad is not None
+    ]
+    return rounded(np.median(ratios)) if ratios else 0.0

@@ -1,0 +1,52 @@
+"""Thresholds proposed from hand-made pairs."""
+
+import math
+
+import pytest
+
+from experiments.calibration.thresholds import Pair, propose
+from services.launcher.client.environments import Spans
+from services.launcher.client.failure import ExperimentError
+
+
+def pair(distance_m, verified, error_deg=0.5):
+    return Pair(verified, math.radians(error_deg), distance_m, 0.1)
+
+
+NODES = [pair(0.4, 120), pair(0.6, 80), pair(0.7, 90), pair(0.8, 100)]
+
+
+def test_the_worst_wrong_bearing_sets_the_floor_and_the_safety_factor_follows():
+    pairs = [*NODES, pair(2.5, 24, error_deg=35.0), pair(2.5, 60, error_deg=19.0)]
+    proposal = propose(pairs, Spans())
+    assert proposal.pop("disparity_rad_per_m") == pytest.approx(0.1 / 0.7, rel=0.02)
+    assert proposal == {"s_via_min": 24, "s_edge_min": 32, "s_node_max": 90, "s_via_max": 120}
+
+
+def test_outdoors_nodes_are_further_apart():
+    pairs = [pair(1.0, 140), pair(3.0, 50), pair(4.0, 40), pair(0.7, 300)]
+    proposal = propose(pairs, Spans(pair_m=(0.5, 12.0), node_m=(2.5, 4.5), near_m=2.0))
+    assert (proposal["s_node_max"], proposal["s_via_max"]) == (45, 220)
+
+
+def test_without_wrong_bearings_a_least_number_of_matches_is_asked_for():
+    assert propose(NODES, Spans())["s_via_min"] == 15
+
+
+def test_without_distances_nothing_is_said_of_nodes_and_look_alikes_are_below_an_edge():
+    linked = [pair(None, 150), pair(None, 90), pair(None, 70)]
+    assert propose(linked, Spans()) == {"s_via_min": 15, "s_edge_min": 20}
+    assert propose(linked, Spans(), look_alikes=[40, 31]) == {"s_via_min": 15, "s_edge_min": 41}
+
+
+def test_one_doubtful_bearing_of_twenty_is_no_reason():
+    linked = [pair(None, 30 + n) for n in range(19)]
+    odd = pair(None, 188, error_deg=170.0)
+    assert propose([*linked, odd], Spans(), doubtful=True)["s_via_min"] == 15
+    assert propose([*linked, odd], Spans())["s_via_min"] == 188
+    assert propose([*linked, odd, pair(None, 33, error_deg=50.0)], Spans(), doubtful=True)["s_via_min"] == 188
+
+
+def test_too_few_pairs_are_named():
+    with pytest.raises(ExperimentError, match="measure more pairs"):
+        propose([pair(2.0, 30)], Spans())
