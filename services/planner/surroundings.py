@@ -14,9 +14,8 @@ from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
 
 SECTOR_RAD = math.tau / SECTORS
-ASIDE_RAD = np.deg2rad([0.0, *(side * angle for angle in range(5, 50, 5) for side in (1.0, -1.0))])
-"""Turns aside, the least first, up to one and a half sectors: half a metre from a door jamb the way through
-lies 40 degrees beside the straight one."""
+ASIDE_RAD = np.deg2rad([0.0, *(side * angle for angle in range(5, 35, 5) for side in (1.0, -1.0))])
+"""Turns aside, the least first, up to a sector: beyond it the next direction's way begins."""
 WITHIN_SECTOR_RAD = np.deg2rad(np.arange(-15.0, 16.0, 5.0))
 
 

@@ -3,9 +3,9 @@
 import math
 from dataclasses import dataclass
 
-from services.planner.mapping.edges import CONFIDENCE_MIN, judge_edges
+from services.planner.mapping.edges import CONFIDENCE_MIN, NewEdges, judge_edges
 from services.planner.mapping.nodes import add_node, is_new_node
-from services.planner.mapping.reach import elsewhere, nodes_nearby
+from services.planner.mapping.reach import elsewhere, in_reach, nodes_nearby
 from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.similarity import ranked, similarity, trusted
@@ -103,14 +103,22 @@ class Departure:
         self.here = self.here.turned(origin.yaw_rad, origin.heading_rad if sure else None)
 
     def _new_or_known(self, observation: Observation, matches: Matches) -> Decision | NewNode:
-        """New unless some node of the whole map is too similar; aliased views make no node known."""
+        """New unless a node is too similar that lies here: another room furnished alike makes none known."""
         graph = self._maps.graph
         edges = judge_edges(graph, observation, matches, self._profile, self.here)
-        credible = {n: m for n, m in matches.items() if n not in edges.refused or n == self.node_id}
+        credible = self._credible(matches, edges)
         closes_loop = self._profile.mapping.s_far and far_nodes(graph, edges.admitted, self.node_id)
         if is_new_node(credible, self._profile) or closes_loop:
             return self._new_node(observation, credible)
         return self._close(f"leads to node {ranked(credible, self._profile)[0][0]}")
+
+    def _credible(self, matches: Matches, edges: NewEdges) -> Matches:
+        """What the robot surely sees: the node left, nodes that lie where they are seen, those of edges."""
+        if self._profile.sensing.similarity == "raw":
+            return matches
+        within = in_reach(self._maps.graph, matches, self.here, self._profile)
+        sure = {self.node_id, *within, *edges.admitted}
+        return {node: match for node, match in matches.items() if node in sure}
 
     def _out_of_sight(self, s_best: int) -> Decision:
         """The view changed within a few steps, as at a corner: go back and make a node there."""
