@@ -69,6 +69,8 @@ class MappingRules(_Rules):
         far_rad: with less disparity than this an edge needs s_sure: few matches that hardly move are far
             away, and so may the node be.
         s_far: an edge to a far part of the map needs so many inliers: among equal houses fewer prove nothing.
+        node_apart_m: a node lies at least so far from those seen from it, unless it is needed as a corner or
+            doorway: where things repeat views change within a few decimetres. 0: similarity alone decides.
         edge_longest_m: of an edge; shorter ones lead there, and longer ones were views past a corner. 0: any.
         edge_candidates: most nodes compared for edges of a new one.
         edge_window: so many of the newest nodes may get an edge instead; 0: the most similar of all.
@@ -89,6 +91,7 @@ class MappingRules(_Rules):
     s_blind_min: NonNegativeInt = 0
     far_rad: float = Field(default=0.0, ge=0.0)
     s_far: NonNegativeInt = 0
+    node_apart_m: float = Field(default=0.5, ge=0.0)  # the least that `topnav calibrate` asks about
     edge_longest_m: float = Field(default=3.0, ge=0.0)  # of 3,600 right edges of two worlds none had 3 m
     edge_candidates: PositiveInt = (
         12  # nodes of the apartment's map have 8 edges on average: `topnav explore`
@@ -185,6 +188,7 @@ THESIS = DEFAULT.replaced(
     # 80 and 110, 60 and 90, 110 of 150 for SuperPoint (Q9); these are for raw matches of 300 SIFT keypoints.
     s_edge_min=40,
     s_node_max=90,
+    node_apart_m=0.0,
     s_explored=60,
     s_via_min=30,
     s_via_max=85,
@@ -215,6 +219,7 @@ OUTDOOR = DEFAULT.replaced(
     **OUTDOOR_SPACE,
     s_edge_min=25,  # above the 22 of wrong bearings
     s_node_max=100,  # between 144 at 1 to 2 m and 78 at 2 to 3: nodes 2 m apart recognise each other
+    node_apart_m=0.0,
     edge_longest_m=0.0,
     s_explored=28,  # 30 at 6 to 10 m: one edge covers a wide sector
     s_via_min=16,
@@ -246,6 +251,7 @@ PHOTO = DEFAULT.replaced(
     s_edge_min=34,
     noise_max_rad=math.radians(0.52),  # of equal rooms 0.56 and more, or a quarter of the disparity
     blur_max=0.15,
+    node_apart_m=0.0,
     edge_longest_m=0.0,
     moved_min=30,  # all but the view out of the window
     far_rad=math.radians(7.0),  # who stands that near shares more: links 50 to 400

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from services.planner.mapping.edges import CONFIDENCE_MIN, NewEdges, judge_edges
 from services.planner.mapping.nodes import add_node, is_new_node
-from services.planner.mapping.reach import elsewhere, in_reach, nodes_nearby
+from services.planner.mapping.reach import distances, elsewhere, in_reach, nodes_nearby
 from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.similarity import ranked, similarity, trusted
@@ -24,6 +24,9 @@ COMPARED = 5
 CORNER_STEPS = 2
 """Steps after which a view that is out of sight of the map means a corner; chosen: before, a frame was
 missed."""
+
+TURN_RAD = math.radians(15.0)
+"""A robot turns less than that between two frames; chosen: half a radian a second."""
 
 DOORWAY_NODES = 3
 """Nearest nodes asked whether they know an opening; chosen: one before, one after and one beside it."""
@@ -79,7 +82,7 @@ class Departure:
             return self._out_of_sight(s_best)
         if self._retreating or self._doorway(observation.ranges, matches):
             return self._new_node(observation, {**self._candidates(), **matches})
-        if is_new_node(matches, self._profile):
+        if is_new_node(matches, self._profile) and not self._is_crowded(matches):
             return self._new_or_known(observation, {**self._candidates(), **matches})
         heading_rad, free_m = through_gap(observation.ranges, self.heading_rad, self._profile)
         if free_m < self._profile.sensing.blocked_m:
@@ -91,8 +94,17 @@ class Departure:
     def _seen(self) -> Matches:
         """The nodes around that lie where they are seen: the two sides of a desk island look the same."""
         matches = self._matcher.match(self._near(), 0)
-        away = elsewhere(self._maps.graph, matches, self.here, self._profile)
+        away = set(elsewhere(self._maps.graph, matches, self.here, self._profile))
+        origin = matches.get(self.node_id)
+        if origin is not None and self._profile.sensing.similarity == "verified" and self._jumped(origin):
+            away.add(self.node_id)
         return {node: match for node, match in matches.items() if node not in away}
+
+    def _jumped(self, origin: NodeMatch) -> bool:
+        """Whether the node left is seen as if the robot had turned at once, be its bearing sure or not."""
+        if origin.yaw_rad is None or not trusted(origin, self._profile):
+            return False
+        return abs(math.remainder(origin.yaw_rad + self.here.yaw_rad, math.tau)) > TURN_RAD
 
     def _keep_course(self, origin: NodeMatch | None) -> None:
         """Straight on by the yaw of the node left; and where that and a sure bearing put the robot."""
@@ -111,6 +123,13 @@ class Departure:
         if is_new_node(credible, self._profile) or closes_loop:
             return self._new_node(observation, credible)
         return self._close(f"leads to node {ranked(credible, self._profile)[0][0]}")
+
+    def _is_crowded(self, matches: Matches) -> bool:
+        """Whether a node that is seen lies too near for another one: where desks repeat views change fast."""
+        if not self._profile.mapping.node_apart_m:
+            return False
+        apart_m = distances(self._maps.graph, self.here, matches, self._profile)
+        return min(apart_m.values(), default=math.inf) < self._profile.mapping.node_apart_m
 
     def _credible(self, matches: Matches, edges: NewEdges) -> Matches:
         """What the robot surely sees: the node left, nodes that lie where they are seen, those of edges."""

@@ -1,6 +1,7 @@
 """Which nodes a frame can be looking at, by what the robot did since the last one. Pure."""
 
 import math
+from collections.abc import Iterable
 
 from services.planner.heading.choose import CONFIDENCE_MIN as HEADING_CONFIDENCE_MIN
 from services.planner.ports import Matches
@@ -10,7 +11,7 @@ from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.claims import CONFIDENCE_MIN, Claim, claim_of
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import NEAR_NODES
-from shared.mapgraph.local.reach import nearby, out_of_reach
+from shared.mapgraph.local.reach import distances_m, out_of_reach
 from shared.messages.matching import NodeMatch
 
 
@@ -53,7 +54,17 @@ def nodes_nearby(graph: MapGraph, here: Displacement | None, profile: Profile, c
     """Nodes around where the robot is, to be compared with its view whatever else resembles it more."""
     if here is None or profile.sensing.similarity == "raw":
         return []
-    return nearby(graph, here, profile.sensing.disparity_rad_per_m, count, NEAR_NODES)
+    far_m = distances_m(graph, here, profile.sensing.disparity_rad_per_m, NEAR_NODES)
+    return sorted(far_m, key=lambda node: (far_m[node], node))[:count]
+
+
+def distances(
+    graph: MapGraph, here: Displacement, nodes: Iterable[int], profile: Profile
+) -> dict[int, float]:
+    """How far nodes around are from where the robot is, metres."""
+    asked = set(nodes)
+    found = distances_m(graph, here, profile.sensing.disparity_rad_per_m, NEAR_NODES)
+    return {node: far_m for node, far_m in found.items() if node in asked}
 
 
 def _claim(match: NodeMatch, profile: Profile, confidence_min: float) -> Claim | None:

@@ -64,22 +64,21 @@ def out_of_reach(
     return {node: f"node {node} {why}" for node, why in judged.items() if why}
 
 
-def nearby(graph: MapGraph, here: Displacement, rad_per_m: float, count: int, most: int) -> list[int]:
-    """The nodes nearest to a frame, by where they lie, not by what they look like.
+def distances_m(graph: MapGraph, here: Displacement, rad_per_m: float, most: int) -> dict[int, float]:
+    """How far the nodes around a frame are from it, by where they lie, not by what they look like.
 
     Args:
         graph: the map.
-        here: where the frame was taken.
+        here: where the frame was taken; without its node in the map nothing is known.
         rad_per_m: as for `out_of_reach`.
-        count: of nodes at most.
         most: nodes reckoned with, nearest by number of edges first.
     """
     if here.node_id not in graph.nodes:
-        return []
+        return {}
     scale, around = metres_per_rad(graph, 1.0 / rad_per_m), graph.nearest(here.node_id, most)
     poses = relative_poses(graph, here.node_id, around, scale, most)
-    at = np.array([here.x_m, here.y_m])
-    return sorted(poses, key=lambda node: (float(np.linalg.norm(poses[node].position_m - at)), node))[:count]
+    at_m = np.array([here.x_m, here.y_m])
+    return {node: float(np.linalg.norm(pose.position_m - at_m)) for node, pose in poses.items()}
 
 
 def _contradiction(

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from services.planner.mapping.departure import Departure
+from services.planner.mapping.departure import Departure, NewNode
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT
 from shared.mapgraph.graph import MapGraph
@@ -19,13 +19,15 @@ RANGES = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(4.0,) * 12, max_
 
 
 class Matcher:
-    """Shows one node."""
+    """Shows one node, and another one that looks alike to whoever asks for the most similar ones."""
 
     def __init__(self):
         self.seen = match(0, 0.0, 0.0)
+        self.look_alike = None
 
     def match(self, node_ids, best_k=0, targets=()):  # noqa: ARG002
-        return by_node(self.seen)
+        alike = [self.look_alike] if best_k and self.look_alike is not None else []
+        return by_node(self.seen, *alike)
 
 
 @pytest.fixture
@@ -36,7 +38,7 @@ def matcher():
 @pytest.fixture
 def departure(matcher):
     """Straight ahead from node 0, whose camera looks along x as the robot's does."""
-    maps = Maps(MapGraph([Node(node_id=0, open=(True,) * 12)]))
+    maps = Maps(MapGraph([Node(node_id=node, open=(True,) * 12) for node in (0, 7)]))
     return Departure(DEFAULT, maps, matcher, 0, 0.0, Displacement(0))
 
 
@@ -57,12 +59,13 @@ def test_the_view_of_the_node_left_keeps_the_course(departure, matcher):
     assert departure.here.yaw_rad == pytest.approx(-0.05)
 
 
-def test_a_node_seen_as_if_the_robot_had_turned_at_once_is_a_look_alike(departure, matcher):
+@pytest.mark.parametrize("confidence", [0.9, 0.3])
+def test_a_node_seen_as_if_the_robot_had_turned_at_once_is_a_look_alike(departure, matcher, confidence):
     """The two sides of a desk island: half a turn, and all else fits."""
     for step in range(1, 4):
         drive(departure, matcher, behind(0.12 * step))
     where = departure.here
-    decision = drive(departure, matcher, behind(0.48, yaw_rad=math.pi))
+    decision = drive(departure, matcher, behind(0.48, yaw_rad=math.pi, confidence=confidence))
     assert decision.why.startswith("out of sight")
     assert abs(decision.heading_rad) == pytest.approx(math.pi), "back on the way it came"
     assert departure.here.yaw_rad == where.yaw_rad
@@ -74,3 +77,21 @@ def test_an_unsure_bearing_does_not_say_where_the_robot_is(departure, matcher):
         drive(departure, matcher, behind(0.12 * step))
     drive(departure, matcher, match(0, 0.6, 0.0).model_copy(update={"confidence": 0.4}))
     assert departure.here.x_m == pytest.approx(0.6, abs=0.01)
+
+
+def test_views_that_change_fast_make_no_crowd_of_nodes(departure, matcher):
+    """Beside a repeating desk S falls within 0.3 m."""
+    found = [drive(departure, matcher, unlike(0.12 * step)) for step in range(1, 6)]
+    assert [isinstance(one, NewNode) for one in found] == [False] * 4 + [True]
+
+
+def test_a_room_furnished_like_another_is_new(departure, matcher):
+    """However alike a node elsewhere looks, it does not make this place known."""
+    matcher.look_alike = match(7, 3.0, 0.0, 200).model_copy(update={"confidence": 0.3})
+    found = [drive(departure, matcher, unlike(0.12 * step)) for step in range(1, 6)]
+    assert isinstance(found[-1], NewNode), found[-1].why
+
+
+def unlike(away_m):
+    sight = match(0, -away_m, 0.0, DEFAULT.mapping.s_node_max - 20)
+    return sight.model_copy(update={"confidence": 0.9})

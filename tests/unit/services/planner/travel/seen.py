@@ -33,6 +33,9 @@ class Maps:
     def __init__(self, graph):
         self.graph = graph
 
+    def commit(self, operations):
+        self.graph.apply(operations)
+
 
 class Matcher:
     """Compares a frame with the one before it: they resemble one another by so many matches."""
