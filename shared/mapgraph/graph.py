@@ -1,6 +1,7 @@
 """A topological map in memory: nodes, edges and who is joined to whom. Pure."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Hashable, Iterable
+from typing import Any, TypeVar
 
 import networkx as nx
 
@@ -8,6 +9,11 @@ from shared.mapgraph.operations import Draft
 from shared.mapgraph.operations import EdgeKey as EdgeKey
 from shared.mapgraph.triangle import Sight
 from shared.messages.maps import AddNode, Edge, Node, Operation, UpdateNode
+
+Made = TypeVar("Made")
+
+MADE_MOST = 64
+"""Things kept that were made of one state of the graph; chosen: the parts around 64 nodes, some 2 MB."""
 
 
 def edge_key(first: int, second: int) -> EdgeKey:
@@ -21,7 +27,7 @@ class MapGraph:
     def __init__(self, nodes: Iterable[Node] = (), edges: Iterable[Edge] = ()) -> None:
         self.nodes = {node.node_id: node for node in nodes}
         self.edges = {(edge.a, edge.b): edge for edge in edges}
-        self._linked: nx.Graph[int] | None = None
+        self._made: dict[Hashable, Any] = {}
 
     def apply(self, operations: Iterable[Operation]) -> None:
         """Change the graph as the map store does.
@@ -29,16 +35,28 @@ class MapGraph:
         Raises:
             GraphError: they do not fit; those before the one that does not are done.
         """
-        self._linked = None
         draft = Draft(self.nodes, self.edges)
         for operation in operations:
             match operation:
                 case AddNode(node=node):
+                    self._made.clear()
                     draft.add(node.node_id, node)
-                case UpdateNode(node=node):
+                case UpdateNode(node=node):  # changes nothing of who is joined to whom
                     draft.update(node.node_id, node)
                 case _:
+                    self._made.clear()
                     draft.apply(operation)
+
+    def made_once(self, key: Hashable, make: Callable[[], Made]) -> Made:
+        """What `make` makes of nodes' numbers and edges; kept under `key` until they change."""
+        found = self._made.get(key, self)
+        if found is self:
+            found = make()
+            if len(self._made) >= MADE_MOST:
+                self._made.clear()
+            self._made[key] = found
+        made: Made = found
+        return made
 
     def next_id(self) -> int:
         """An id no node has had while the newest ones exist."""
@@ -89,9 +107,11 @@ class MapGraph:
         return int(nx.number_connected_components(self._links()))
 
     def _links(self) -> "nx.Graph[int]":
-        """The edges that may be used; built once between changes."""
-        if self._linked is None:
-            self._linked = nx.Graph()
-            self._linked.add_nodes_from(self.nodes)
-            self._linked.add_edges_from(ends for ends, edge in self.edges.items() if not edge.suspended)
-        return self._linked
+        """The edges that may be used."""
+        return self.made_once("links", self._link)
+
+    def _link(self) -> "nx.Graph[int]":
+        links: nx.Graph[int] = nx.Graph()
+        links.add_nodes_from(self.nodes)
+        links.add_edges_from(ends for ends, edge in self.edges.items() if not edge.suspended)
+        return links

@@ -65,51 +65,83 @@ def relative_poses(
         metres_per_rad: rough length of an edge that was not driven, by its disparity.
         most: nodes to reckon with, nearest by number of edges first.
     """
-    order = graph.nearest(root, most)
-    index = {node: i for i, node in enumerate(order)}
-    sights = sights_among(graph, index, metres_per_rad)
-    asked = sorted(node for node in set(wanted) if node in index)
-    rows = np.array([index[node] for node in asked], dtype=np.intp)
-    tree = _tree(len(order), sights)
-    yaws, yaw_std = _solve_yaws(len(order), sights, tree, rows)
-    places, covariance = _solve_positions(len(order), sights, tree, yaws, rows)
+    key = ("local part", root, metres_per_rad, most)
+    part = graph.made_once(key, lambda: _solved(graph, root, metres_per_rad, most))
+    asked = sorted(node for node in set(wanted) if node in part.index)
+    rows = np.array([part.index[node] for node in asked], dtype=np.intp)
+    covariance_m2, variance = part.positions.covariance(rows), part.yaws.covariance(rows)
+    yaw_std_rad = np.sqrt(np.maximum(variance[:, 0, 0], 0.0))
     return {
-        node: RelativePose(places[index[node]], covariance[k], float(yaws[index[node]]), float(yaw_std[k]))
-        for k, node in enumerate(asked)
+        node: RelativePose(
+            part.positions.values[row],
+            covariance_m2[k],
+            float(part.yaws.values[row, 0]),
+            float(yaw_std_rad[k]),
+        )
+        for k, (node, row) in enumerate(zip(asked, rows, strict=True))
     }
 
 
-def _solve_yaws(
-    count: int, sights: Sequence[LocalSight], tree: Tree, rows: IndexArray
-) -> tuple[FloatArray, FloatArray]:
-    """Yaw of each node relative to the first, and the standard deviations of some."""
-    yaws = np.zeros(count)
+@dataclass(frozen=True)
+class _Solution:
+    """Values (N, D) of the nodes of a part, and the equations they come from; none without an edge."""
+
+    values: FloatArray
+    equations: Differences | None = None
+    weight: FloatArray | None = None
+
+    def covariance(self, rows: IndexArray) -> FloatArray:
+        """(K, D, D) of some nodes relative to the first."""
+        if self.equations is None or self.weight is None:
+            size = self.values.shape[1]
+            return np.zeros((len(rows), size, size))
+        return self.equations.covariance(self.weight, rows)
+
+
+@dataclass(frozen=True)
+class _Part:
+    """The nodes around a root, numbered."""
+
+    index: dict[int, int]
+    yaws: _Solution
+    positions: _Solution
+
+
+def _solved(graph: MapGraph, root: int, metres_per_rad: float, most: int) -> _Part:
+    order = graph.nearest(root, most)
+    index = {node: i for i, node in enumerate(order)}
+    sights = sights_among(graph, index, metres_per_rad)
+    tree = _tree(len(order), sights)
+    yaws = _solve_yaws(len(order), sights, tree)
+    return _Part(index, yaws, _solve_positions(len(order), sights, tree, yaws.values[:, 0]))
+
+
+def _solve_yaws(count: int, sights: Sequence[LocalSight], tree: Tree) -> _Solution:
+    """Yaw of each node relative to the first."""
+    yaws = np.zeros((count, 1))
     for sight, forward in tree:
         known, new = (sight.a, sight.b) if forward else (sight.b, sight.a)
         yaws[new] = yaws[known] + (sight.yaw_rad if forward else -sight.yaw_rad)
     if not sights:
-        return yaws, np.zeros(len(rows))
+        return _Solution(yaws)
     equations = Differences(_ends(sights), np.ones((len(sights), 1)), count)
     measured, weight = np.array([s.yaw_rad for s in sights]), np.ones(len(sights))
     for _ in range(ROUNDS):
-        residual = np.remainder(measured - equations.of(yaws[:, None]) + np.pi, 2.0 * np.pi) - np.pi
+        residual = np.remainder(measured - equations.of(yaws) + np.pi, 2.0 * np.pi) - np.pi
         weight = cauchy(residual / YAW_RAD) / YAW_RAD**2
-        yaws = yaws + equations.step(weight, residual)[:, 0]
-    variance = equations.covariance(weight, rows)[:, 0, 0]
-    return yaws, np.sqrt(np.maximum(variance, 0.0))
+        yaws = yaws + equations.step(weight, residual)
+    return _Solution(yaws, equations, weight)
 
 
-def _solve_positions(
-    count: int, sights: Sequence[LocalSight], tree: Tree, yaws: FloatArray, rows: IndexArray
-) -> tuple[FloatArray, FloatArray]:
-    """(N, 2) positions in the frame of the first node, and (M, 2, 2) covariances of some."""
+def _solve_positions(count: int, sights: Sequence[LocalSight], tree: Tree, yaws: FloatArray) -> _Solution:
+    """(N, 2) positions in the frame of the first node."""
     places = np.zeros((count, 2))
     for sight, forward in tree:
         step = sight.length_m * sight.direction(yaws[sight.a])
         known, new = (sight.a, sight.b) if forward else (sight.b, sight.a)
         places[new] = places[known] + (step if forward else -step)
     if not sights:
-        return places, np.zeros((len(rows), 2, 2))
+        return _Solution(places)
     ends, along = _ends(sights), np.stack([s.direction(yaws[s.a]) for s in sights])
     length, spread = np.array([s.length_m for s in sights]), np.array([s.spread_m for s in sights])
     blind = np.array([s.bearing_rad is None for s in sights])
@@ -122,7 +154,7 @@ def _solve_positions(
         residual, scale = wanted - equations.of(places), np.concatenate([aside, spread])
         weight = cauchy(residual / scale) / scale**2
         places = places + equations.step(weight, residual)
-    return places, equations.covariance(weight, rows)
+    return _Solution(places, equations, weight)
 
 
 def _ends(sights: Sequence[LocalSight]) -> IndexArray:

@@ -142,5 +142,5 @@ def _driven(pose: RelativePose, reckoned: Displacement) -> _Equations:
     cos, sin = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
     turn = np.array([[cos, -sin], [sin, cos]])
     at = pose.position_m + turn @ np.array([reckoned.x_m, reckoned.y_m])
-    spread = np.sqrt(np.diag(pose.covariance_m2) + reckoned.spread_m**2)
+    spread = np.sqrt(np.diag(pose.covariance_m2) + reckoned.spread_m**2 + POINT_M**2)
     return _Equations(np.eye(2, 3), at, spread)

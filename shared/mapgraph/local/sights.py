@@ -66,12 +66,17 @@ def sights_among(graph: MapGraph, index: Mapping[int, int], metres_per_rad: floa
 
 def metres_per_rad(graph: MapGraph, otherwise: float) -> float:
     """Length over disparity of the driven edges, at the median; `otherwise` where few were driven."""
+    median = graph.made_once("metres per rad", lambda: _median_ratio(graph))
+    return otherwise if median is None else median
+
+
+def _median_ratio(graph: MapGraph) -> float | None:
     ratios = [
         e.length_m / e.disparity_rad
         for e in graph.edges.values()
         if e.length_m and e.disparity_rad and not e.suspended
     ]
-    return statistics.median(ratios) if len(ratios) >= 5 else otherwise
+    return statistics.median(ratios) if len(ratios) >= 5 else None
 
 
 def _sight(edge: Edge, index: Mapping[int, int], metres_per_rad: float) -> LocalSight:

@@ -26,6 +26,21 @@ def test_operations_change_nodes_edges_and_neighbours():
     assert (sorted(graph.nodes), dict(graph.edges), graph.neighbours(1)) == ([1, 2], {}, [])
 
 
+def test_what_is_made_of_the_edges_is_kept_until_they_change():
+    graph, made = chain(), []
+
+    def make() -> int:
+        made.append(len(graph.edges))
+        return made[-1]
+
+    assert [graph.made_once("edges", make) for _ in range(3)] == [2, 2, 2]
+    graph.apply([UpdateNode(node=Node(node_id=2, keypoints=9))])
+    assert graph.made_once("edges", make) == 2
+    graph.apply([DeleteEdge(a=1, b=2)])
+    assert graph.made_once("edges", make) == 1
+    assert made == [2, 1]
+
+
 def test_an_operation_that_does_not_fit_is_an_error():
     with pytest.raises(GraphError, match="node 7 does not exist"):
         chain().apply([PutEdge(edge=Edge(a=1, b=7))])

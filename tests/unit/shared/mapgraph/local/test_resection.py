@@ -45,6 +45,13 @@ def test_along_a_corridor_nodes_before_and_behind_say_how_far_disparities_reach(
     assert found.spread_m > 1.5 * crossing.spread_m, "less sure than where bearings cross"
 
 
+def test_a_robot_that_has_not_moved_yet_is_where_it_was():
+    claims = {0: replace(claim(1.0, 0.0), heading_rad=None, disparity_rad=0.0)}
+    found = place(SQUARE, claims, reckoned=Displacement(0))
+    assert off_m(found, 0.0, 0.0) < 0.01
+    assert found.spread_m < 0.1
+
+
 def test_it_is_said_of_the_root_and_turned_with_its_camera():
     turned = edge(0, 1, 5).model_copy(update={"yaw_ab_rad": math.pi / 2, "heading_ba_rad": math.pi / 2})
     graph = MapGraph([Node(node_id=n) for n in range(2)], [turned])
