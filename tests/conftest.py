@@ -13,6 +13,7 @@ from shared.transport import session_config as bus_config
 from shared.transport.router_config import router_config
 from tests import patient
 from tests.postgres import PostgresServer, missing
+from tests.traced_memory import TracedCall, tracing_process
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
@@ -50,6 +51,13 @@ def repository() -> Path:
 def rng() -> np.random.Generator:
     """Random numbers that are the same in every run."""
     return np.random.default_rng(seed=7)
+
+
+@pytest.fixture(scope="session")
+def traced_call() -> Iterator[TracedCall]:
+    """Calls a function of a module in another process, and tells its peak of memory in bytes."""
+    with tracing_process() as traced:
+        yield traced
 
 
 @pytest.fixture

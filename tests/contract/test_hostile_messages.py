@@ -3,7 +3,6 @@
 import contextlib
 import math
 import time
-import tracemalloc
 from typing import Any
 
 import msgpack
@@ -19,6 +18,7 @@ from shared.topics import QUERIES, TOPICS
 from shared.wire import WireError, decode, encode
 from tests.contract.paths import arrays, floats, replaced, walk, without
 from tests.contract.samples import samples
+from tests.traced_memory import TracedCall
 
 LIMIT = 8_000_000
 BUDGET_S = 1.0
@@ -42,13 +42,19 @@ def content_of(kind: type[Message]) -> dict[str, Any]:
     return content
 
 
-def refuse(kind: type[Message], payload: bytes) -> str:
-    """Decode `payload`, which must fail the right way; the text of the error."""
-    started_s = time.thread_time()
+def refusal_of(kind: type[Message], payload: bytes) -> str:
+    """The error of decoding `payload`, which must fail the right way."""
     with pytest.raises(WireError) as caught:
         decode(kind, payload, LIMIT)
-    assert time.thread_time() - started_s < BUDGET_S
     return str(caught.value)
+
+
+def refuse(kind: type[Message], payload: bytes) -> str:
+    """The error of decoding `payload`, which must come in time."""
+    started_s = time.thread_time()
+    error = refusal_of(kind, payload)
+    assert time.thread_time() - started_s < BUDGET_S
+    return error
 
 
 def decode_or_refuse(kind: type[Message], payload: bytes) -> None:
@@ -108,27 +114,20 @@ def test_deep_nesting_inside_any_field_is_refused(kind: type[Message]):
         refuse(kind, msgpack.packb(replaced(content, (name,), deep)))
 
 
+def refuse_huge_lengths(kind: type[Message]) -> None:
+    """Array, map, bin, str and ext with 32-bit lengths, alone and as the value of a field."""
+    field = next(iter(samples()[kind].model_dump()))
+    for opening in (b"\xdd", b"\xdf", b"\xc6", b"\xdb", b"\xc9"):
+        header = opening + b"\xff\xff\xff\xff" + (b"\x01" if opening == b"\xc9" else b"")
+        refuse(kind, header)
+        refuse(kind, b"\x82\xa6schema" + msgpack.packb(kind.SCHEMA) + msgpack.packb(field) + header)
+
+
 @pytest.mark.parametrize("kind", KINDS)
-def test_huge_announced_lengths_are_refused_without_reserving_memory(kind: type[Message]):
-    field = next(iter(samples()[kind].model_dump())).encode()
-    openings = (
-        b"\xdd",
-        b"\xdf",
-        b"\xc6",
-        b"\xdb",
-        b"\xc9",
-    )  # array, map, bin, str and ext with 32-bit lengths
-    tracemalloc.start()
-    try:
-        for opening in openings:
-            header = opening + b"\xff\xff\xff\xff" + (b"\x01" if opening == b"\xc9" else b"")
-            refuse(kind, header)
-            refuse(
-                kind, b"\x82\xa6schema" + msgpack.packb(kind.SCHEMA) + msgpack.packb(field.decode()) + header
-            )
-        assert tracemalloc.get_traced_memory()[1] < 1_000_000
-    finally:
-        tracemalloc.stop()
+def test_huge_announced_lengths_are_refused_without_reserving_memory(
+    kind: type[Message], traced_call: TracedCall
+):
+    assert traced_call(refuse_huge_lengths, kind)[1] < 1_000_000
 
 
 def bomb(filling: bytes, lists: int) -> bytes:
@@ -142,15 +141,13 @@ def bomb(filling: bytes, lists: int) -> bytes:
 @pytest.mark.parametrize(
     "filling", [b"\x80", b"\x90", b"\xa2ab", b"\xc4\x00"], ids=["maps", "lists", "str", "bin"]
 )
-def test_small_bytes_that_unpack_to_much_are_refused_early(kind: type[Message], filling: bytes):
+def test_small_bytes_that_unpack_to_much_are_refused_early(
+    kind: type[Message], filling: bytes, traced_call: TracedCall
+):
     payload = b"\x82\xa6schema" + msgpack.packb(kind.SCHEMA) + b"\xa1x" + bomb(filling, 1_000)
-    tracemalloc.start()
-    try:
-        with pytest.raises(WireError, match="values"):
-            decode(kind, payload, LIMIT)
-        assert tracemalloc.get_traced_memory()[1] < 40_000_000
-    finally:
-        tracemalloc.stop()
+    error, peak_bytes = traced_call(refusal_of, kind, payload)
+    assert "values" in error
+    assert peak_bytes < 40_000_000
 
 
 def test_a_list_of_twenty_thousand_wrong_entries_is_told_in_one_line_and_at_once():

@@ -6,7 +6,6 @@ import math
 import struct
 import subprocess
 import sys
-import tracemalloc
 from typing import ClassVar
 
 import jsonschema
@@ -445,16 +444,11 @@ def test_the_command_line_starts_without_the_sdk():
     assert subprocess.run([sys.executable, "-c", source], check=False).returncode == 0
 
 
-def test_a_long_recording_is_never_in_memory_as_a_whole(tmp_path):
+def test_a_long_recording_is_never_in_memory_as_a_whole(tmp_path, traced_call):
     rng = np.random.default_rng(1)
     jpeg = [rng.integers(256, size=300_000, dtype=np.uint8).tobytes() for _ in range(4)]
     frames = (("r1/frame", frame(k, encoding="jpeg", data=jpeg[k % 4])) for k in range(100))
     source = written(tmp_path / "a.mcap", frames)
     assert source.stat().st_size > 25_000_000
-    tracemalloc.start()
-    try:
-        export(source, tmp_path / "b.mcap")
-        _, peak = tracemalloc.get_traced_memory()
-    finally:
-        tracemalloc.stop()
+    _, peak = traced_call(export, source, tmp_path / "b.mcap")
     assert peak < 12_000_000
