@@ -28,6 +28,9 @@ missed."""
 TURN_RAD = math.radians(15.0)
 """A robot turns less than that between two frames; chosen: half a radian a second."""
 
+BESIDE_M = 0.2
+"""Who is nearer to a node than this stands at it; chosen: two steps."""
+
 DOORWAY_NODES = 3
 """Nearest nodes asked whether they know an opening; chosen: one before, one after and one beside it."""
 
@@ -64,6 +67,7 @@ class Departure:
         self.here = start
         self._steps = self._unseen_frames = 0
         self._retreating = False
+        self._beside, self._back_to_node = start.length_m > BESIDE_M, False
         self.done = self.unseen = False
         self.progress = Progress()
 
@@ -84,12 +88,24 @@ class Departure:
             return self._new_node(observation, {**self._candidates(), **matches})
         if is_new_node(matches, self._profile) and not self._is_crowded(matches):
             return self._new_or_known(observation, {**self._candidates(), **matches})
-        heading_rad, free_m = through_gap(observation.ranges, self.heading_rad, self._profile)
-        if free_m < self._profile.sensing.blocked_m:
-            return self._close("blocked by an obstacle")
         if self._steps > rules.departure_steps:
             return self._close("nothing new on the way")
-        return _go(heading_rad, f"leaving node {self.node_id}, S {s_best}")
+        return self._straight_on(observation.ranges, s_best)
+
+    def _straight_on(self, ranges: Ranges, s_best: int) -> Decision:
+        """On in the direction; where it is blocked beside the node, first to the node: it was open there."""
+        if self._back_to_node and self.here.length_m > BESIDE_M:
+            heading_rad, free_m = through_gap(ranges, self.here.back_rad, self._profile)
+            if free_m >= self._profile.sensing.blocked_m:
+                return _go(heading_rad, f"to node {self.node_id}, to leave from there")
+        self._back_to_node = False
+        heading_rad, free_m = through_gap(ranges, self.heading_rad, self._profile)
+        if free_m >= self._profile.sensing.blocked_m:
+            return _go(heading_rad, f"leaving node {self.node_id}, S {s_best}")
+        if not self._beside:
+            return self._close("blocked by an obstacle")
+        self._beside, self._back_to_node = False, True
+        return self._straight_on(ranges, s_best)
 
     def _seen(self) -> Matches:
         """The nodes around that lie where they are seen: the two sides of a desk island look the same."""

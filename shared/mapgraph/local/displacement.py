@@ -31,6 +31,11 @@ class Displacement:
         """How far the frame is from the node."""
         return math.hypot(self.x_m, self.y_m)
 
+    @property
+    def back_rad(self) -> float:
+        """Bearing of the node in the frame."""
+        return math.remainder(math.atan2(-self.y_m, -self.x_m) - self.yaw_rad, math.tau)
+
     def moved(self, moved_m: tuple[float, float]) -> "Displacement":
         """After the robot went on by so much, in its own frame."""
         cos, sin = math.cos(self.yaw_rad), math.sin(self.yaw_rad)

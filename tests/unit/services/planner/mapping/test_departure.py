@@ -92,6 +92,35 @@ def test_a_room_furnished_like_another_is_new(departure, matcher):
     assert isinstance(found[-1], NewNode), found[-1].why
 
 
+@pytest.fixture
+def beside():
+    """A departure straight ahead that begins 0.4 m to the left of its node."""
+    maps = Maps(MapGraph([Node(node_id=0, open=(True,) * 12)]))
+    return Departure(DEFAULT, maps, Matcher(), 0, 0.0, Displacement(0, y_m=0.4))
+
+
+def walled(beside):
+    """Frames beside node 0 with a jamb close ahead, until the robot stands at the node."""
+    jamb = RANGES.model_copy(update={"distances_m": (0.3, 0.3, *RANGES.distances_m[3:], 0.3)})
+    first = beside.step(Observation(features(), jamb, (0.0, 0.0)))
+    second = beside.step(Observation(features(), jamb, (0.0, -0.12)))
+    return [first, second], jamb
+
+
+def test_a_direction_blocked_beside_its_node_is_left_from_the_node_itself(beside):
+    on_the_way, _ = walled(beside)
+    assert [decision.heading_rad for decision in on_the_way] == pytest.approx([-math.pi / 2] * 2, abs=0.2)
+    at_the_node = beside.step(Observation(features(), RANGES, (0.0, -0.12)))
+    assert at_the_node.heading_rad == pytest.approx(0.0)
+    assert not beside.done
+
+
+def test_a_direction_blocked_at_its_node_too_is_closed(beside):
+    _, jamb = walled(beside)
+    beside.step(Observation(features(), jamb, (0.0, -0.12)))
+    assert beside.done
+
+
 def unlike(away_m):
     sight = match(0, -away_m, 0.0, DEFAULT.mapping.s_node_max - 20)
     return sight.model_copy(update={"confidence": 0.9})
