@@ -127,7 +127,9 @@ class GoalDestination:
         if waypoint == GOAL and edge is not None and setback.path[-2] in self._targets:
             self._targets[setback.path[-2]] += LAST_EDGE_RAD
         if waypoint == GOAL:
-            self._settle(self.places.lost(setback.path[-2] if len(setback.path) > 1 else None))
+            unseen = setback.event is Event.WAYPOINT_LOST
+            rule = self.places.lost if unseen else self.places.blocked
+            self._settle(rule(setback.path[-2] if len(setback.path) > 1 else None))
         self._avoid[waypoint] = self._avoid.get(waypoint, 0.0) + AVOID_RAD
         edge = edge if edge is None or GOAL not in edge else None
         notes: tuple[Note, ...] = (Note("replan", f"{setback.event.value}: {setback.why}"),)

@@ -28,7 +28,7 @@ EXCLUDED_SHARE = 0.8
 """A place that resembles the goal by less than this share of the best one is excluded. Rooms furnished alike
 but for a few small things have 0.85 and more: they exclude nothing."""
 TRIES = 2
-"""Times the picture may be lost at one place before that counts as seen."""
+"""Times the picture may be lost or the way shut at one place before that counts."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,8 @@ class GoalPlaces:
         self._places = likely(places)
         self.plain = not places or is_plain(places, typical_similarity(maps.graph))
         self._seen: dict[Hypothesis, float] = {}
-        self._lost: dict[Hypothesis, int] = {}
+        self._tried: dict[Hypothesis, int] = {}
+        self._shut: set[Hypothesis] = set()
 
     @property
     def names(self) -> str:
@@ -68,7 +69,7 @@ class GoalPlaces:
         """Of the nodes that the goal resembles those of places that may still be it."""
         if not self._places:
             return dict(targets)
-        left = self._places if self.plain else [p for p in self._places if p not in self._seen]
+        left = self._places if self.plain else self._left()
         nodes = {node for place in left or self._best() for node in place.nodes}
         return {node: cost for node, cost in targets.items() if node in nodes}
 
@@ -92,23 +93,38 @@ class GoalPlaces:
         place = self._nearest(node)
         if self.plain or place is None:
             return Ruling("not seen")
-        self._lost[place] = self._lost.get(place, 0) + 1
-        if self._lost[place] < TRIES or place in self._seen:
+        if place in self._seen or not self._tried_enough(place):
             return Ruling("not seen")
         self._seen[place] = 0.0
         return self._judge(place)
 
+    def blocked(self, node: int | None) -> Ruling:
+        """The last way to the goal is shut where its place should be: that excludes nothing."""
+        place = self._nearest(node)
+        if self.plain or place is None or place in self._seen or not self._tried_enough(place):
+            return Ruling("not reached")
+        self._shut.add(place)
+        return self._judge(place)
+
+    def _tried_enough(self, place: Hypothesis) -> bool:
+        self._tried[place] = self._tried.get(place, 0) + 1
+        return self._tried[place] >= TRIES
+
+    def _left(self) -> list[Hypothesis]:
+        return [place for place in self._places if place not in self._seen and place not in self._shut]
+
     def _judge(self, here: Hypothesis) -> Ruling:
-        ranked = sorted(self._seen.values(), reverse=True)
-        best, second = ranked[0], ranked[1] if len(ranked) > 1 else 0.0
+        best, second = sorted((*self._seen.values(), 0.0, 0.0), reverse=True)[:2]
         enough = best >= SPOT_SHARE
         if enough and second >= EXCLUDED_SHARE * best:
             return Ruling(f"one of the places of nodes {self.names}, which look alike", "ambiguous")
-        left = [place for place in self._places if place not in self._seen]
-        if left:
-            return Ruling(
-                f"{self._seen[here]:.0%} alike; {len(left)} places that look alike are not excluded"
-            )
+        if left := self._left():
+            alike = f"{self._seen.get(here, 0.0):.0%} alike"
+            return Ruling(f"{alike}; {len(left)} places that look alike are not excluded")
+        if self._shut:
+            shut = ", ".join(str(place.nodes[0]) for place in self._places if place in self._shut)
+            why = f"of the places of nodes {self.names} that of {shut} could not be reached"
+            return Ruling(why, "ambiguous" if enough else "blocked")
         if not enough:
             why = f"the goal resembles nodes {self.names}, but is at none of them, {best:.0%} alike at most"
             return Ruling(why, "goal_not_in_map")

@@ -45,6 +45,27 @@ def test_the_last_one_visited_may_be_it(two):
     assert two.arrived(9, 0.88).why == ""
 
 
+def test_a_place_that_was_not_reached_is_not_excluded(two):
+    two.arrived(2, 0.88)
+    assert two.blocked(9).failure == ""
+    ruling = two.blocked(9)
+    assert ruling.failure == "ambiguous"
+    assert "9 could not be reached" in ruling.why
+
+
+def test_after_a_place_that_was_not_reached_the_others_are_tried(two):
+    two.blocked(9)
+    assert "not excluded" in two.blocked(9).why
+    assert set(two.open_targets(TARGETS)) == {1, 2}
+    assert two.arrived(2, 0.88).failure == "ambiguous"
+
+
+def test_a_goal_that_none_of_the_places_seen_resembles_may_be_at_the_one_not_reached(two):
+    two.arrived(2, 0.48)
+    two.blocked(9)
+    assert two.blocked(9).failure == "blocked"
+
+
 def test_places_that_resemble_it_equally_are_ambiguous(two):
     two.arrived(2, 0.88)
     ruling = two.arrived(9, 0.84)
