@@ -92,9 +92,9 @@ class GoalDestination:
         closed = self._experience.unreachable
         return {node: c + self._avoid.get(node, 0.0) for node, c in visible.items() if node not in closed}
 
-    def goes_straight(self) -> bool:
-        """Not once the robot got stuck, for what shut the way is still there; nor to a place in doubt."""
-        return not self._stuck and self.places.plain
+    def goes_straight(self, node: int | None) -> bool:
+        """Not once the robot got stuck, for what shut the way is still there; nor to a look-alike."""
+        return not self._stuck and self.places.is_near(node)
 
     def set_out(self) -> None:
         """Nothing to remember."""
@@ -127,8 +127,8 @@ class GoalDestination:
         if waypoint == GOAL and edge is not None and setback.path[-2] in self._targets:
             self._targets[setback.path[-2]] += LAST_EDGE_RAD
         if waypoint == GOAL:
-            unseen = setback.event is Event.WAYPOINT_LOST
-            rule = self.places.lost if unseen else self.places.blocked
+            shut = setback.event is Event.NO_PROGRESS
+            rule = self.places.blocked if shut else self.places.lost
             self._settle(rule(setback.path[-2] if len(setback.path) > 1 else None))
         self._avoid[waypoint] = self._avoid.get(waypoint, 0.0) + AVOID_RAD
         edge = edge if edge is None or GOAL not in edge else None
@@ -153,7 +153,9 @@ class GoalDestination:
         s_map = max((similarity_of(match, self._profile) for match in here.values()), default=0)
         if similarity >= GOAL_SHARE * s_map:
             here_node = tracker.here.node_id if tracker.here is not None else None
-            return self._settle(self.places.arrived(here_node, tracker.likeness(similarity)))
+            ruling = self.places.arrived(here_node, tracker.likeness(similarity))
+            self.aliased = self.aliased or bool(ruling.why)
+            return self._settle(ruling)
         self._rule_out(here)
         return f"aliased: a node of the map resembles this view more than the goal does, S {s_map}"
 

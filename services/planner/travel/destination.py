@@ -73,8 +73,12 @@ class Destination(Protocol):
     def localised(self, seen: Matches, ranges: Ranges) -> tuple[Note, ...]:
         """Learn from a frame that was compared with the whole map."""
 
-    def goes_straight(self) -> bool:
-        """Whether the picture may be headed for without a path when it is in sight."""
+    def goes_straight(self, node: int | None) -> bool:
+        """Whether the picture may be headed for without a path when it is in sight.
+
+        Args:
+            node: the robot is about there; None where nobody knows.
+        """
 
     def set_out(self) -> None:
         """A path was found."""

@@ -68,7 +68,7 @@ class FrontierDestination:
                 self._bad_starts, self._stranded = set(), 0
         return starts
 
-    def goes_straight(self) -> bool:
+    def goes_straight(self, node: int | None) -> bool:  # noqa: ARG002
         """There is no picture to head for."""
         return False
 

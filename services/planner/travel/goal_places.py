@@ -4,6 +4,7 @@ Rooms furnished alike resemble a picture of one of them equally. Only at the ver
 resemble it more: so each is visited, and arrival is claimed where the others are excluded.
 """
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -27,6 +28,9 @@ desk of another row 0.45 at the median."""
 EXCLUDED_SHARE = 0.8
 """A place that resembles the goal by less than this share of the best one is excluded. Rooms furnished alike
 but for a few small things have 0.85 and more: they exclude nothing."""
+NEAREST = 2
+"""Nodes most like the picture, of which one is next to whoever stands where it was taken; chosen: one before
+and one beyond."""
 TRIES = 2
 """Times the picture may be lost or the way shut at one place before that counts."""
 
@@ -57,7 +61,8 @@ class GoalPlaces:
         self._places = likely(places)
         self.plain = not places or is_plain(places, typical_similarity(maps.graph))
         self._seen: dict[Hypothesis, float] = {}
-        self._tried: dict[Hypothesis, int] = {}
+        self._losses: Counter[Hypothesis] = Counter()
+        self._blocks: Counter[Hypothesis] = Counter()
         self._shut: set[Hypothesis] = set()
 
     @property
@@ -73,6 +78,13 @@ class GoalPlaces:
         nodes = {node for place in left or self._best() for node in place.nodes}
         return {node: cost for node, cost in targets.items() if node in nodes}
 
+    def is_near(self, node: int | None) -> bool:
+        """Whether a robot about `node` can be at the place, where there is but one and both are known."""
+        graph = self._maps.graph
+        if not (self.plain and self._places) or node is None or node not in graph.nodes:
+            return self.plain
+        return any(node == best or node in graph.neighbours(best) for best in self._places[0].nodes[:NEAREST])
+
     def arrived(self, node: int | None, likeness: float) -> Ruling:
         """The robot stands where the goal picture agrees with the view.
 
@@ -80,8 +92,11 @@ class GoalPlaces:
             node: of the map, near there.
             likeness: similarity of view and goal, as a share of that of two frames in a row.
         """
+        if self.plain:
+            away = likeness < SPOT_SHARE and not self.is_near(node)
+            return Ruling(f"a look-alike about node {node}, its place is about {self.names}" if away else "")
         place = self._nearest(node)
-        if self.plain or place is None:
+        if place is None:
             return Ruling()
         if place in self._seen and self._best() == [place]:
             return Ruling()
@@ -93,7 +108,8 @@ class GoalPlaces:
         place = self._nearest(node)
         if self.plain or place is None:
             return Ruling("not seen")
-        if place in self._seen or not self._tried_enough(place):
+        self._losses[place] += 1
+        if place in self._seen or self._losses[place] < TRIES:
             return Ruling("not seen")
         self._seen[place] = 0.0
         return self._judge(place)
@@ -101,14 +117,13 @@ class GoalPlaces:
     def blocked(self, node: int | None) -> Ruling:
         """The last way to the goal is shut where its place should be: that excludes nothing."""
         place = self._nearest(node)
-        if self.plain or place is None or place in self._seen or not self._tried_enough(place):
+        if self.plain or place is None:
+            return Ruling("not reached")
+        self._blocks[place] += 1
+        if place in self._seen or self._blocks[place] < TRIES:
             return Ruling("not reached")
         self._shut.add(place)
         return self._judge(place)
-
-    def _tried_enough(self, place: Hypothesis) -> bool:
-        self._tried[place] = self._tried.get(place, 0) + 1
-        return self._tried[place] >= TRIES
 
     def _left(self) -> list[Hypothesis]:
         return [place for place in self._places if place not in self._seen and place not in self._shut]

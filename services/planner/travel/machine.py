@@ -82,7 +82,9 @@ class Travel:
         seen = self.tracker.possible(seen)
         self.tracker.confirm(seen)
         self._notes += destination.localised(seen, observation.ranges)
-        if goal is not None and destination.goes_straight() and in_sight(goal, observation.ranges, profile):
+        about = self.tracker.here.node_id if self.tracker.here is not None else None
+        straight = goal is not None and destination.goes_straight(about)
+        if goal is not None and straight and in_sight(goal, observation.ranges, profile):
             self._set_off([GOAL], Event.GOAL_IN_SIGHT)
             return None
         targets = destination.targets()

@@ -30,6 +30,19 @@ def test_a_place_without_rivals_is_arrived_at_at_once():
     assert set(places.open_targets(TARGETS)) == {1, 2}
 
 
+def test_a_look_alike_on_the_way_is_neither_headed_for_nor_arrived_at():
+    places = places_of(FIRST)
+    assert not places.is_near(12)
+    assert "a look-alike about node 12" in places.arrived(12, 0.45).why
+
+
+def test_who_may_be_lost_believes_a_view_that_is_as_alike_as_the_spot_itself():
+    places = places_of(FIRST)
+    assert places.arrived(12, 0.88).why == ""
+    assert places.is_near(None)
+    assert places.arrived(None, 0.45).why == ""
+
+
 def test_a_look_alike_is_visited_before_arrival_is_claimed(two):
     assert not two.plain
     assert set(two.open_targets(TARGETS)) == {1, 2, 9, 10}
