@@ -127,9 +127,7 @@ class GoalDestination:
         if waypoint == GOAL and edge is not None and setback.path[-2] in self._targets:
             self._targets[setback.path[-2]] += LAST_EDGE_RAD
         if waypoint == GOAL:
-            shut = setback.event is Event.NO_PROGRESS
-            rule = self.places.blocked if shut else self.places.lost
-            self._settle(rule(setback.path[-2] if len(setback.path) > 1 else None))
+            self._settle(self._place_missed(setback))
         self._avoid[waypoint] = self._avoid.get(waypoint, 0.0) + AVOID_RAD
         edge = edge if edge is None or GOAL not in edge else None
         notes: tuple[Note, ...] = (Note("replan", f"{setback.event.value}: {setback.why}"),)
@@ -143,21 +141,32 @@ class GoalDestination:
         notes += self._experience.stuck(edge, waypoint)
         return Verdict(notes, "blocked" if self._stuck > STUCK_MAX else "")
 
+    def _place_missed(self, setback: Setback) -> Ruling:
+        """What it says of the place headed for that the robot did not arrive there."""
+        node = setback.path[-2] if len(setback.path) > 1 else None
+        if setback.event is not Event.NO_PROGRESS:
+            return self.places.lost(node)
+        return self.places.stood(node) if self.places.is_at(setback.here) else self.places.blocked(node)
+
     def refutes_arrival(self, end: int, similarity: int, tracker: Tracker) -> str:  # noqa: ARG002
         """Whether another node resembles the view more than the goal does; the thesis does not ask."""
         if self._profile.travel.path_cost == "nodes":
             return ""
         assert self.picture is not None
-        here = self._matcher.match([], COMPARED, (self.picture,))
-        here.pop(GOAL, None)
-        s_map = max((similarity_of(match, self._profile) for match in here.values()), default=0)
-        if similarity >= GOAL_SHARE * s_map:
-            here_node = tracker.here.node_id if tracker.here is not None else None
-            ruling = self.places.arrived(here_node, tracker.likeness(similarity))
-            self.aliased = self.aliased or bool(ruling.why)
-            return self._settle(ruling)
-        self._rule_out(here)
-        return f"aliased: a node of the map resembles this view more than the goal does, S {s_map}"
+        view = self._matcher.match([], COMPARED_NODES, (self.picture,))
+        view.pop(GOAL, None)
+        node = tracker.here.node_id if tracker.here is not None else None
+        s_map = max((similarity_of(match, self._profile) for match in view.values()), default=0)
+        if similarity < GOAL_SHARE * s_map:
+            self._rule_out(view)
+            if self.places.is_at(tracker.here):
+                self._settle(self.places.stood(node))
+            return f"aliased: a node of the map resembles this view more than the goal does, S {s_map}"
+        if another := self.places.shows_another(view, node):
+            self.aliased = True
+            tracker.stand_at(None)
+            return f"aliased: {another}"
+        return self._settle(self.places.arrived(node, tracker.likeness(similarity)))
 
     def _settle(self, ruling: Ruling) -> str:
         """Take over what the places say: without any left there are no targets."""

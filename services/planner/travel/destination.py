@@ -8,6 +8,7 @@ from services.planner.ports import Matches, Note
 from services.planner.travel.states import Event
 from services.planner.travel.tracking import Tracker
 from shared.mapgraph.graph import EdgeKey
+from shared.mapgraph.local.displacement import Displacement
 from shared.messages.features import Features
 from shared.messages.missions import FailureKind
 from shared.messages.sensors import Ranges
@@ -23,6 +24,7 @@ class Setback:
         waypoint: what was aimed at.
         path: the whole path.
         why: for people.
+        here: where the robot is, as far as it is known.
     """
 
     event: Event
@@ -30,6 +32,7 @@ class Setback:
     waypoint: int
     path: tuple[int, ...]
     why: str
+    here: Displacement | None = None
 
 
 @dataclass(frozen=True)

@@ -4,14 +4,16 @@ Rooms furnished alike resemble a picture of one of them equally. Only at the ver
 resemble it more: so each is visited, and arrival is claimed where the others are excluded.
 """
 
+import math
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from services.planner.mapping.reach import claims
+from services.planner.mapping.reach import claims, distances
 from services.planner.ports import MapAccess, Matches
 from services.planner.profiles import Profile
 from services.planner.similarity import similarity
+from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import (
     Hypothesis,
     hypotheses,
@@ -31,6 +33,9 @@ but for a few small things have 0.85 and more: they exclude nothing."""
 NEAREST = 2
 """Nodes most like the picture, of which one is next to whoever stands where it was taken; chosen: one before
 and one beyond."""
+SPOT_M = 0.75
+"""Who is nearer than this to the node most like the picture stands where it was taken; chosen: nodes lie half
+a metre apart, and a base stops a hand's breadth short."""
 TRIES = 2
 """Times the picture may be lost or the way shut at one place before that counts."""
 
@@ -53,11 +58,8 @@ class GoalPlaces:
     """
 
     def __init__(self, maps: MapAccess, found: Matches, profile: Profile) -> None:
-        self._maps = maps
-        similar = {n: m for n, m in found.items() if similarity(m, profile) > profile.travel.s_via_min}
-        strict = profile.sensing.similarity == "raw"
-        sights = {} if strict else claims(similar, profile)
-        places = hypotheses(maps.graph, sights, profile.sensing.disparity_rad_per_m)
+        self._maps, self._profile = maps, profile
+        places = self._hypotheses(found)
         self._places = likely(places)
         self.plain = not places or is_plain(places, typical_similarity(maps.graph))
         self._seen: dict[Hypothesis, float] = {}
@@ -85,6 +87,36 @@ class GoalPlaces:
             return self.plain
         return any(node == best or node in graph.neighbours(best) for best in self._places[0].nodes[:NEAREST])
 
+    def shows_another(self, view: Matches, node: int | None) -> str:
+        """Why a view is not of the place, where there is but one: a look-alike is a place of its own.
+
+        Args:
+            view: the frame against the nodes most like it.
+            node: the robot is about there; None where nobody knows.
+        """
+        found = likely(self._hypotheses(view))
+        if not (self.plain and self._places and found):
+            return ""
+        same = [not set(place.nodes).isdisjoint(self._places[0].nodes) for place in found]
+        if same[0] or (any(same) and self.is_near(node)):
+            return ""
+        return f"this is about node {found[0].nodes[0]}, its place about {self.names}"
+
+    def stood(self, node: int | None) -> Ruling:
+        """The robot stood at the very spot, and the goal picture did not agree with the view."""
+        place = self._nearest(node)
+        if self.plain or place is None:
+            return Ruling("not seen")
+        self._seen.setdefault(place, 0.0)
+        return self._judge(place)
+
+    def is_at(self, here: Displacement | None) -> bool:
+        """Whether the robot stands where one of several places puts the picture, as far as is known."""
+        if self.plain or here is None:
+            return False
+        best = {place.nodes[0] for place in self._places}
+        return min(distances(self._maps.graph, here, best, self._profile).values(), default=math.inf) < SPOT_M
+
     def arrived(self, node: int | None, likeness: float) -> Ruling:
         """The robot stands where the goal picture agrees with the view.
 
@@ -93,8 +125,7 @@ class GoalPlaces:
             likeness: similarity of view and goal, as a share of that of two frames in a row.
         """
         if self.plain:
-            away = likeness < SPOT_SHARE and not self.is_near(node)
-            return Ruling(f"a look-alike about node {node}, its place is about {self.names}" if away else "")
+            return Ruling()
         place = self._nearest(node)
         if place is None:
             return Ruling()
@@ -149,6 +180,13 @@ class GoalPlaces:
 
     def _best(self) -> list[Hypothesis]:
         return [max(self._seen, key=lambda place: self._seen[place])] if self._seen else []
+
+    def _hypotheses(self, matches: Matches) -> list[Hypothesis]:
+        profile = self._profile
+        if profile.sensing.similarity == "raw":
+            return []
+        similar = {n: m for n, m in matches.items() if similarity(m, profile) > profile.travel.s_via_min}
+        return hypotheses(self._maps.graph, claims(similar, profile), profile.sensing.disparity_rad_per_m)
 
     def _nearest(self, node: int | None) -> Hypothesis | None:
         """The place a node belongs to: by the fewest edges."""

@@ -137,7 +137,8 @@ class Travel:
             self._unclear.add(follower.next_edge())
             self._notes.append(Note("leg_doubted", f"edge {follower.next_edge()}: {why}"))
             return Decision("hold", why=f"planning again: {why}")
-        return self._recover(Setback(event, *follower.failed_edge(), tuple(follower.path), why))
+        here = self.tracker.here
+        return self._recover(Setback(event, *follower.failed_edge(), tuple(follower.path), why, here))
 
     def _recover(self, setback: Setback) -> Decision:
         """Learn from what ended the path, and plan again from what the next frame shows."""

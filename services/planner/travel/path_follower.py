@@ -42,6 +42,11 @@ NEAREST_STEPS = 8
 s."""
 
 
+BESIDE_GOAL = 3
+"""Nodes around the robot that are compared on the last leg, where the path has none; chosen: so that it is
+known where the robot is when it arrives."""
+
+
 class PathFollower:
     """Drives along `path` (node ids; GOAL may be last) and looks ahead along it."""
 
@@ -128,7 +133,8 @@ class PathFollower:
     def _compare(self, matcher: Matcher) -> dict[int, NodeMatch]:
         ahead = self.path[self.index : self.index + WINDOW]
         picture = self._destination.picture
-        seen = matcher.match([n for n in ahead if n != GOAL], targets=() if picture is None else (picture,))
+        nodes = [n for n in ahead if n != GOAL] or self._tracker.nearby()[:BESIDE_GOAL]
+        seen = matcher.match(nodes, targets=() if picture is None else (picture,))
         goal = {GOAL: seen.pop(GOAL)} if GOAL in seen else {}
         possible = self._tracker.possible(seen)
         self._tracker.confirm(possible)

@@ -4,6 +4,7 @@ import pytest
 
 from services.planner.profiles import DEFAULT, THESIS
 from services.planner.travel.goal_places import GoalPlaces
+from shared.mapgraph.local.displacement import Displacement
 from tests.unit.services.planner.travel.seen import Maps, by_node, match
 from tests.unit.shared.mapgraph.local.grid import grid
 
@@ -30,17 +31,29 @@ def test_a_place_without_rivals_is_arrived_at_at_once():
     assert set(places.open_targets(TARGETS)) == {1, 2}
 
 
-def test_a_look_alike_on_the_way_is_neither_headed_for_nor_arrived_at():
+def test_a_goal_in_sight_is_headed_for_beside_its_place_only():
     places = places_of(FIRST)
-    assert not places.is_near(12)
-    assert "a look-alike about node 12" in places.arrived(12, 0.45).why
+    assert [places.is_near(node) for node in (1, 3, 12, None)] == [True, True, False, True]
 
 
-def test_who_may_be_lost_believes_a_view_that_is_as_alike_as_the_spot_itself():
+def test_a_view_of_a_look_alike_is_no_arrival():
     places = places_of(FIRST)
-    assert places.arrived(12, 0.88).why == ""
-    assert places.is_near(None)
-    assert places.arrived(None, 0.45).why == ""
+    assert "this is about node 9" in places.shows_another(SECOND, 9)
+    assert places.shows_another(FIRST, 1) == ""
+
+
+@pytest.mark.parametrize(("node", "another"), [(2, False), (10, True)])
+def test_a_view_that_may_be_of_either_is_believed_beside_the_place(node, another):
+    rival = by_node(match(9, 0.0, 0.0, 160), match(10, 1.0, 0.0, 80))
+    assert bool(places_of(FIRST).shows_another(FIRST | rival, node)) == another
+
+
+def test_who_stood_at_the_very_spot_and_did_not_see_the_goal_excludes_it(two):
+    assert two.is_at(Displacement(9, x_m=0.3))
+    assert not two.is_at(Displacement(9, y_m=1.5))
+    assert not two.is_at(None)
+    two.stood(9)
+    assert two.arrived(1, 0.86).why == ""
 
 
 def test_a_look_alike_is_visited_before_arrival_is_claimed(two):
