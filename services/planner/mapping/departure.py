@@ -31,6 +31,9 @@ TURN_RAD = math.radians(15.0)
 BESIDE_M = 0.2
 """Who is nearer to a node than this stands at it; chosen: two steps."""
 
+ON_COURSE_RAD = math.radians(60.0)
+"""A new node this far off the direction lies in another one; chosen: two sectors."""
+
 DOORWAY_NODES = 3
 """Nearest nodes asked whether they know an opening; chosen: one before, one after and one beside it."""
 
@@ -67,7 +70,8 @@ class Departure:
         self.here = start
         self._steps = self._unseen_frames = 0
         self._retreating = False
-        self._beside, self._back_to_node = start.length_m > BESIDE_M, False
+        self._began_beside = self._beside = start.length_m > BESIDE_M
+        self._back_to_node = False
         self.done = self.unseen = False
         self.progress = Progress()
 
@@ -178,7 +182,8 @@ class Departure:
         edges = judge_edges(graph, observation, matches, self._profile, self.here)
         if not edges.admitted:
             return self._close("no view back to be sure of", lost=True)
-        self._mark_explored()
+        if self._is_on_course():
+            self._mark_explored()
         node_id, refused = add_node(self._maps, observation, edges, self._profile, self.here)
         count = len(self._maps.graph.neighbours(node_id))
         nearest, match = ranked(matches, self._profile)[0]
@@ -189,6 +194,12 @@ class Departure:
             "s": similarity(match, self._profile),
         }
         return NewNode(node_id, (Note("node_added", f"new node with {count} edges", values), *refused))
+
+    def _is_on_course(self) -> bool:
+        """Whether the robot went in the direction: one that began beside its node may still be there."""
+        bearing_rad = math.atan2(self.here.y_m, self.here.x_m)
+        off_rad = abs(math.remainder(bearing_rad - sector_rad(self.sector), math.tau))
+        return not self._began_beside or off_rad < ON_COURSE_RAD
 
     def _close(self, why: str, *, lost: bool = False) -> Decision:
         """This direction is done; go back to known ground when nothing is seen."""

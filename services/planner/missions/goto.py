@@ -19,9 +19,11 @@ from services.planner.travel.machine import Travel
 from services.planner.travel.states import Event, State
 from services.planner.travel.tracking import Tracker
 from shared.mapgraph.graph import EdgeKey, edge_key
+from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import COMPARED_NODES
 from shared.mapgraph.routing import GOAL
 from shared.messages.features import Features
+from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
 from shared.messages.sensors import Ranges
 
@@ -92,9 +94,9 @@ class GoalDestination:
         closed = self._experience.unreachable
         return {node: c + self._avoid.get(node, 0.0) for node, c in visible.items() if node not in closed}
 
-    def goes_straight(self, node: int | None) -> bool:
+    def goes_straight(self, goal: NodeMatch, here: Displacement | None) -> bool:
         """Not once the robot got stuck, for what shut the way is still there; nor to a look-alike."""
-        return not self._stuck and self.places.is_near(node)
+        return not self._stuck and self.places.may_be_seen(goal, here)
 
     def set_out(self) -> None:
         """Nothing to remember."""

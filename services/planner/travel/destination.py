@@ -10,6 +10,7 @@ from services.planner.travel.tracking import Tracker
 from shared.mapgraph.graph import EdgeKey
 from shared.mapgraph.local.displacement import Displacement
 from shared.messages.features import Features
+from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
 from shared.messages.sensors import Ranges
 
@@ -76,11 +77,12 @@ class Destination(Protocol):
     def localised(self, seen: Matches, ranges: Ranges) -> tuple[Note, ...]:
         """Learn from a frame that was compared with the whole map."""
 
-    def goes_straight(self, node: int | None) -> bool:
-        """Whether the picture may be headed for without a path when it is in sight.
+    def goes_straight(self, goal: NodeMatch, here: Displacement | None) -> bool:
+        """Whether the picture, which is in sight, may be headed for without a path.
 
         Args:
-            node: the robot is about there; None where nobody knows.
+            goal: the frame against the picture.
+            here: where the robot is; None where nobody knows.
         """
 
     def set_out(self) -> None:

@@ -8,8 +8,10 @@ from services.planner.travel.destination import Setback, Verdict
 from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.tracking import Tracker
 from shared.mapgraph.frontiers import frontier_sectors, without_frontiers
+from shared.mapgraph.local.displacement import Displacement
 from shared.messages.features import Features
 from shared.messages.maps import UpdateNode
+from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
 from shared.messages.sensors import Ranges
 
@@ -68,7 +70,7 @@ class FrontierDestination:
                 self._bad_starts, self._stranded = set(), 0
         return starts
 
-    def goes_straight(self, node: int | None) -> bool:  # noqa: ARG002
+    def goes_straight(self, _goal: NodeMatch, _here: Displacement | None) -> bool:
         """There is no picture to head for."""
         return False
 

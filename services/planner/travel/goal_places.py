@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from services.planner.mapping.reach import claims, distances
+from services.planner.mapping.reach import claims, distances, elsewhere
 from services.planner.ports import MapAccess, Matches
 from services.planner.profiles import Profile
 from services.planner.similarity import similarity
@@ -21,6 +21,7 @@ from shared.mapgraph.local.hypotheses import (
     likely,
     typical_similarity,
 )
+from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
 
 SPOT_SHARE = 0.6
@@ -60,6 +61,7 @@ class GoalPlaces:
     def __init__(self, maps: MapAccess, found: Matches, profile: Profile) -> None:
         self._maps, self._profile = maps, profile
         places = self._hypotheses(found)
+        self._yaw_rad = {node: match.yaw_rad or 0.0 for node, match in found.items()}
         self._places = likely(places)
         self.plain = not places or is_plain(places, typical_similarity(maps.graph))
         self._seen: dict[Hypothesis, float] = {}
@@ -86,6 +88,19 @@ class GoalPlaces:
         if not (self.plain and self._places) or node is None or node not in graph.nodes:
             return self.plain
         return any(node == best or node in graph.neighbours(best) for best in self._places[0].nodes[:NEAREST])
+
+    def may_be_seen(self, goal: NodeMatch, here: Displacement | None) -> bool:
+        """Whether the picture in sight can be at its place, by where the robot is; True where nobody knows.
+
+        Args:
+            goal: the frame against the picture.
+            here: where the frame was taken.
+        """
+        if not (self.plain and self._places) or here is None or self.is_near(here.node_id):
+            return self.plain
+        nearest = self._places[0].nodes[0]
+        seen = goal.model_copy(update={"yaw_rad": (goal.yaw_rad or 0.0) + self._yaw_rad[nearest]})
+        return not elsewhere(self._maps.graph, {nearest: seen}, here, self._profile)
 
     def shows_another(self, view: Matches, node: int | None) -> str:
         """Why a view is not of the place, where there is but one: a look-alike is a place of its own.

@@ -82,9 +82,8 @@ class Travel:
         seen = self.tracker.possible(seen)
         self.tracker.confirm(seen)
         self._notes += destination.localised(seen, observation.ranges)
-        about = self.tracker.here.node_id if self.tracker.here is not None else None
-        straight = goal is not None and destination.goes_straight(about)
-        if goal is not None and straight and in_sight(goal, observation.ranges, profile):
+        in_view = goal is not None and in_sight(goal, observation.ranges, profile)
+        if goal is not None and in_view and destination.goes_straight(goal, self.tracker.here):
             self._set_off([GOAL], Event.GOAL_IN_SIGHT)
             return None
         targets = destination.targets()

@@ -121,6 +121,19 @@ def test_a_direction_blocked_at_its_node_too_is_closed(beside):
     assert beside.done
 
 
+@pytest.mark.parametrize(("aside_m", "explored"), [(0.0, True), (-0.6, False)])
+def test_a_new_node_closes_the_direction_it_lies_in(matcher, aside_m, explored):
+    """What begins beside its node and makes a node there has not gone in the direction."""
+    maps = Maps(MapGraph([Node(node_id=0, open=(True,) * 12)]))
+    departure = Departure(DEFAULT, maps, matcher, 3, math.pi / 2, Displacement(0, aside_m, 0.05))
+    found = []
+    while not isinstance(found, NewNode):
+        matcher.seen = match(0, -departure.here.x_m, -departure.here.y_m, 60)
+        matcher.seen = matcher.seen.model_copy(update={"confidence": 0.9})
+        found = departure.step(Observation(features(), RANGES, (0.0, 0.12)))
+    assert maps.graph.nodes[0].explored[3] == explored
+
+
 def unlike(away_m):
     sight = match(0, -away_m, 0.0, DEFAULT.mapping.s_node_max - 20)
     return sight.model_copy(update={"confidence": 0.9})

@@ -5,6 +5,7 @@ import pytest
 from services.planner.profiles import DEFAULT, THESIS
 from services.planner.travel.goal_places import GoalPlaces
 from shared.mapgraph.local.displacement import Displacement
+from shared.mapgraph.routing import GOAL
 from tests.unit.services.planner.travel.seen import Maps, by_node, match
 from tests.unit.shared.mapgraph.local.grid import grid
 
@@ -12,6 +13,7 @@ GRAPH = grid(20, 2)
 FIRST = by_node(match(1, 0.0, 0.0, 150), match(2, 1.0, 0.0, 80))
 SECOND = by_node(match(9, 0.0, 0.0, 140), match(10, 1.0, 0.0, 80))
 THIRD = by_node(match(17, 0.0, 0.0, 140), match(18, 1.0, 0.0, 80))
+FAR = next(n for n in GRAPH.nodes if n not in GRAPH.nearest(1, 8))
 TARGETS = dict.fromkeys((1, 2, 9, 10, 17, 18), 0.1)
 
 
@@ -34,6 +36,14 @@ def test_a_place_without_rivals_is_arrived_at_at_once():
 def test_a_goal_in_sight_is_headed_for_beside_its_place_only():
     places = places_of(FIRST)
     assert [places.is_near(node) for node in (1, 3, 12, None)] == [True, True, False, True]
+
+
+@pytest.mark.parametrize(("seen_m", "may"), [(4.8, True), (1.0, False)])
+def test_a_goal_seen_where_its_place_is_not_is_not_headed_for(seen_m, may):
+    """The next of equal desks, a period nearer."""
+    places, goal = places_of(FIRST), match(GOAL, -seen_m, 0.0)
+    assert places.may_be_seen(goal, Displacement(FAR)) == may
+    assert places.may_be_seen(goal, None)
 
 
 def test_a_view_of_a_look_alike_is_no_arrival():
