@@ -8,6 +8,10 @@ DRIFT = 0.15
 BEARING_FROM_M = 0.4
 """From here on the bearing of the node left tells the direction better than the commands do."""
 
+ASTRAY_RAD = math.radians(45.0)
+"""A bearing this far from where the commands led is wrong, however sure; chosen: a base that slides along
+what it touches goes half of its way."""
+
 
 @dataclass(frozen=True)
 class Displacement:
@@ -52,6 +56,8 @@ class Displacement:
         if heading_rad is None or self.length_m < BEARING_FROM_M:
             return replace(self, yaw_rad=-yaw_rad)
         away_rad, length_m = heading_rad - yaw_rad + math.pi, self.length_m
+        if abs(math.remainder(away_rad - math.atan2(self.y_m, self.x_m), math.tau)) > ASTRAY_RAD:
+            return replace(self, yaw_rad=-yaw_rad)
         x_m, y_m = length_m * math.cos(away_rad), length_m * math.sin(away_rad)
         return replace(self, x_m=x_m, y_m=y_m, yaw_rad=-yaw_rad)
 

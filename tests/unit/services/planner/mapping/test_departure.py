@@ -79,6 +79,14 @@ def test_an_unsure_bearing_does_not_say_where_the_robot_is(departure, matcher):
     assert departure.here.x_m == pytest.approx(0.6, abs=0.01)
 
 
+def test_a_bearing_far_from_where_the_commands_led_is_wrong_however_sure(departure, matcher):
+    for step in range(1, 4):
+        drive(departure, matcher, behind(0.12 * step))
+    wild = match(0, -0.48 * math.cos(math.radians(55.0)), -0.48 * math.sin(math.radians(55.0)))
+    drive(departure, matcher, wild)
+    assert (departure.here.x_m, departure.here.y_m) == pytest.approx((0.48, 0.0), abs=0.01)
+
+
 def test_views_that_change_fast_make_no_crowd_of_nodes(departure, matcher):
     """Beside a repeating desk S falls within 0.3 m."""
     found = [drive(departure, matcher, unlike(0.12 * step)) for step in range(1, 6)]
