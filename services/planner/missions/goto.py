@@ -13,7 +13,7 @@ from services.planner.similarity import similarity as similarity_of
 from services.planner.surroundings import is_clear, is_clear_from
 from services.planner.travel.destination import Setback, Verdict
 from services.planner.travel.edge_experience import EdgeExperience
-from services.planner.travel.goal_places import GoalPlaces, Ruling
+from services.planner.travel.goal_places import GoalPlaces, Ruling, Visit
 from services.planner.travel.localisation import reachable_nodes
 from services.planner.travel.machine import Travel
 from services.planner.travel.states import Event, State
@@ -168,7 +168,7 @@ class GoalDestination:
             self.aliased = True
             tracker.stand_at(None)
             return f"aliased: {another}"
-        return self._settle(self.places.arrived(node, tracker.likeness(similarity)))
+        return self._settle(self.places.arrived(node, Visit(similarity, tracker.likeness(similarity))))
 
     def _settle(self, ruling: Ruling) -> str:
         """Take over what the places say: without any left there are no targets."""

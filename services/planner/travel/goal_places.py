@@ -41,6 +41,19 @@ TRIES = 2
 """Times the picture may be lost or the way shut at one place before that counts."""
 
 
+@dataclass(frozen=True, order=True)
+class Visit:
+    """How the goal resembled the view at a place.
+
+    Attributes:
+        similarity: S of the two; places are compared by it.
+        likeness: as a share of that of two frames in a row, which noise and light lower as well.
+    """
+
+    similarity: int = 0
+    likeness: float = 0.0
+
+
 @dataclass(frozen=True)
 class Ruling:
     """Why an arrival is none yet ("" confirms it), and a `failure` where it never will be one."""
@@ -64,7 +77,7 @@ class GoalPlaces:
         self._yaw_rad = {node: match.yaw_rad or 0.0 for node, match in found.items()}
         self._places = likely(places)
         self.plain = not places or is_plain(places, typical_similarity(maps.graph))
-        self._seen: dict[Hypothesis, float] = {}
+        self._seen: dict[Hypothesis, Visit] = {}
         self._losses: Counter[Hypothesis] = Counter()
         self._blocks: Counter[Hypothesis] = Counter()
         self._shut: set[Hypothesis] = set()
@@ -122,7 +135,7 @@ class GoalPlaces:
         place = self._nearest(node)
         if self.plain or place is None:
             return Ruling("not seen")
-        self._seen.setdefault(place, 0.0)
+        self._seen.setdefault(place, Visit())
         return self._judge(place)
 
     def is_at(self, here: Displacement | None) -> bool:
@@ -132,12 +145,12 @@ class GoalPlaces:
         best = {place.nodes[0] for place in self._places}
         return min(distances(self._maps.graph, here, best, self._profile).values(), default=math.inf) < SPOT_M
 
-    def arrived(self, node: int | None, likeness: float) -> Ruling:
+    def arrived(self, node: int | None, visit: Visit) -> Ruling:
         """The robot stands where the goal picture agrees with the view.
 
         Args:
             node: of the map, near there.
-            likeness: similarity of view and goal, as a share of that of two frames in a row.
+            visit: what it sees of the goal.
         """
         if self.plain:
             return Ruling()
@@ -146,7 +159,7 @@ class GoalPlaces:
             return Ruling()
         if place in self._seen and self._best() == [place]:
             return Ruling()
-        self._seen[place] = max(likeness, self._seen.get(place, 0.0))
+        self._seen[place] = max(visit, self._seen.get(place, Visit()))
         return self._judge(place)
 
     def lost(self, node: int | None) -> Ruling:
@@ -157,7 +170,7 @@ class GoalPlaces:
         self._losses[place] += 1
         if place in self._seen or self._losses[place] < TRIES:
             return Ruling("not seen")
-        self._seen[place] = 0.0
+        self._seen[place] = Visit()
         return self._judge(place)
 
     def blocked(self, node: int | None) -> Ruling:
@@ -175,23 +188,26 @@ class GoalPlaces:
         return [place for place in self._places if place not in self._seen and place not in self._shut]
 
     def _judge(self, here: Hypothesis) -> Ruling:
-        best, second = sorted((*self._seen.values(), 0.0, 0.0), reverse=True)[:2]
-        enough = best >= SPOT_SHARE
-        if enough and second >= EXCLUDED_SHARE * best:
+        best, second = sorted((*self._seen.values(), Visit(), Visit()), reverse=True)[:2]
+        enough, left = best.likeness >= SPOT_SHARE, self._left()
+        # While places are left, only what even the spot itself would not exclude ends the search.
+        least = best.similarity if not left else best.similarity / max(best.likeness, SPOT_SHARE)
+        if enough and second.similarity >= EXCLUDED_SHARE * least:
             return Ruling(f"one of the places of nodes {self.names}, which look alike", "ambiguous")
-        if left := self._left():
-            alike = f"{self._seen.get(here, 0.0):.0%} alike"
+        if left:
+            alike = f"{self._seen.get(here, Visit()).likeness:.0%} alike"
             return Ruling(f"{alike}; {len(left)} places that look alike are not excluded")
         if self._shut:
             shut = ", ".join(str(place.nodes[0]) for place in self._places if place in self._shut)
             why = f"of the places of nodes {self.names} that of {shut} could not be reached"
             return Ruling(why, "ambiguous" if enough else "blocked")
         if not enough:
-            why = f"the goal resembles nodes {self.names}, but is at none of them, {best:.0%} alike at most"
+            alike = f"{best.likeness:.0%} alike at most"
+            why = f"the goal resembles nodes {self.names}, but is at none of them, {alike}"
             return Ruling(why, "goal_not_in_map")
         if self._best() == [here]:
             return Ruling()
-        return Ruling(f"another place resembles the goal more, by {best:.0%}")
+        return Ruling(f"another place resembles the goal more, by {best.likeness:.0%}")
 
     def _best(self) -> list[Hypothesis]:
         return [max(self._seen, key=lambda place: self._seen[place])] if self._seen else []

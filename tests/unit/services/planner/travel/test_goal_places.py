@@ -3,7 +3,7 @@
 import pytest
 
 from services.planner.profiles import DEFAULT, THESIS
-from services.planner.travel.goal_places import GoalPlaces
+from services.planner.travel.goal_places import GoalPlaces, Visit
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.routing import GOAL
 from tests.unit.services.planner.travel.seen import Maps, by_node, match
@@ -15,6 +15,10 @@ SECOND = by_node(match(9, 0.0, 0.0, 140), match(10, 1.0, 0.0, 80))
 THIRD = by_node(match(17, 0.0, 0.0, 140), match(18, 1.0, 0.0, 80))
 FAR = next(n for n in GRAPH.nodes if n not in GRAPH.nearest(1, 8))
 TARGETS = dict.fromkeys((1, 2, 9, 10, 17, 18), 0.1)
+
+
+def view(likeness):
+    return Visit(round(230 * likeness), likeness)
 
 
 def places_of(found, profile=DEFAULT):
@@ -29,7 +33,7 @@ def two():
 def test_a_place_without_rivals_is_arrived_at_at_once():
     places = places_of(FIRST)
     assert places.plain
-    assert places.arrived(2, 0.40).why == ""
+    assert places.arrived(2, view(0.40)).why == ""
     assert set(places.open_targets(TARGETS)) == {1, 2}
 
 
@@ -63,26 +67,26 @@ def test_who_stood_at_the_very_spot_and_did_not_see_the_goal_excludes_it(two):
     assert not two.is_at(Displacement(9, y_m=1.5))
     assert not two.is_at(None)
     two.stood(9)
-    assert two.arrived(1, 0.86).why == ""
+    assert two.arrived(1, view(0.86)).why == ""
 
 
 def test_a_look_alike_is_visited_before_arrival_is_claimed(two):
     assert not two.plain
     assert set(two.open_targets(TARGETS)) == {1, 2, 9, 10}
-    assert "not excluded" in two.arrived(2, 0.88).why
+    assert "not excluded" in two.arrived(2, view(0.88)).why
     assert set(two.open_targets(TARGETS)) == {9, 10}
-    assert "another place" in two.arrived(10, 0.48).why
+    assert "another place" in two.arrived(10, view(0.48)).why
     assert set(two.open_targets(TARGETS)) == {1, 2}
-    assert two.arrived(1, 0.86).why == ""
+    assert two.arrived(1, view(0.86)).why == ""
 
 
 def test_the_last_one_visited_may_be_it(two):
-    two.arrived(2, 0.48)
-    assert two.arrived(9, 0.88).why == ""
+    two.arrived(2, view(0.48))
+    assert two.arrived(9, view(0.88)).why == ""
 
 
 def test_a_place_that_was_not_reached_is_not_excluded(two):
-    two.arrived(2, 0.88)
+    two.arrived(2, view(0.88))
     assert two.blocked(9).failure == ""
     ruling = two.blocked(9)
     assert ruling.failure == "ambiguous"
@@ -93,35 +97,48 @@ def test_after_a_place_that_was_not_reached_the_others_are_tried(two):
     two.blocked(9)
     assert "not excluded" in two.blocked(9).why
     assert set(two.open_targets(TARGETS)) == {1, 2}
-    assert two.arrived(2, 0.88).failure == "ambiguous"
+    assert two.arrived(2, view(0.88)).failure == "ambiguous"
 
 
 def test_a_goal_that_none_of_the_places_seen_resembles_may_be_at_the_one_not_reached(two):
-    two.arrived(2, 0.48)
+    two.arrived(2, view(0.48))
     two.blocked(9)
     assert two.blocked(9).failure == "blocked"
 
 
 def test_places_that_resemble_it_equally_are_ambiguous(two):
-    two.arrived(2, 0.88)
-    ruling = two.arrived(9, 0.84)
+    two.arrived(2, view(0.88))
+    ruling = two.arrived(9, view(0.84))
     assert ruling.failure == "ambiguous"
     assert "1, 9" in ruling.why
 
 
+def test_two_that_are_both_little_alike_do_not_end_the_search_for_a_third():
+    places = places_of(FIRST | SECOND | THIRD)
+    places.arrived(1, view(0.62))
+    assert places.arrived(9, view(0.60)).failure == ""
+    assert places.arrived(17, view(0.88)).why == ""
+
+
+def test_places_are_compared_by_matches_not_by_what_two_frames_there_shared(two):
+    """At the spot the robot stood nearly still, and two frames shared more."""
+    two.arrived(9, Visit(132, 0.72))
+    assert two.arrived(1, Visit(199, 0.88)).why == ""
+
+
 def test_two_that_cannot_be_told_apart_end_the_search_for_a_third():
     places = places_of(FIRST | SECOND | THIRD)
-    places.arrived(1, 0.88)
-    assert places.arrived(9, 0.84).failure == "ambiguous"
+    places.arrived(1, view(0.88))
+    assert places.arrived(9, view(0.84)).failure == "ambiguous"
 
 
 def test_a_goal_at_none_of_the_places_is_not_in_the_map(two):
-    two.arrived(2, 0.44)
-    assert two.arrived(9, 0.40).failure == "goal_not_in_map"
+    two.arrived(2, view(0.44))
+    assert two.arrived(9, view(0.40)).failure == "goal_not_in_map"
 
 
 def test_a_place_where_the_picture_is_lost_twice_is_excluded(two):
-    assert two.arrived(2, 0.88).why
+    assert two.arrived(2, view(0.88)).why
     assert two.lost(9).failure == ""
     assert "another place" in two.lost(9).why
     assert set(two.open_targets(TARGETS)) == {1, 2}
