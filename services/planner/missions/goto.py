@@ -78,6 +78,7 @@ class GoalDestination:
         self._targets = self._reachable(found)
         self._avoid: dict[int, float] = {}
         self._lost = self._stuck = 0
+        self._strayed = False
         self._suspect: tuple[EdgeKey, str] | None = None
         self._relocated: set[EdgeKey] = set()
 
@@ -95,11 +96,15 @@ class GoalDestination:
         return {node: c + self._avoid.get(node, 0.0) for node, c in visible.items() if node not in closed}
 
     def goes_straight(self, goal: NodeMatch, here: Displacement | None) -> bool:
-        """Not once the robot got stuck, for what shut the way is still there; nor to a look-alike."""
-        return not self._stuck and self.places.may_be_seen(goal, here)
+        """Not once the robot got stuck, for what shut the way is still there; nor to a look-alike.
+
+        After it was lost on such a way it goes a part of it by the map first.
+        """
+        return not (self._stuck or self._strayed) and self.places.may_be_seen(goal, here)
 
     def set_out(self) -> None:
-        """Nothing to remember."""
+        """There is a path by the map."""
+        self._strayed = False
 
     def localised(self, seen: Matches, ranges: Ranges) -> tuple[Note, ...]:
         """What localisation says about edges: one that just failed, suspended ones that are seen free."""
@@ -134,6 +139,7 @@ class GoalDestination:
         edge = edge if edge is None or GOAL not in edge else None
         notes: tuple[Note, ...] = (Note("replan", f"{setback.event.value}: {setback.why}"),)
         if setback.event is Event.WAYPOINT_LOST:
+            self._strayed = setback.path == (GOAL,)
             if edge is not None:
                 self._suspect = (edge, "lost")
             self._lost += 1

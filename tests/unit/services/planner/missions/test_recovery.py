@@ -8,8 +8,12 @@ import pytest
 
 from services.drive.core import DriveLimits
 from services.planner.missions.explore import FrontierExploration
-from services.planner.missions.goto import Goto
+from services.planner.missions.goto import GoalDestination, Goto
 from services.planner.profiles import DEFAULT
+from services.planner.travel.destination import Setback
+from services.planner.travel.edge_experience import EdgeExperience
+from services.planner.travel.states import Event
+from shared.mapgraph.routing import GOAL
 from shared.messages.matching import NodeMatch
 from simulator.scene.parts import Material
 from simulator.scene.shapes import box
@@ -140,6 +144,18 @@ def test_a_look_alike_of_the_goal_is_not_taken_for_it(explored):
     assert deceived
     assert decision.outcome == "succeeded", decision.why
     assert math.dist(world.pose[:2], HALL[:2]) < 0.35
+
+
+def test_after_a_loss_the_goal_in_sight_is_headed_for_again_from_a_way_by_the_map_only(explored):
+    """A few matches over free ground, too unsure to steer by, are lost in every frame anew."""
+    _, maps, matcher = explored
+    goal = GoalDestination(DEFAULT, maps, matcher, picture(HALL), EdgeExperience(DEFAULT, maps))
+    sight = NodeMatch(node_id=GOAL, raw_matches=60, inliers=35, status="ok", yaw_rad=0.0)
+    assert goal.goes_straight(sight, None)
+    goal.setback(Setback(Event.WAYPOINT_LOST, None, GOAL, (GOAL,), "the goal not seen, S 35"))
+    assert not goal.goes_straight(sight, None)
+    goal.set_out()
+    assert goal.goes_straight(sight, None)
 
 
 def test_people_who_walk_about_are_passed_without_touching_them(explored):
