@@ -152,7 +152,9 @@ class GoalDestination:
     def _place_missed(self, setback: Setback) -> Ruling:
         """What it says of the place headed for that the robot did not arrive there."""
         node = setback.path[-2] if len(setback.path) > 1 else None
-        if setback.event is not Event.NO_PROGRESS:
+        if setback.event is Event.ALIASED:
+            return Ruling("judged on arrival")
+        if setback.event is Event.WAYPOINT_LOST:
             return self.places.lost(node)
         return self.places.stood(node) if self.places.is_at(setback.here) else self.places.blocked(node)
 

@@ -7,8 +7,12 @@ import pytest
 
 from services.drive.core import DriveLimits
 from services.planner.missions.explore import FrontierExploration
-from services.planner.missions.goto import Goto
+from services.planner.missions.goto import GoalDestination, Goto
 from services.planner.profiles import DEFAULT
+from services.planner.travel.destination import Setback
+from services.planner.travel.edge_experience import EdgeExperience
+from services.planner.travel.states import Event
+from shared.mapgraph.routing import GOAL
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
 from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, picture, run
@@ -59,3 +63,18 @@ def test_a_goal_that_looks_like_another_spot_is_reached_or_named_ambiguous(explo
     decision, _ = run(world, Goto(DEFAULT, maps, matcher, picture(goal)), DriveLimits(), 1500)
     arrived = decision.outcome == "succeeded" and math.dist(world.pose[:2], goal[:2]) < 0.5
     assert arrived or decision.failure == "ambiguous", decision.why
+
+
+def test_an_arrival_that_was_refuted_excludes_no_place_that_the_way_led_by(explored):
+    """The last node of the way may belong to another place than the spot where the robot stood."""
+    _, maps, matcher = explored
+    experience = EdgeExperience(DEFAULT, maps)
+    places = (
+        GoalDestination(DEFAULT, maps, matcher, picture(pose), experience) for pose in maps.poses.values()
+    )
+    goal = next(place for place in places if not place.places.plain)
+    before = set(goal.targets())
+    for node in before:
+        for _ in range(3):
+            goal.setback(Setback(Event.ALIASED, None, GOAL, (node, GOAL), "aliased"))
+    assert set(goal.targets()) == before
