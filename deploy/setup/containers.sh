@@ -33,7 +33,11 @@ say() { printf '%s (%d s)\n' "$*" "$((SECONDS - began))"; began=$SECONDS; }
 finish() {
     status=$?
     load 0
-    [ "$status" -eq 0 ] || compose --profile secure logs --tail 20
+    if [ "$status" -ne 0 ]; then
+        compose --profile secure logs --tail 20
+        cat "$folder/failed" 2>/dev/null || :
+        echo "make containers: failed with $status after $((SECONDS - began)) s of this stage" >&2
+    fi
     robot_host down --volumes --timeout 5 >/dev/null 2>&1 || :
     compose --profile secure down --volumes --timeout 5 >/dev/null 2>&1 || :
     rm -rf "$folder"
@@ -43,8 +47,9 @@ trap finish EXIT
 began=$SECONDS
 
 ask() { "${curl[@]}" --silent --show-error --fail-with-body --max-time 100 --header "Authorization: Bearer $token" "$@"; }
+failed_up() { "$@" ps --all --format '{{.Service}} {{.Status}}' | cat "$folder/up.log" - >"$folder/failed"; } # said last
 up_by() { # COMMAND: what runs Compose
-    "$@" up --detach --wait --wait-timeout 180 >"$folder/up.log" 2>&1 || { cat "$folder/up.log"; return 1; }
+    "$@" up --detach --wait --wait-timeout "${UP_S:-600}" >"$folder/up.log" 2>&1 || { failed_up "$@"; return 1; }
 }
 up() { up_by compose "$@"; }
 read_token() { token=$(compose exec -T gateway cat /var/lib/topnav/token/token); }
@@ -61,7 +66,7 @@ goto() {
 explores() { # a mission that maps: until the first node is there
     ask --json '{"action": "explore", "map": "flat"}' "$robot/missions" >/dev/null
     until ask "$api/maps/flat" | grep --quiet '"nodes":[1-9]'; do
-        [ "$((SECONDS - began))" -lt 120 ] || return 1
+        [ "$((SECONDS - began))" -lt 300 ] || return 1
         sleep 1
     done
 }
@@ -102,7 +107,7 @@ services:
     command: [python, swap_drive.py, "tcp/router:7447", r1]
 END
 compose --file docker-compose.yml --file "$folder/swap.yml" up --detach --wait --build drive >"$folder/up.log" 2>&1 ||
-    { cat "$folder/up.log"; exit 1; }
+    { failed_up compose; exit 1; }
 goto "$folder/other.jpg"
 say "at another picture with another drive controller"
 
