@@ -88,6 +88,19 @@ def is_surely_clear(match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
     return _is_free_for(max(most_m, length_m(match, profile)), match, ranges, profile)
 
 
+def is_half_clear(match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
+    """Whether nothing stands on the nearer half of the way to the matched node.
+
+    Disparity tells a distance to a factor of about two (0.06 to 0.24 rad a metre in an office):
+    where `is_clear` cannot be told, this tells a way that was free before from one that is shut now.
+    """
+    if match.status == "no_baseline":
+        return True
+    if match.heading_rad is None:
+        return False
+    return free_way_m(ranges, match.heading_rad, profile) >= 0.5 * length_m(match, profile)
+
+
 def _is_free_for(leg_m: float, match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
     if match.status == "no_baseline":
         return True

@@ -2,9 +2,10 @@
 
 from collections.abc import Collection
 
-from services.planner.ports import Decision, MapAccess, Matcher, Note, Observation, Progress
+from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.similarity import heading_of, similarity
+from services.planner.surroundings import is_half_clear
 from services.planner.travel.destination import Destination
 from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.states import Event
@@ -86,7 +87,7 @@ class PathFollower:
         arrival_rad = self._destination.arrival_rad
         if self._at_end() and match is not None and has_arrived(match, self._profile, arrival_rad):
             return Event.REACHED, _hold(f"arrived at {name}, S {s_cv}", notes)
-        if self._next_is_unclear(match):
+        if self._next_is_unclear(match, matches, observation.ranges):
             return Event.WAY_UNCLEAR, _hold(f"no free ground seen beyond {name}", notes)
         found = heading_of(match, self._profile) if match is not None else None
         if match is None or found is None or s_cv < self._profile.travel.s_via_min:
@@ -120,15 +121,19 @@ class PathFollower:
     def _at_end(self) -> bool:
         return self.index == len(self.path) - 1
 
-    def _next_is_unclear(self, match: NodeMatch | None) -> bool:
+    def _next_is_unclear(self, here: NodeMatch | None, seen: Matches, ranges: Ranges) -> bool:
         """At a waypoint with no sight of free ground to the next: ask for another way, once."""
-        standing = not (self._strict or self._at_end()) and is_at(match, self._profile)
-        return standing and not self._next_is_known()
+        standing = not (self._strict or self._at_end()) and is_at(here, self._profile)
+        return standing and not self._next_is_known(seen.get(self.path[self.index + 1]), ranges)
 
-    def _next_is_known(self) -> bool:
-        """Driven before, or there was no other way when it was unclear."""
+    def _next_is_known(self, there: NodeMatch | None, ranges: Ranges) -> bool:
+        """Driven before, seen free before and not shut now, or no other way was left when it was unclear."""
         edge = self._maps.graph.edge(*self.next_edge())
-        return self.next_edge() in self._unclear or (edge is not None and edge.traversals > 0)
+        if self.next_edge() in self._unclear or (edge is not None and edge.traversals > 0):
+            return True
+        if edge is None or not edge.clear or there is None:
+            return False
+        return is_half_clear(there, ranges, self._profile)
 
     def _compare(self, matcher: Matcher) -> dict[int, NodeMatch]:
         ahead = self.path[self.index : self.index + WINDOW]
@@ -165,7 +170,7 @@ class PathFollower:
             ranges,
             self._profile,
             straight=beside or not aliased_goal,
-            beside=beside and self._next_is_known(),
+            beside=beside and self._next_is_known(there, ranges),
         )
 
     def _mark_driven(self, match: NodeMatch | None) -> tuple[Note, ...]:
