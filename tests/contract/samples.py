@@ -145,6 +145,7 @@ def node_match() -> matching.NodeMatch:
         confidence=0.75,
         noise_rad=0.005,
         moved=1,
+        difference=9.5,
         matches_rad=np.array([[0.5, 0.25, 0.75, 0.125], [1.0, 0.0, 2.0, 0.0]], np.float32),
         inlier_mask=np.array([1, 0], np.uint8),
     )

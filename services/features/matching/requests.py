@@ -1,15 +1,21 @@
 """One MATCH question, answered in two steps so that each can be timed: match, then verify. Pure."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from services.features.map_features.map_features import MapFeatures
+from services.features.matching.difference import difference
 from services.features.matching.ranking import answer, considered, is_settled, shortlist
 from services.features.matching.verification import Candidate, feature_set, verify
 from services.features.pipeline.interfaces import FeatureSet, Matched
 from services.features.pipeline.pipeline import Pipeline
 from shared.messages.features import Features
 from shared.messages.matching import MatchRequest, NodeMatch
+
+BESIDE_RAD = math.radians(6.0)
+"""Disparity up to which two pictures are compared as pictures; chosen: some 0.7 m indoors, from where a view
+is still much the same."""
 
 
 class RequestError(ValueError):
@@ -30,6 +36,7 @@ class RawMatches:
 
     query: FeatureSet
     seq: int
+    thumbnail: bytes
     candidates: Mapping[int, Candidate]
     pairs: Mapping[int, Matched]
     shortlisted: list[int]
@@ -59,7 +66,9 @@ def match_candidates(
     found = pipeline.matcher.match(query, [candidate.features for candidate in candidates.values()])
     pairs = dict(zip(candidates, found, strict=True))
     of_map = {node_id: rows for node_id, rows in pairs.items() if node_id >= 0}
-    return RawMatches(query, current.seq, candidates, pairs, shortlist(of_map, request.best_k))
+    return RawMatches(
+        query, current.seq, current.thumbnail, candidates, pairs, shortlist(of_map, request.best_k)
+    )
 
 
 def verify_candidates(pipeline: Pipeline, request: MatchRequest, raw: RawMatches) -> tuple[NodeMatch, ...]:
@@ -67,7 +76,8 @@ def verify_candidates(pipeline: Pipeline, request: MatchRequest, raw: RawMatches
 
     def verified(node_id: int) -> NodeMatch:
         candidate, pairs = raw.candidates[node_id], raw.pairs[node_id]
-        return verify(raw.query, candidate, pairs, raw.seq, pipeline.verification, request.with_matches)
+        match = verify(raw.query, candidate, pairs, raw.seq, pipeline.verification, request.with_matches)
+        return match if node_id >= 0 else _looked_at(match, raw.thumbnail, request.targets[-1 - node_id])
 
     asked = sorted({*request.node_ids, *(n for n in raw.candidates if n < 0)})
     results = {node_id: verified(node_id) for node_id in asked}
@@ -79,6 +89,14 @@ def verify_candidates(pipeline: Pipeline, request: MatchRequest, raw: RawMatches
             results[node_id] = verified(node_id)
         best.append(results[node_id])
     return answer(results, asked, best, request.best_k)
+
+
+def _looked_at(match: NodeMatch, thumbnail: bytes, target: Features) -> NodeMatch:
+    """The match of a picture that was taken nearby, with how much the two differ as pictures."""
+    if match.yaw_rad is None or match.disparity_rad is None or match.disparity_rad > BESIDE_RAD:
+        return match
+    differs = difference(thumbnail, target.thumbnail, match.yaw_rad)
+    return match.model_copy(update={"difference": differs})
 
 
 def _wanted(request: MatchRequest, query: FeatureSet, nodes: MapFeatures) -> Sequence[int]:

@@ -13,9 +13,10 @@ from services.planner.similarity import similarity as similarity_of
 from services.planner.surroundings import is_clear, is_clear_from
 from services.planner.travel.destination import Setback, Verdict
 from services.planner.travel.edge_experience import EdgeExperience
-from services.planner.travel.goal_places import GoalPlaces, Ruling, Visit
+from services.planner.travel.goal_places import GoalPlaces, Ruling
 from services.planner.travel.localisation import reachable_nodes
 from services.planner.travel.machine import Travel
+from services.planner.travel.place_evidence import Visit
 from services.planner.travel.states import Event, State
 from services.planner.travel.tracking import Tracker
 from shared.mapgraph.graph import EdgeKey, edge_key
@@ -35,6 +36,9 @@ LOST_MAX = 12
 
 STUCK_MAX = 8
 """Times it may come no nearer to one; chosen alike."""
+
+REFUTED_MAX = 16
+"""Arrivals that may turn out to be none; chosen: two at each of as many places as are ever named."""
 
 SEARCH_STEPS = 150
 """Steps of searching before the mission ends as lost (decision 0014)."""
@@ -71,13 +75,14 @@ class GoalDestination:
         self._experience = experience
         self.picture: Features | None = goal
         self.arrival_rad = profile.arrival.arrival_rad
-        self.aliased = False
         self._failure: tuple[FailureKind, str] = ("goal_not_in_map", "the goal resembles no node of the map")
         found = self._matcher.locate(goal, COMPARED_NODES)
         self.places = GoalPlaces(maps, found, profile)
+        self.aliased = not self.places.plain
         self._targets = self._reachable(found)
+        self._targets |= dict.fromkeys(self.places.without(self._targets), LAST_EDGE_RAD)
         self._avoid: dict[int, float] = {}
-        self._lost = self._stuck = 0
+        self._lost = self._stuck = self._refuted = 0
         self._strayed = False
         self._suspect: tuple[EdgeKey, str] | None = None
         self._relocated: set[EdgeKey] = set()
@@ -96,11 +101,15 @@ class GoalDestination:
         return {node: c + self._avoid.get(node, 0.0) for node, c in visible.items() if node not in closed}
 
     def goes_straight(self, goal: NodeMatch, here: Displacement | None) -> bool:
-        """Not once the robot got stuck, for what shut the way is still there; nor to a look-alike.
+        """Not once it got stuck, for what shut the way is still there, nor once it went to a look-alike.
 
         After it was lost on such a way it goes a part of it by the map first.
         """
-        return not (self._stuck or self._strayed) and self.places.may_be_seen(goal, here)
+        return not (self._stuck or self._refuted or self._strayed) and self.places.may_be_seen(goal, here)
+
+    def sees(self, goal: NodeMatch, here: Displacement | None) -> None:
+        """What tells places apart is looked for in every frame."""
+        self.places.sees(goal, here)
 
     def set_out(self) -> None:
         """There is a path by the map."""
@@ -145,6 +154,9 @@ class GoalDestination:
             self._lost += 1
             given_up: FailureKind = "blocked" if self._experience.banned else "lost"
             return Verdict(notes, given_up if self._lost > LOST_MAX else "")
+        if setback.event is Event.ALIASED:
+            self._refuted += 1
+            return Verdict(notes, "blocked" if self._refuted > REFUTED_MAX else "")
         self._stuck += 1
         notes += self._experience.stuck(edge, waypoint)
         return Verdict(notes, "blocked" if self._stuck > STUCK_MAX else "")
@@ -168,9 +180,11 @@ class GoalDestination:
         node = tracker.here.node_id if tracker.here is not None else None
         s_map = max((similarity_of(match, self._profile) for match in view.values()), default=0)
         if similarity < GOAL_SHARE * s_map:
-            self._rule_out(view)
-            if self.places.is_at(tracker.here):
-                self._settle(self.places.stood(node))
+            self.aliased = True
+            if self.places.plain:
+                self._rule_out(view)
+            else:
+                self._settle(self.places.refuted(tracker.here))
             return f"aliased: a node of the map resembles this view more than the goal does, S {s_map}"
         if another := self.places.shows_another(view, node):
             self.aliased = True
@@ -191,7 +205,6 @@ class GoalDestination:
 
     def _rule_out(self, here: Matches) -> None:
         """This is not where the picture was taken: nor is that beside the nodes seen from here."""
-        self.aliased = True
         seen = {node for node, match in here.items() if trusted(match, self._profile)}
         elsewhere = {node: cost for node, cost in self._targets.items() if node not in seen}
         self._targets = elsewhere or self._targets

@@ -85,6 +85,14 @@ class Destination(Protocol):
             here: where the robot is; None where nobody knows.
         """
 
+    def sees(self, goal: NodeMatch, here: Displacement | None) -> None:
+        """A frame was compared with the picture.
+
+        Args:
+            goal: the frame against the picture.
+            here: where the robot is; None where nobody knows.
+        """
+
     def set_out(self) -> None:
         """A path was found."""
 

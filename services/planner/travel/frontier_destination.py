@@ -78,6 +78,9 @@ class FrontierDestination:
         """Nothing is learnt: exploration sees edges again when it stands at a node."""
         return ()
 
+    def sees(self, _goal: NodeMatch, _here: Displacement | None) -> None:
+        """A frontier has no picture."""
+
     def set_out(self) -> None:
         """There is a path again."""
         self._cut_off = 0

@@ -13,6 +13,7 @@ from services.planner.mapping.reach import claims, distances, elsewhere
 from services.planner.ports import MapAccess, Matches
 from services.planner.profiles import Profile
 from services.planner.similarity import similarity
+from services.planner.travel.place_evidence import PlaceEvidence, Visit
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import (
     Hypothesis,
@@ -28,30 +29,16 @@ SPOT_SHARE = 0.6
 """At the very spot view and goal share so much of what two frames in a row share, where its place was in
 doubt; noise and light take from both alike. At 34 spots of an office and a hostel 0.65 and more, at an equal
 desk of another row 0.45 at the median."""
-EXCLUDED_SHARE = 0.8
-"""A place that resembles the goal by less than this share of the best one is excluded. Rooms furnished alike
-but for a few small things have 0.85 and more: they exclude nothing."""
 NEAREST = 2
 """Nodes most like the picture, of which one is next to whoever stands where it was taken; chosen: one before
 and one beyond."""
 SPOT_M = 0.75
 """Who is nearer than this to the node most like the picture stands where it was taken; chosen: nodes lie half
 a metre apart, and a base stops a hand's breadth short."""
+AROUND_M = 2.0
+"""Who is nearer than this to it is in the same part of a room; chosen."""
 TRIES = 2
-"""Times the picture may be lost or the way shut at one place before that counts."""
-
-
-@dataclass(frozen=True, order=True)
-class Visit:
-    """How the goal resembled the view at a place.
-
-    Attributes:
-        similarity: S of the two; places are compared by it.
-        likeness: as a share of that of two frames in a row, which noise and light lower as well.
-    """
-
-    similarity: int = 0
-    likeness: float = 0.0
+"""Times the picture may be lost, refuted or the way shut at one place before that counts."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +64,7 @@ class GoalPlaces:
         self._yaw_rad = {node: match.yaw_rad or 0.0 for node, match in found.items()}
         self._places = likely(places)
         self.plain = not places or is_plain(places, typical_similarity(maps.graph))
-        self._seen: dict[Hypothesis, Visit] = {}
+        self._evidence = PlaceEvidence()
         self._losses: Counter[Hypothesis] = Counter()
         self._blocks: Counter[Hypothesis] = Counter()
         self._shut: set[Hypothesis] = set()
@@ -91,9 +78,26 @@ class GoalPlaces:
         """Of the nodes that the goal resembles those of places that may still be it."""
         if not self._places:
             return dict(targets)
-        left = self._places if self.plain else self._left()
-        nodes = {node for place in left or self._best() for node in place.nodes}
+        best = self._evidence.best()
+        left = self._places if self.plain else self._left() or [place for place in (best,) if place]
+        nodes = {node for place in left for node in place.nodes}
         return {node: cost for node, cost in targets.items() if node in nodes}
+
+    def without(self, targets: Mapping[int, float]) -> list[int]:
+        """Of each place that has none of the targets the node most like the picture."""
+        rivals = [] if self.plain else self._places
+        return [place.nodes[0] for place in rivals if targets.keys().isdisjoint(place.nodes)]
+
+    def sees(self, goal: NodeMatch, here: Displacement | None) -> None:
+        """The picture is in view: how much of it differs counts where it is near by.
+
+        Args:
+            goal: the frame against the picture.
+            here: where the frame was taken.
+        """
+        place = None if self.plain or here is None else self._nearest(here.node_id)
+        if place is not None and goal.difference is not None:
+            self._evidence.looked(place, goal.difference)
 
     def is_near(self, node: int | None) -> bool:
         """Whether a robot about `node` can be at the place, where there is but one and both are known."""
@@ -135,15 +139,27 @@ class GoalPlaces:
         place = self._nearest(node)
         if self.plain or place is None:
             return Ruling("not seen")
-        self._seen.setdefault(place, Visit())
+        self._evidence.visited(place, Visit())
         return self._judge(place)
+
+    def refuted(self, here: Displacement | None) -> Ruling:
+        """What agreed with the goal was another view: at the very spot it counts, near by the second one."""
+        place = None if here is None else self._nearest(here.node_id)
+        if self.plain or here is None or place is None:
+            return Ruling("not there")
+        if not self.is_at(here):
+            self._losses[place] += self._is_within(AROUND_M, here)
+            if self._losses[place] < TRIES:
+                return Ruling("not there")
+        return self.stood(here.node_id)
 
     def is_at(self, here: Displacement | None) -> bool:
         """Whether the robot stands where one of several places puts the picture, as far as is known."""
-        if self.plain or here is None:
-            return False
+        return not self.plain and here is not None and self._is_within(SPOT_M, here)
+
+    def _is_within(self, far_m: float, here: Displacement) -> bool:
         best = {place.nodes[0] for place in self._places}
-        return min(distances(self._maps.graph, here, best, self._profile).values(), default=math.inf) < SPOT_M
+        return min(distances(self._maps.graph, here, best, self._profile).values(), default=math.inf) < far_m
 
     def arrived(self, node: int | None, visit: Visit) -> Ruling:
         """The robot stands where the goal picture agrees with the view.
@@ -157,9 +173,7 @@ class GoalPlaces:
         place = self._nearest(node)
         if place is None:
             return Ruling()
-        if place in self._seen and self._best() == [place]:
-            return Ruling()
-        self._seen[place] = max(visit, self._seen.get(place, Visit()))
+        self._evidence.visited(place, visit)
         return self._judge(place)
 
     def lost(self, node: int | None) -> Ruling:
@@ -168,9 +182,9 @@ class GoalPlaces:
         if self.plain or place is None:
             return Ruling("not seen")
         self._losses[place] += 1
-        if place in self._seen or self._losses[place] < TRIES:
+        if place in self._evidence.visits or self._losses[place] < TRIES:
             return Ruling("not seen")
-        self._seen[place] = Visit()
+        self._evidence.visited(place, Visit())
         return self._judge(place)
 
     def blocked(self, node: int | None) -> Ruling:
@@ -179,38 +193,35 @@ class GoalPlaces:
         if self.plain or place is None:
             return Ruling("not reached")
         self._blocks[place] += 1
-        if place in self._seen or self._blocks[place] < TRIES:
+        if place in self._evidence.visits or self._blocks[place] < TRIES:
             return Ruling("not reached")
         self._shut.add(place)
         return self._judge(place)
 
     def _left(self) -> list[Hypothesis]:
-        return [place for place in self._places if place not in self._seen and place not in self._shut]
+        done = self._evidence.visits.keys() | self._shut
+        return [place for place in self._places if place not in done]
 
     def _judge(self, here: Hypothesis) -> Ruling:
-        best, second = sorted((*self._seen.values(), Visit(), Visit()), reverse=True)[:2]
-        enough, left = best.likeness >= SPOT_SHARE, self._left()
-        # While places are left, only what even the spot itself would not exclude ends the search.
-        least = best.similarity if not left else best.similarity / max(best.likeness, SPOT_SHARE)
-        if enough and second.similarity >= EXCLUDED_SHARE * least:
-            return Ruling(f"one of the places of nodes {self.names}, which look alike", "ambiguous")
+        visits, best, left = self._evidence.visits, self._evidence.best(), self._left()
         if left:
-            alike = f"{self._seen.get(here, Visit()).likeness:.0%} alike"
-            return Ruling(f"{alike}; {len(left)} places that look alike are not excluded")
+            alike = f"{visits.get(here, Visit()).likeness:.0%} alike"
+            told = self._evidence.told()
+            return Ruling(
+                f"{alike}; {len(left)} places that look alike are not excluded; differences: {told}"
+            )
+        most = visits[best].likeness if best is not None else 0.0
         if self._shut:
             shut = ", ".join(str(place.nodes[0]) for place in self._places if place in self._shut)
             why = f"of the places of nodes {self.names} that of {shut} could not be reached"
-            return Ruling(why, "ambiguous" if enough else "blocked")
-        if not enough:
-            alike = f"{best.likeness:.0%} alike at most"
-            why = f"the goal resembles nodes {self.names}, but is at none of them, {alike}"
+            return Ruling(why, "ambiguous" if most >= SPOT_SHARE else "blocked")
+        if most < SPOT_SHARE:
+            why = f"the goal resembles nodes {self.names}, but is at none of them, {most:.0%} alike at most"
             return Ruling(why, "goal_not_in_map")
-        if self._best() == [here]:
-            return Ruling()
-        return Ruling(f"another place resembles the goal more, by {best.likeness:.0%}")
-
-    def _best(self) -> list[Hypothesis]:
-        return [max(self._seen, key=lambda place: self._seen[place])] if self._seen else []
+        if self._evidence.rivals():
+            why = f"one of the places of nodes {self.names}, which look alike"
+            return Ruling(f"{why}; differences: {self._evidence.told()}", "ambiguous")
+        return Ruling() if best == here else Ruling(f"another place resembles the goal more, by {most:.0%}")
 
     def _hypotheses(self, matches: Matches) -> list[Hypothesis]:
         profile = self._profile

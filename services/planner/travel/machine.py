@@ -82,10 +82,12 @@ class Travel:
         seen = self.tracker.possible(seen)
         self.tracker.confirm(seen)
         self._notes += destination.localised(seen, observation.ranges)
-        in_view = goal is not None and in_sight(goal, observation.ranges, profile)
-        if goal is not None and in_view and destination.goes_straight(goal, self.tracker.here):
-            self._set_off([GOAL], Event.GOAL_IN_SIGHT)
-            return None
+        if goal is not None:
+            destination.sees(goal, self.tracker.here)
+            in_view = in_sight(goal, observation.ranges, profile)
+            if in_view and destination.goes_straight(goal, self.tracker.here):
+                self._set_off([GOAL], Event.GOAL_IN_SIGHT)
+                return None
         targets = destination.targets()
         if not targets:
             return self._give_up(*destination.unreachable())

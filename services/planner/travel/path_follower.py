@@ -143,6 +143,8 @@ class PathFollower:
         goal = {GOAL: seen.pop(GOAL)} if GOAL in seen else {}
         possible = self._tracker.possible(seen)
         self._tracker.confirm(possible)
+        if goal:
+            self._destination.sees(goal[GOAL], self._tracker.here)
         return {**possible, **goal}
 
     def _advance(self, matches: dict[int, NodeMatch], ranges: Ranges) -> tuple[Note, ...]:

@@ -3,7 +3,8 @@
 import pytest
 
 from services.planner.profiles import DEFAULT, THESIS
-from services.planner.travel.goal_places import GoalPlaces, Visit
+from services.planner.travel.goal_places import GoalPlaces
+from services.planner.travel.place_evidence import Visit
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.routing import GOAL
 from tests.unit.services.planner.travel.seen import Maps, by_node, match
@@ -126,10 +127,29 @@ def test_places_are_compared_by_matches_not_by_what_two_frames_there_shared(two)
     assert two.arrived(1, Visit(199, 0.88)).why == ""
 
 
-def test_two_that_cannot_be_told_apart_end_the_search_for_a_third():
-    places = places_of(FIRST | SECOND | THIRD)
-    places.arrived(1, view(0.88))
-    assert places.arrived(9, view(0.84)).failure == "ambiguous"
+def test_rooms_with_equal_matches_are_told_apart_by_how_much_they_differ_as_pictures(two):
+    looks = {9: 24.0, 1: 8.0}
+    for node, differs in looks.items():
+        seen = match(GOAL, 0.1, 0.0).model_copy(update={"difference": differs})
+        two.sees(seen, Displacement(node, x_m=0.1))
+    two.arrived(9, view(0.88))
+    assert two.arrived(1, view(0.86)).why == ""
+
+
+def test_an_arrival_that_was_none_counts_at_the_spot_and_near_by_the_second_time(two):
+    assert "not there" in two.refuted(Displacement(9, y_m=1.5)).why
+    assert "not there" in two.refuted(Displacement(5)).why
+    assert "not there" in two.refuted(None).why
+    assert set(two.open_targets(TARGETS)) == {1, 2, 9, 10}
+    two.refuted(Displacement(9, y_m=1.5))
+    assert set(two.open_targets(TARGETS)) == {1, 2}
+    two.refuted(Displacement(1, x_m=0.3))
+    assert set(two.open_targets(TARGETS)) != {1, 2, 9, 10}
+
+
+def test_a_place_that_no_way_leads_to_is_named(two):
+    assert two.without({1: 0.1, 10: 0.2}) == []
+    assert two.without({1: 0.1}) == [9]
 
 
 def test_a_goal_at_none_of_the_places_is_not_in_the_map(two):

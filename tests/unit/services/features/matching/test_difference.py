@@ -1,0 +1,66 @@
+"""What tells two rooms furnished alike apart, from a decimetre beside the spot and in another light."""
+
+import math
+
+import cv2
+import numpy as np
+import pytest
+
+from services.features.matching.difference import difference
+
+ROWS, COLUMNS = 160, 320
+
+
+@pytest.fixture(scope="module")
+def room():
+    """Blobs of all colours, as large as furniture."""
+    noise = np.random.default_rng(1).integers(0, 256, (ROWS // 8, COLUMNS // 8, 3), dtype=np.uint8)
+    return cv2.resize(noise, (COLUMNS, ROWS), interpolation=cv2.INTER_CUBIC)
+
+
+def jpeg(picture):
+    return cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, 70])[1].tobytes()
+
+
+def from_beside(picture, amplitude_px=4.0):
+    """What is near shifts, what is far does not: each column by another amount."""
+    rows, columns = np.indices(picture.shape[:2], dtype=np.float32)
+    shift = amplitude_px * np.sin(columns / COLUMNS * 2.0 * math.pi)
+    return cv2.remap(picture, columns + shift, rows, cv2.INTER_LINEAR, borderMode=cv2.BORDER_WRAP)
+
+
+def with_another_rug(picture):
+    changed = picture.copy()
+    changed[95:125, 150:190] = changed[95:125, 150:190, ::-1]
+    return changed
+
+
+def test_a_step_aside_is_no_difference_but_another_rug_is(room):
+    same = difference(jpeg(from_beside(room)), jpeg(room), 0.0)
+    other = difference(jpeg(from_beside(room)), jpeg(with_another_rug(room)), 0.0)
+    assert other > 2.0 * same
+
+
+def test_a_turned_camera_sees_no_difference(room):
+    turned_px = 90
+    turned = np.roll(room, -turned_px, axis=1)
+    yaw_rad = turned_px / COLUMNS * math.tau
+    assert difference(jpeg(turned), jpeg(room), yaw_rad) < 0.3 * difference(
+        jpeg(turned), jpeg(room), -yaw_rad
+    )
+
+
+def test_another_exposure_is_none_beside_another_rug(room):
+    darker = (room * 0.5 + 64.0).astype(np.uint8)
+    brighter = np.clip(darker.astype(np.int16) + 20, 0, 255).astype(np.uint8)
+    exposed = difference(jpeg(brighter), jpeg(darker), 0.0)
+    assert exposed < 0.3 * difference(jpeg(darker), jpeg(with_another_rug(darker)), 0.0)
+
+
+HUGE = b"\xff\xd8\xff\xc0\x00\x11\x08" + b"\xff\xff" * 2 + b"\xff\xd9"
+
+
+@pytest.mark.parametrize("thumbnail", [b"", b"no picture", HUGE], ids=["none", "not a JPEG", "65535 x 65535"])
+def test_without_both_pictures_nothing_is_said(room, thumbnail):
+    assert difference(jpeg(room), thumbnail, 0.0) is None
+    assert difference(thumbnail, jpeg(room), 0.0) is None

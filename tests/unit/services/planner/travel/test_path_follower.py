@@ -1,0 +1,57 @@
+"""At a waypoint: which leg is driven on, and for which another way is asked for."""
+
+import math
+from types import SimpleNamespace
+
+import pytest
+
+from services.planner.ports import Observation
+from services.planner.profiles import DEFAULT
+from services.planner.travel.edge_experience import EdgeExperience
+from services.planner.travel.path_follower import PathFollower
+from services.planner.travel.states import Event
+from services.planner.travel.tracking import Tracker
+from shared.mapgraph.graph import MapGraph
+from shared.messages.base import SECTORS
+from shared.messages.maps import Node
+from shared.messages.sensors import Ranges
+from tests.unit.services.planner.travel.seen import Maps, by_node, features, match
+from tests.unit.shared.mapgraph.local.grid import edge
+
+ANGLES_RAD = tuple(math.radians(30.0 * sector) for sector in range(SECTORS))
+AT_THE_WAYPOINT = by_node(match(0, 0.0, 0.0, 120), match(1, 2.0, 0.0, 60))
+"""The next node lies 2 m ahead, by disparity."""
+
+
+class Seen:
+    def match(self, node_ids, best_k=0, targets=()):  # noqa: ARG002
+        return {node: AT_THE_WAYPOINT[node] for node in node_ids}
+
+
+def event_before(free_m, **leg):
+    """What a robot at the first of two waypoints decides, with so much free ground all round."""
+    joined = edge(0, 1, 2, driven=False).model_copy(update=leg)
+    maps = Maps(MapGraph([Node(node_id=0), Node(node_id=1)], [joined]))
+    tracker = Tracker(DEFAULT, maps, Seen(), certain=False)
+    to_a_node = SimpleNamespace(picture=None, arrival_rad=0.0, aliased=False)
+    experience = EdgeExperience(DEFAULT, maps)
+    follower = PathFollower(DEFAULT, maps, [0, 1], to_a_node, set(), experience, tracker)
+    ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(free_m + 0.3,) * SECTORS, max_range_m=4.0)
+    return follower.step(Observation(features(), ranges), Seen())[0], follower.index
+
+
+def test_a_leg_never_driven_nor_seen_free_is_doubted_where_ground_is_free_for_half_of_it():
+    assert event_before(1.2) == (Event.WAY_UNCLEAR, 0)
+
+
+@pytest.mark.parametrize("known", [{"clear": True}, {"traversals": 1}])
+def test_a_leg_driven_or_seen_free_before_is_driven_on_then(known):
+    assert event_before(1.2, **known) == (None, 1)
+
+
+def test_a_leg_seen_free_before_that_is_shut_now_is_doubted_again():
+    assert event_before(0.4, clear=True) == (Event.WAY_UNCLEAR, 0)
+
+
+def test_any_leg_that_is_seen_free_is_driven_on():
+    assert event_before(3.0) == (None, 1)
