@@ -14,8 +14,8 @@ import numpy.typing as npt
 from services.features.pipeline.decoding import BadPictureError, jpeg_size
 from shared.geometry.sphere import FloatArray
 
-WIDTH_PX = 256
-"""Columns compared; chosen: 1.4 degrees each, a hundredth of a picture's area is a rug 2 m away."""
+WIDTH_PX, HEIGHT_PX = 256, 128
+"""Pixels compared; chosen: 1.4 degrees each, a hundredth of a picture's area is a rug 2 m away."""
 OVERLAP_PX = 32
 """Columns repeated beyond the seam, so that flow crosses it; chosen: 45 degrees."""
 MOST_PIXELS = 2_000_000
@@ -30,21 +30,23 @@ median and 1.9 at the tenth percentile; rooms that are equal by up to 1.8."""
 Picture = npt.NDArray[np.uint8]
 
 
-def difference(current: bytes, target: bytes, yaw_rad: float) -> float | None:
+def difference(current: bytes, target: bytes, yaw_rad: float, crop_deg: float) -> float | None:
     """Root mean square of what differs most, in levels of the Lab colour space; None without both pictures.
 
     Args:
         current: JPEG of the equirectangular frame, centre column ahead.
         target: the same of the other picture, taken within some decimetres.
         yaw_rad: rotation from the frame's camera to the other's, counter-clockwise.
+        crop_deg: angle left out above and below: there the camera sees the robot, or a hand.
     """
     here, there = _decoded(current), _decoded(target)
     if here is None or there is None:
         return None
     turned = np.roll(there, -round(yaw_rad / math.tau * WIDTH_PX), axis=1)
-    left = _unexplained(_beyond_the_seam(here), _beyond_the_seam(turned))[:, OVERLAP_PX:-OVERLAP_PX]
-    rows = len(left)
-    weighted = left * np.cos((np.arange(rows) + 0.5) / rows * math.pi - math.pi / 2)[:, None]
+    latitude_rad = math.pi / 2 - (np.arange(HEIGHT_PX) + 0.5) / HEIGHT_PX * math.pi
+    kept = np.abs(latitude_rad) <= math.radians(90.0 - crop_deg)
+    left = _unexplained(_beyond_the_seam(here[kept]), _beyond_the_seam(turned[kept]))
+    weighted = left[:, OVERLAP_PX:-OVERLAP_PX] * np.cos(latitude_rad[kept])[:, None]
     count = int(weighted.size * LARGEST_SHARE)
     return float(np.sqrt(np.partition(weighted.ravel(), -count)[-count:].mean()))
 
@@ -71,7 +73,7 @@ def _decoded(jpeg: bytes) -> Picture | None:
     picture = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
     if picture is None:
         return None
-    return np.asarray(cv2.resize(picture, (WIDTH_PX, WIDTH_PX // 2), interpolation=cv2.INTER_AREA), np.uint8)
+    return np.asarray(cv2.resize(picture, (WIDTH_PX, HEIGHT_PX), interpolation=cv2.INTER_AREA), np.uint8)
 
 
 def _beyond_the_seam(picture: Picture) -> Picture:

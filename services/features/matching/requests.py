@@ -77,7 +77,10 @@ def verify_candidates(pipeline: Pipeline, request: MatchRequest, raw: RawMatches
     def verified(node_id: int) -> NodeMatch:
         candidate, pairs = raw.candidates[node_id], raw.pairs[node_id]
         match = verify(raw.query, candidate, pairs, raw.seq, pipeline.verification, request.with_matches)
-        return match if node_id >= 0 else _looked_at(match, raw.thumbnail, request.targets[-1 - node_id])
+        if node_id >= 0:
+            return match
+        target = request.targets[-1 - node_id]
+        return _looked_at(match, raw.thumbnail, target, pipeline.profile.crop_deg)
 
     asked = sorted({*request.node_ids, *(n for n in raw.candidates if n < 0)})
     results = {node_id: verified(node_id) for node_id in asked}
@@ -91,11 +94,11 @@ def verify_candidates(pipeline: Pipeline, request: MatchRequest, raw: RawMatches
     return answer(results, asked, best, request.best_k)
 
 
-def _looked_at(match: NodeMatch, thumbnail: bytes, target: Features) -> NodeMatch:
+def _looked_at(match: NodeMatch, thumbnail: bytes, target: Features, crop_deg: float) -> NodeMatch:
     """The match of a picture that was taken nearby, with how much the two differ as pictures."""
     if match.yaw_rad is None or match.disparity_rad is None or match.disparity_rad > BESIDE_RAD:
         return match
-    differs = difference(thumbnail, target.thumbnail, match.yaw_rad)
+    differs = difference(thumbnail, target.thumbnail, match.yaw_rad, crop_deg)
     return match.model_copy(update={"difference": differs})
 
 

@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 from services.features.matching.difference import difference
+from tests.unit.services.features.matching.blobs import blobs
 
-ROWS, COLUMNS = 160, 320
+COLUMNS = 320
+CROP_DEG = 25.0
 
 
 @pytest.fixture(scope="module")
 def room():
-    """Blobs of all colours, as large as furniture."""
-    noise = np.random.default_rng(1).integers(0, 256, (ROWS // 8, COLUMNS // 8, 3), dtype=np.uint8)
-    return cv2.resize(noise, (COLUMNS, ROWS), interpolation=cv2.INTER_CUBIC)
+    return blobs(COLUMNS, 8, seed=1)
 
 
 def jpeg(picture):
@@ -36,8 +36,8 @@ def with_another_rug(picture):
 
 
 def test_a_step_aside_is_no_difference_but_another_rug_is(room):
-    same = difference(jpeg(from_beside(room)), jpeg(room), 0.0)
-    other = difference(jpeg(from_beside(room)), jpeg(with_another_rug(room)), 0.0)
+    same = difference(jpeg(from_beside(room)), jpeg(room), 0.0, CROP_DEG)
+    other = difference(jpeg(from_beside(room)), jpeg(with_another_rug(room)), 0.0, CROP_DEG)
     assert other > 2.0 * same
 
 
@@ -45,16 +45,24 @@ def test_a_turned_camera_sees_no_difference(room):
     turned_px = 90
     turned = np.roll(room, -turned_px, axis=1)
     yaw_rad = turned_px / COLUMNS * math.tau
-    assert difference(jpeg(turned), jpeg(room), yaw_rad) < 0.3 * difference(
-        jpeg(turned), jpeg(room), -yaw_rad
+    assert difference(jpeg(turned), jpeg(room), yaw_rad, CROP_DEG) < 0.3 * difference(
+        jpeg(turned), jpeg(room), -yaw_rad, CROP_DEG
+    )
+
+
+def test_what_the_camera_sees_of_its_robot_is_no_difference(room):
+    driving = room.copy()
+    driving[-20:] = 40
+    assert difference(jpeg(driving), jpeg(room), 0.0, CROP_DEG) < 0.1 * difference(
+        jpeg(driving), jpeg(room), 0.0, 0.0
     )
 
 
 def test_another_exposure_is_none_beside_another_rug(room):
     darker = (room * 0.5 + 64.0).astype(np.uint8)
     brighter = np.clip(darker.astype(np.int16) + 20, 0, 255).astype(np.uint8)
-    exposed = difference(jpeg(brighter), jpeg(darker), 0.0)
-    assert exposed < 0.3 * difference(jpeg(darker), jpeg(with_another_rug(darker)), 0.0)
+    exposed = difference(jpeg(brighter), jpeg(darker), 0.0, CROP_DEG)
+    assert exposed < 0.3 * difference(jpeg(darker), jpeg(with_another_rug(darker)), 0.0, CROP_DEG)
 
 
 HUGE = b"\xff\xd8\xff\xc0\x00\x11\x08" + b"\xff\xff" * 2 + b"\xff\xd9"
@@ -62,5 +70,5 @@ HUGE = b"\xff\xd8\xff\xc0\x00\x11\x08" + b"\xff\xff" * 2 + b"\xff\xd9"
 
 @pytest.mark.parametrize("thumbnail", [b"", b"no picture", HUGE], ids=["none", "not a JPEG", "65535 x 65535"])
 def test_without_both_pictures_nothing_is_said(room, thumbnail):
-    assert difference(jpeg(room), thumbnail, 0.0) is None
-    assert difference(thumbnail, jpeg(room), 0.0) is None
+    assert difference(jpeg(room), thumbnail, 0.0, CROP_DEG) is None
+    assert difference(thumbnail, jpeg(room), 0.0, CROP_DEG) is None

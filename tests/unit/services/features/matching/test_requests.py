@@ -1,6 +1,5 @@
 """A question about a goal picture: beside where it was taken it is compared as a picture as well."""
 
-import cv2
 import numpy as np
 import pytest
 
@@ -10,6 +9,7 @@ from services.features.pipeline.named_pipelines import find_profile
 from services.features.pipeline.pipeline import Pipeline
 from shared.messages.matching import MatchRequest
 from shared.messages.sensors import Frame
+from tests.unit.services.features.matching.blobs import blobs
 
 WIDTH_PX, HEIGHT_PX = 1024, 512
 
@@ -20,8 +20,7 @@ def pipeline():
 
 
 def panorama(seed):
-    noise = np.random.default_rng(seed).integers(0, 256, (HEIGHT_PX // 32, WIDTH_PX // 32, 3), dtype=np.uint8)
-    return cv2.resize(noise, (WIDTH_PX, HEIGHT_PX), interpolation=cv2.INTER_CUBIC)
+    return blobs(WIDTH_PX, 32, seed)
 
 
 def answer(pipeline, picture, target):
