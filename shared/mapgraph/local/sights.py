@@ -66,17 +66,35 @@ def sights_among(graph: MapGraph, index: Mapping[int, int], metres_per_rad: floa
 
 def metres_per_rad(graph: MapGraph, otherwise: float) -> float:
     """Length over disparity of the driven edges, at the median; `otherwise` where few were driven."""
-    median = graph.made_once("metres per rad", lambda: _median_ratio(graph))
+    median = graph.made_once("metres per rad", lambda: _median(_lengths_by_disparity(graph)))
     return otherwise if median is None else median
 
 
-def _median_ratio(graph: MapGraph) -> float | None:
-    ratios = [
-        e.length_m / e.disparity_rad
-        for e in graph.edges.values()
-        if e.length_m and e.disparity_rad and not e.suspended
+def match_metres(graph: MapGraph) -> float:
+    """Matches times length of the driven edges, at the median; 0 where few were driven.
+
+    Matches fall with distance alike in rooms and corridors: over 2900 edges of an office, a hostel and a flat
+    the product is 33 to 78 m in nine of ten, where disparity tells a distance to a factor of three.
+    """
+    return graph.made_once("match metres", lambda: _median(_lengths_by_matches(graph))) or 0.0
+
+
+def _lengths_by_disparity(graph: MapGraph) -> list[float]:
+    return [
+        edge.length_m / edge.disparity_rad for edge in _driven(graph) if edge.length_m and edge.disparity_rad
     ]
-    return statistics.median(ratios) if len(ratios) >= 5 else None
+
+
+def _lengths_by_matches(graph: MapGraph) -> list[float]:
+    return [edge.length_m * edge.inliers for edge in _driven(graph) if edge.length_m]
+
+
+def _driven(graph: MapGraph) -> list[Edge]:
+    return [edge for edge in graph.edges.values() if edge.length_m and not edge.suspended]
+
+
+def _median(values: list[float]) -> float | None:
+    return statistics.median(values) if len(values) >= 5 else None
 
 
 def _sight(edge: Edge, index: Mapping[int, int], metres_per_rad: float) -> LocalSight:

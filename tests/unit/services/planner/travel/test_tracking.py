@@ -80,7 +80,7 @@ def test_one_that_maps_wants_to_be_certain(matcher):
 def test_what_the_frame_shows_takes_over_from_what_was_driven(tracker):
     drive(tracker, (1.9, 0.0))
     spread_m = tracker.here.spread_m
-    tracker.confirm(by_node(match(2, 0.2, 0.0, 150)))
+    tracker.confirm(by_node(match(2, 0.2, 0.0, 450)))
     assert tracker.here.node_id == 2
     assert tracker.here.spread_m < spread_m
     np.testing.assert_allclose((tracker.here.x_m, tracker.here.y_m), (-0.2, 0.0), atol=0.02)
@@ -128,3 +128,12 @@ def test_a_node_that_does_not_show_is_reached_all_the_same(tracker):
     here = tracker.standing_at(0, {})
     assert (here.node_id, here.length_m, here.yaw_rad) == (0, 0.0, 0.0)
     assert here.spread_m > 0.1
+
+
+@pytest.mark.parametrize(("inliers", "moved"), [(60, False), (300, True)])
+def test_a_node_that_hardly_shifts_is_near_only_where_its_matches_say_so_too(matcher, inliers, moved):
+    """A corridor: half a metre from node 0, and node 2, 1.5 m ahead, seems to be 0.2 m away."""
+    tracker = tracker_of(matcher)
+    tracker.stand_at(Displacement(0, x_m=0.5, spread_m=0.3))
+    tracker.confirm(by_node(match(2, 0.2, 0.0, inliers)))
+    assert tracker.here.node_id == (2 if moved else 0)
