@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 from shared.mapgraph.local.hypotheses import Hypothesis
 
-EXCLUDED_SHARE = 0.8
+EXCLUDED_SHARE = 0.7
 """A place that resembles the goal by less than this share of the best one is excluded. Rooms furnished alike
 but for a few small things have 0.85 and more: they exclude nothing."""
 TOLD_FACTOR = 2.0
-"""A place from which the goal differs as a picture by so much more than from another is excluded. Equal rooms
-differ by up to 1.8, rooms that a few small things tell apart by 3.5 at the median
-(`services.features.matching.difference`)."""
+"""A place from which the goal differs as a picture by so much more than from another is excluded. Of 96 pairs
+of rooms alike, each seen from 1 to 10 cm aside, the two together exclude no right one, 67 of 87 that a few
+small things tell apart, and one of nine that nothing does; with a share of 0.8 one right one."""
 
 
 @dataclass(frozen=True, order=True)

@@ -116,7 +116,7 @@ def test_places_that_resemble_it_equally_are_ambiguous(two):
 
 def test_two_that_are_both_little_alike_do_not_end_the_search_for_a_third():
     places = places_of(FIRST | SECOND | THIRD)
-    places.arrived(1, view(0.62))
+    places.arrived(1, view(0.61))
     assert places.arrived(9, view(0.60)).failure == ""
     assert places.arrived(17, view(0.88)).why == ""
 

@@ -18,7 +18,7 @@ def evidence(first, second, **differs):
 
 
 def test_a_place_with_fewer_matches_is_excluded():
-    seen = evidence(EQUAL, Visit(150, 0.7))
+    seen = evidence(EQUAL, Visit(130, 0.6))
     assert (seen.best(), seen.rivals()) == (HERE, [])
 
 
