@@ -12,6 +12,7 @@ from services.planner.ports import Decision, Mission, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.remote import RemoteMap, RemoteMatcher
 from services.planner.settings import PlannerSettings
+from services.planner.travel.whereabouts import Whereabouts
 from shared.bus import Bus
 from shared.mapgraph.frontiers import open_directions
 from shared.mapgraph.graph import MapGraph
@@ -43,6 +44,7 @@ class MissionControl:
         self._failure: FailureKind = ""
         self._reason = ""
         self._known = MapGraph()
+        self._whereabouts = Whereabouts()
         self.step_count = 0
 
     @property
@@ -135,7 +137,7 @@ class MissionControl:
             return
         if delta.renamed_to:
             log.info("map %s is called %s now", self.map.name, delta.renamed_to)
-            self.map.name = delta.renamed_to
+            self.map.name = self._whereabouts.map = delta.renamed_to
             self._record = self._record.model_copy(update={"map": delta.renamed_to})
             return
         if delta.revision <= self.map.revision and not delta.reset:
@@ -239,8 +241,11 @@ class MissionControl:
 
     def _make(self, record: MissionRecord, maps: RemoteMap, matcher: RemoteMatcher) -> Mission:
         rng = np.random.default_rng(record.seed)
-        context = MissionContext(self._profile, maps, matcher, rng, record.goal)
-        return self._kinds[record.action].start(context, _parameters(record))
+        whereabouts = self._whereabouts.of(record.map)
+        context = MissionContext(self._profile, maps, matcher, rng, record.goal, whereabouts)
+        mission = self._kinds[record.action].start(context, _parameters(record))
+        self._whereabouts = whereabouts
+        return mission
 
     def _change(self, action: str) -> None:
         allowed = {"pause": ("running",), "resume": ("paused",), "cancel": ("running", "paused")}[action]

@@ -20,6 +20,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from services.planner import missions
 from services.planner.ports import MapAccess, Matcher, Mission
 from services.planner.profiles import Profile
+from services.planner.travel.whereabouts import Whereabouts
 from shared.messages.features import Features
 from shared.messages.missions import CONTROLS, MissionKindInfo
 
@@ -51,6 +52,7 @@ class MissionContext:
     Attributes:
         goal: features of the picture that came with the request.
         rng: seeded by the request.
+        whereabouts: where the mission before left the robot; None where nobody knows.
     """
 
     profile: Profile
@@ -58,6 +60,7 @@ class MissionContext:
     matcher: Matcher
     rng: np.random.Generator
     goal: Features | None = None
+    whereabouts: Whereabouts | None = None
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.frontier_destination import FrontierDestination
 from services.planner.travel.machine import Travel
 from services.planner.travel.states import State
+from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.frontiers import best_sector, sector_rad
 from shared.mapgraph.local.displacement import Displacement
 
@@ -28,11 +29,18 @@ from shared.mapgraph.local.displacement import Displacement
 class FrontierExploration:
     """Decides per frame; everything it must not forget is in the map (open and explored directions)."""
 
-    def __init__(self, profile: Profile, maps: MapAccess, matcher: Matcher, rng: np.random.Generator) -> None:
+    def __init__(
+        self,
+        profile: Profile,
+        maps: MapAccess,
+        matcher: Matcher,
+        rng: np.random.Generator,
+        whereabouts: Whereabouts | None = None,
+    ) -> None:
         self._profile, self._maps, self._matcher, self._rng = profile, maps, matcher, rng
         experience = EdgeExperience(profile, maps)
         self._destination = FrontierDestination(profile, maps, matcher, experience)
-        self._travel = Travel(profile, maps, matcher, self._destination, experience)
+        self._travel = Travel(profile, maps, matcher, self._destination, experience, whereabouts)
         self._departure: Departure | None = None
         self._heading_rad = 0.0
         self.progress = Progress()
@@ -107,9 +115,10 @@ class FrontierExploration:
 
 
 def _make(context: MissionContext, _parameters: NoParameters) -> Mission:
-    by_strategies = context.profile.mapping.exploration == "strategies"
-    kind = ThesisExploration if by_strategies else FrontierExploration
-    return kind(context.profile, context.maps, context.matcher, context.rng)
+    robot = (context.profile, context.maps, context.matcher, context.rng)
+    if context.profile.mapping.exploration == "strategies":
+        return ThesisExploration(*robot)
+    return FrontierExploration(*robot, context.whereabouts)
 
 
 KIND = MissionKind(

@@ -19,6 +19,7 @@ from services.planner.travel.machine import Travel
 from services.planner.travel.place_evidence import Visit
 from services.planner.travel.states import Event, State
 from services.planner.travel.tracking import Tracker
+from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.graph import EdgeKey, edge_key
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import COMPARED_NODES
@@ -233,8 +234,16 @@ class GoalDestination:
 class Goto:
     """Travels to a goal picture; ends with arrival or a typed failure."""
 
-    def __init__(self, profile: Profile, maps: MapAccess, matcher: Matcher, goal: Features) -> None:
+    def __init__(
+        self,
+        profile: Profile,
+        maps: MapAccess,
+        matcher: Matcher,
+        goal: Features,
+        whereabouts: Whereabouts | None = None,
+    ) -> None:
         self._profile, self._maps, self._matcher, self._goal = profile, maps, matcher, goal
+        self._whereabouts = whereabouts
         self._travel: Travel | None = None
 
     @property
@@ -248,7 +257,9 @@ class Goto:
             return self._outcome(self._travel, self._travel.step(observation))
         experience = EdgeExperience(self._profile, self._maps)
         destination = GoalDestination(self._profile, self._maps, self._matcher, self._goal, experience)
-        self._travel = Travel(self._profile, self._maps, self._matcher, destination, experience)
+        self._travel = Travel(
+            self._profile, self._maps, self._matcher, destination, experience, self._whereabouts
+        )
         where = f"goal resembles nodes {sorted(destination.targets())}"
         doubt = "" if destination.places.plain else f"; places of nodes {destination.places.names} look alike"
         located = Note("goal_located", where + doubt)
@@ -269,7 +280,7 @@ def _make(context: MissionContext, parameters: GotoParameters) -> Goto:
         if node_id not in context.maps.graph.nodes:
             raise MissionError(f"the map has no node {node_id}", "missing")
         goal = context.maps.features_of(node_id)
-    return Goto(context.profile, context.maps, context.matcher, goal)
+    return Goto(context.profile, context.maps, context.matcher, goal, context.whereabouts)
 
 
 KIND = MissionKind(

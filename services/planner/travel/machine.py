@@ -17,6 +17,7 @@ from services.planner.travel.path_follower import PathFollower
 from services.planner.travel.search import Search, search_back
 from services.planner.travel.states import TRANSITIONS, Event, State
 from services.planner.travel.tracking import Tracker
+from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.graph import EdgeKey
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.routing import GOAL, plan_path
@@ -41,12 +42,14 @@ class Travel:
         matcher: Matcher,
         destination: Destination,
         experience: EdgeExperience,
+        whereabouts: Whereabouts | None = None,
     ) -> None:
         self._profile, self._maps, self._matcher = profile, maps, matcher
         self._destination, self._experience = destination, experience
         self.state, self.reason = State.LOCALISING, ""
         self.last_heading_rad = 0.0
-        self.tracker = Tracker(profile, maps, matcher, certain=destination.picture is None)
+        certain = destination.picture is None
+        self.tracker = Tracker(profile, maps, matcher, certain=certain, whereabouts=whereabouts)
         self._unclear: set[EdgeKey] = set()
         self._follower: PathFollower | None = None
         self._search: Search | None = None

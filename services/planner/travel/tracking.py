@@ -13,13 +13,14 @@ from services.planner.mapping.reach import claims, in_reach, nodes_nearby
 from services.planner.ports import MapAccess, Matcher, Matches, Observation
 from services.planner.profiles import Profile
 from services.planner.similarity import similarity, trusted
+from services.planner.travel.waypoints import is_at
+from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.local.claims import Claim
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import NEAR_NODES, Hypothesis, hypotheses, likely
 from shared.mapgraph.local.resection import resected
 from shared.mapgraph.local.sights import match_metres, metres_per_rad
 from shared.mapgraph.routing import GOAL
-from shared.messages.features import Features
 from shared.messages.matching import NodeMatch
 
 PATIENCE_FRAMES = 40
@@ -45,23 +46,37 @@ class Tracker:
         matcher: compares frames.
         certain: only a place without rivals counts where nobody knows where the robot is: one that maps would
             join two places for good.
-
-    Attributes:
-        here: where it is relative to a node; None while nobody knows.
+        whereabouts: as the mission before left them; this tracker changes them.
     """
 
-    def __init__(self, profile: Profile, maps: MapAccess, matcher: Matcher, *, certain: bool) -> None:
+    def __init__(
+        self,
+        profile: Profile,
+        maps: MapAccess,
+        matcher: Matcher,
+        *,
+        certain: bool,
+        whereabouts: Whereabouts | None = None,
+    ) -> None:
         self._profile, self._maps, self._matcher = profile, maps, matcher
         self._certain = certain
+        self._at = whereabouts or Whereabouts()
+        self._resumes = self._at.here is not None
         self._strict = profile.sensing.similarity == "raw"
         self._lost_frames = 0
-        self._now: Features | None = None
-        self._before: Features | None = None
-        self.here: Displacement | None = None
+
+    @property
+    def here(self) -> Displacement | None:
+        """Where the robot is relative to a node; None while nobody knows."""
+        return self._at.here
+
+    @here.setter
+    def here(self, here: Displacement | None) -> None:
+        self._at.here = here
 
     def observe(self, observation: Observation) -> None:
         """A new frame, and how far the robot went since the one before."""
-        self._before, self._now = self._now, observation.features
+        self._at.before, self._at.now = self._at.now, observation.features
         if self.here is not None:
             self.here = self.here.moved(observation.moved_m)
 
@@ -78,6 +93,8 @@ class Tracker:
         graph = self._maps.graph
         if self._strict:
             return matches
+        if self._resumes:
+            self._resume()
         if self.here is not None and self.here.node_id in graph.nodes:
             within = in_reach(graph, matches, self.here, self._profile)
             if self._shows_any(within):
@@ -123,16 +140,30 @@ class Tracker:
     def was_carried(self) -> bool:
         """Whether this frame shows another place than the one before it."""
         match = self._against_before()
-        return self._before is not None and (match is None or not self._is_sure(match))
+        return self._at.before is not None and (match is None or not self._is_sure(match))
 
     def likeness(self, s_goal: int) -> float:
         """Similarity of this frame to a picture, as a share of its similarity to the frame before."""
         match = self._against_before()
         return s_goal / max(similarity(match, self._profile) if match is not None else s_goal, 1)
 
+    def _resume(self) -> None:
+        """The first frame of a mission: the robot is where the last one left it, or somebody moved it."""
+        self._resumes = False
+        here, before = self.here, self._at.before
+        if here is None or before is None or here.node_id not in self._maps.graph.nodes:
+            return self.stand_at(None)
+        seen = self._matcher.match([here.node_id], 0, (before,))
+        stands = is_at(seen.get(GOAL), self._profile)
+        if not stands or here.node_id not in seen or not self._is_sure(seen[here.node_id]):
+            log.info("not about node %d any more: where the robot is has to be seen", here.node_id)
+            self.stand_at(None)
+        return None
+
     def _against_before(self) -> NodeMatch | None:
         """This frame against the one before it."""
-        return None if self._before is None else self._matcher.match([], 0, (self._before,)).get(GOAL)
+        before = self._at.before
+        return None if before is None else self._matcher.match([], 0, (before,)).get(GOAL)
 
     def _is_away(self) -> bool:
         """Whether the robot is not where its own motion says; that is forgotten then."""

@@ -3,7 +3,14 @@
 import pytest
 
 from services.planner.control import MissionControl
-from services.planner.mission_kinds import MissionError, mission_kinds
+from services.planner.mission_kinds import (
+    MissionError,
+    MissionKind,
+    MissionKinds,
+    NoParameters,
+    mission_kinds,
+)
+from services.planner.ports import Progress
 from services.planner.profiles import DEFAULT
 from services.planner.settings import PlannerSettings
 from shared.messages.maps import MapDelta, MapReply, MapRequest, MissionRecord, MissionRecordRequest, Node
@@ -100,3 +107,31 @@ def test_the_goal_node_of_a_sender_that_knows_no_parameters_counts():
     control, _ = control_of()
     with pytest.raises(MissionError, match="no node 7"):
         control.handle(MissionRequest(action="goto", map="flat", goal_node=7))
+
+
+class Wait:
+    """A mission that does nothing."""
+
+    progress = Progress()
+
+
+def test_a_mission_learns_where_the_one_before_left_the_robot_in_the_same_map():
+    found = []
+
+    def make(context, _parameters):
+        found.append(context.whereabouts)
+        return Wait()
+
+    kinds = MissionKinds([MissionKind(name="wait", title="Wait", parameters=NoParameters, make=make)])
+    store = Store(MissionRecord(robot="r1", epoch=4, mission_id="m", map="flat"))
+    control = MissionControl(PlannerSettings(), DEFAULT, kinds, store)
+    control.claim()
+    for name in ("flat", "flat", "loft", "flat"):
+        store.map = name
+        control.handle(MissionRequest(action="wait", map=name))
+        control.handle(MissionRequest(action="cancel"))
+    first, second, third, last = found
+    assert second is first
+    assert third is not first
+    assert last is not first
+    assert [one.map for one in found] == ["flat", "flat", "loft", "flat"]

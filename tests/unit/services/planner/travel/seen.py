@@ -38,10 +38,14 @@ class Maps:
 
 
 class Matcher:
-    """Compares a frame with the one before it: they resemble one another by so many matches."""
+    """Compares a frame with the one before it: they resemble one another by so many matches.
 
-    def __init__(self, inliers=200):
-        self.inliers = inliers
+    Of nodes it sees those of `near`.
+    """
+
+    def __init__(self, inliers=200, near=()):
+        self.inliers, self.near = inliers, near
 
     def match(self, node_ids, best_k=0, targets=()):  # noqa: ARG002
-        return {GOAL: match(GOAL, 0.0, 0.0, self.inliers)} if targets else {}
+        nodes = {node: match(node, 0.2, 0.0) for node in node_ids if node in self.near}
+        return {**nodes, **({GOAL: match(GOAL, 0.0, 0.0, self.inliers)} if targets else {})}

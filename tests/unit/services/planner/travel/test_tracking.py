@@ -6,6 +6,7 @@ import pytest
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT, THESIS
 from services.planner.travel.tracking import PATIENCE_FRAMES, Tracker
+from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.local.displacement import Displacement
 from shared.messages.sensors import Ranges
 from tests.unit.services.planner.travel.seen import Maps, Matcher, by_node, features, match
@@ -137,3 +138,25 @@ def test_a_node_that_hardly_shifts_is_near_only_where_its_matches_say_so_too(mat
     tracker.stand_at(Displacement(0, x_m=0.5, spread_m=0.3))
     tracker.confirm(by_node(match(2, 0.2, 0.0, inliers)))
     assert tracker.here.node_id == (2 if moved else 0)
+
+
+@pytest.mark.parametrize(
+    ("alike", "near", "shown"),
+    [(200, {0}, {0, 1}), (5, {0}, {9, 10}), (200, set(), {9, 10})],
+    ids=["stands there", "was carried", "the map was replaced"],
+)
+def test_the_next_mission_begins_where_the_last_one_ended_if_the_view_agrees(matcher, alike, near, shown):
+    at = Whereabouts("flat")
+    last = Tracker(DEFAULT, Maps(GRAPH), matcher, certain=False, whereabouts=at)
+    last.stand_at(Displacement(0, spread_m=0.1))
+    drive(last)
+    new = Tracker(DEFAULT, Maps(GRAPH), matcher, certain=False, whereabouts=at.of("flat"))
+    matcher.inliers, matcher.near = alike, near
+    drive(new, (0.0, 0.0), seq=1)
+    assert set(new.possible(HERE | ELSEWHERE)) == shown
+
+
+def test_another_map_tells_nothing_of_where_the_robot_is():
+    at = Whereabouts("flat", here=Displacement(0))
+    assert at.of("flat") is at
+    assert at.of("loft").here is None
