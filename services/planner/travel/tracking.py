@@ -152,13 +152,13 @@ class Tracker:
         self._resumes = False
         here, before = self.here, self._at.before
         if here is None or before is None or here.node_id not in self._maps.graph.nodes:
-            return self.stand_at(None)
+            self.stand_at(None)
+            return
         seen = self._matcher.match([here.node_id], 0, (before,))
         stands = is_at(seen.get(GOAL), self._profile)
         if not stands or here.node_id not in seen or not self._is_sure(seen[here.node_id]):
             log.info("not about node %d any more: where the robot is has to be seen", here.node_id)
             self.stand_at(None)
-        return None
 
     def _against_before(self) -> NodeMatch | None:
         """This frame against the one before it."""
