@@ -49,7 +49,7 @@ began=$SECONDS
 ask() { "${curl[@]}" --silent --show-error --fail-with-body --max-time 100 --header "Authorization: Bearer $token" "$@"; }
 failed_up() { "$@" ps --all --format '{{.Service}} {{.Status}}' | cat "$folder/up.log" - >"$folder/failed"; } # said last
 up_by() { # COMMAND: what runs Compose
-    "$@" up --detach --wait --wait-timeout "${UP_S:-600}" >"$folder/up.log" 2>&1 || { failed_up "$@"; return 1; }
+    "$@" up --detach --wait --wait-timeout 600 >"$folder/up.log" 2>&1 || { failed_up "$@"; return 1; }
 }
 up() { up_by compose "$@"; }
 read_token() { token=$(compose exec -T gateway cat /var/lib/topnav/token/token); }

@@ -25,7 +25,7 @@ class FeaturesSettings(ServiceSettings):
         threads: cores OpenCV may use.
         frames_kept: newest frames whose features a MATCH can name by number.
         map_timeout_s: longest wait for the map store.
-        thumbnail_width_px: width of the picture sent along for people; half as high.
+        thumbnail_width_px: width of the picture sent along, for people and for look-alikes; half as high.
         thumbnail_quality: JPEG quality of it, percent.
     """
 

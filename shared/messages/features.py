@@ -22,7 +22,7 @@ class Features(Message):
         scores: (N,) detector response, larger is better.
         descriptors: (N, D).
         sizes_rad: (N,) diameter of each keypoint, above 0: what is nearer is larger; None where unknown.
-        thumbnail: small JPEG of the frame for people, may be empty.
+        thumbnail: small JPEG of the frame for people, and to compare look-alikes by; may be empty.
         extract_ms: time the feature service took for this picture, decoding and thumbnail included.
     """
 

@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from services.features.pipeline.decoding import BadPictureError, jpeg_size
-from shared.geometry.sphere import FloatArray
+from shared.geometry.perspective import pixel_centres
+from shared.geometry.sphere import EquirectGrid, FloatArray
 
 WIDTH_PX, HEIGHT_PX = 256, 128
 """Pixels compared; chosen: 1.4 degrees each, a hundredth of a picture's area is a rug 2 m away."""
@@ -43,10 +44,10 @@ def difference(current: bytes, target: bytes, yaw_rad: float, crop_deg: float) -
     if here is None or there is None:
         return None
     turned = np.roll(there, -round(yaw_rad / math.tau * WIDTH_PX), axis=1)
-    latitude_rad = math.pi / 2 - (np.arange(HEIGHT_PX) + 0.5) / HEIGHT_PX * math.pi
-    kept = np.abs(latitude_rad) <= math.radians(90.0 - crop_deg)
-    left = _unexplained(_beyond_the_seam(here[kept]), _beyond_the_seam(turned[kept]))
-    weighted = left[:, OVERLAP_PX:-OVERLAP_PX] * np.cos(latitude_rad[kept])[:, None]
+    grid = EquirectGrid.cropped(WIDTH_PX, HEIGHT_PX, crop_deg)
+    left = _unexplained(*(_beyond_the_seam(picture[grid.row_slice]) for picture in (here, turned)))
+    latitude_rad = grid.lonlat_from_pixels(pixel_centres(1, grid.height))[..., 1]
+    weighted = left[:, OVERLAP_PX:-OVERLAP_PX] * np.cos(latitude_rad)
     count = int(weighted.size * LARGEST_SHARE)
     return float(np.sqrt(np.partition(weighted.ravel(), -count)[-count:].mean()))
 
@@ -77,7 +78,8 @@ def _decoded(jpeg: bytes) -> Picture | None:
 
 
 def _beyond_the_seam(picture: Picture) -> Picture:
-    return np.concatenate([picture[:, -OVERLAP_PX:], picture, picture[:, :OVERLAP_PX]], axis=1)
+    wide = cv2.copyMakeBorder(picture, 0, 0, OVERLAP_PX, OVERLAP_PX, cv2.BORDER_WRAP)
+    return np.asarray(wide, np.uint8)
 
 
 def _lab(picture: Picture) -> npt.NDArray[np.float32]:

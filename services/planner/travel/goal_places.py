@@ -78,9 +78,7 @@ class GoalPlaces:
         """Of the nodes that the goal resembles those of places that may still be it."""
         if not self._places:
             return dict(targets)
-        best = self._evidence.best()
-        left = self._places if self.plain else self._left() or [place for place in (best,) if place]
-        nodes = {node for place in left for node in place.nodes}
+        nodes = {node for place in self._open() for node in place.nodes}
         return {node: cost for node, cost in targets.items() if node in nodes}
 
     def without(self, targets: Mapping[int, float]) -> list[int]:
@@ -197,6 +195,13 @@ class GoalPlaces:
             return Ruling("not reached")
         self._shut.add(place)
         return self._judge(place)
+
+    def _open(self) -> list[Hypothesis]:
+        """Places to go to: those not visited yet, then the best one again."""
+        if self.plain:
+            return self._places
+        best = self._evidence.best()
+        return self._left() or ([] if best is None else [best])
 
     def _left(self) -> list[Hypothesis]:
         done = self._evidence.visits.keys() | self._shut

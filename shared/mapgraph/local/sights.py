@@ -66,8 +66,12 @@ def sights_among(graph: MapGraph, index: Mapping[int, int], metres_per_rad: floa
 
 def metres_per_rad(graph: MapGraph, otherwise: float) -> float:
     """Length over disparity of the driven edges, at the median; `otherwise` where few were driven."""
-    median = graph.made_once("metres per rad", lambda: _median(_lengths_by_disparity(graph)))
-    return otherwise if median is None else median
+
+    def median() -> float | None:
+        return _median([m / edge.disparity_rad for edge, m in _driven(graph) if edge.disparity_rad])
+
+    found = graph.made_once("metres per rad", median)
+    return otherwise if found is None else found
 
 
 def match_metres(graph: MapGraph) -> float:
@@ -76,21 +80,16 @@ def match_metres(graph: MapGraph) -> float:
     Matches fall with distance alike in rooms and corridors: over 2900 edges of an office, a hostel and a flat
     the product is 33 to 78 m in nine of ten, where disparity tells a distance to a factor of three.
     """
-    return graph.made_once("match metres", lambda: _median(_lengths_by_matches(graph))) or 0.0
+
+    def median() -> float | None:
+        return _median([edge.inliers * m for edge, m in _driven(graph)])
+
+    return graph.made_once("match metres", median) or 0.0
 
 
-def _lengths_by_disparity(graph: MapGraph) -> list[float]:
-    return [
-        edge.length_m / edge.disparity_rad for edge in _driven(graph) if edge.length_m and edge.disparity_rad
-    ]
-
-
-def _lengths_by_matches(graph: MapGraph) -> list[float]:
-    return [edge.length_m * edge.inliers for edge in _driven(graph) if edge.length_m]
-
-
-def _driven(graph: MapGraph) -> list[Edge]:
-    return [edge for edge in graph.edges.values() if edge.length_m and not edge.suspended]
+def _driven(graph: MapGraph) -> list[tuple[Edge, float]]:
+    """The driven edges that may be used, each with its length in metres."""
+    return [(edge, edge.length_m) for edge in graph.edges.values() if edge.length_m and not edge.suspended]
 
 
 def _median(values: list[float]) -> float | None:
