@@ -171,7 +171,8 @@ class RealTimeLoop(Loop):
             self._frame_s = max(self._frame_s + 1.0 / self.settings.frame_rate_hz, now_s)
             self.seq += 1
             self.stamp_ns = time.time_ns()
-            self.ports.send(self.maker.frame(self.seq, self.stamp_ns))
+            true = self.maker.truth(self.seq, self.stamp_ns)  # drawing may take half a second
+            self.ports.send(true, self.maker.frame(self.seq, self.stamp_ns))
             self._age.sent(self.seq, now_s)
 
     def _catch_up(self, now_s: float) -> None:

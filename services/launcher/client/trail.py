@@ -42,7 +42,7 @@ class Trail:
         return self.truths[max(0, mark - 1) :]
 
     def pose_at(self, stamp_ns: int) -> Pose | None:
-        """True pose at a capture time: that of the frame, or in real time between its two neighbours.
+        """True pose at a capture time: that of the frame, or between two neighbours where its own was lost.
 
         None where the nearest states are further than MAX_GAP_S apart.
         """

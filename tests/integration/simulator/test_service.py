@@ -174,6 +174,13 @@ def test_real_time_runs_by_itself_and_stops_when_commands_end(start):
     assert still_s()[0] - moving_s < 3.0
 
 
+def test_in_real_time_every_frame_has_a_true_state_of_its_own_moment(start):
+    peer = start(lockstep=False)
+    peer.wait_for(lambda: peer.truth is not None and peer.frame.seq > 3)
+    moment = peer.frame.seq, peer.frame.stamp_ns
+    peer.wait_for(lambda: moment in [(t.seq, t.stamp_ns) for t in peer.truths])
+
+
 def test_a_killed_simulator_finds_its_textures_and_light_again(start, tmp_path):
     def kept():
         return {path.name: path.stat().st_ino for path in (tmp_path / "cache").iterdir()}
