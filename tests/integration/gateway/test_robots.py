@@ -91,14 +91,14 @@ def test_the_truth_is_shown_only_where_asked_for(http: httpx.Client, robot_bus: 
 
 
 def test_decisions_are_kept_for_who_comes_later(http: httpx.Client, robot_bus: Bus) -> None:
-    publisher = robot_bus.publisher(EVENT, robot="r5")
+    publisher = robot_bus.publisher(EVENT, robot="r11")
 
     def arrived() -> bool:
-        publisher.put(Event(robot="r5", kind="replan", reason="lost"))
-        return http.get("/api/robots/r5/events").status_code == 200
+        publisher.put(Event(robot="r11", kind="replan", reason="lost"))
+        return http.get("/api/robots/r11/events").status_code == 200
 
     assert wait_until(arrived, WAIT_S)
-    assert http.get("/api/robots/r5/events?limit=1").json()[0]["reason"] == "lost"
+    assert http.get("/api/robots/r11/events?limit=1").json()[0]["reason"] == "lost"
 
 
 @pytest.mark.parametrize("path", ["", "/frame.jpg", "/truth", "/events"])
