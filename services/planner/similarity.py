@@ -28,6 +28,14 @@ def trusted(match: NodeMatch, profile: Profile) -> bool:
     )
 
 
+def tells_place(match: NodeMatch, profile: Profile) -> bool:
+    """Whether a match says where its node is.
+
+    Bearings that do not change mean this very spot where many agree, else that both see what is far away.
+    """
+    return trusted(match, profile) and (match.status != "no_baseline" or close_enough(match, profile))
+
+
 def apart_rad(disparity_rad: float, inliers: int, profile: Profile) -> float:
     """How far apart two views are as an angle: their disparity, or more where so few matches agree."""
     least_m = profile.sensing.similarity_m / max(inliers, 1)

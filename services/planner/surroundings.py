@@ -36,11 +36,10 @@ def through_gap(ranges: Ranges, heading_rad: float, profile: Profile) -> tuple[f
     return math.remainder(heading_rad + float(ASIDE_RAD[chosen]), math.tau), float(free_m[chosen])
 
 
-def openings(ranges: Ranges, profile: Profile) -> tuple[bool, ...]:
-    """Per sector, whether the robot can go at least the profile's opening that way."""
-    return tuple(
-        free_way_m(ranges, s * SECTOR_RAD, profile) >= profile.sensing.opening_m for s in range(SECTORS)
-    )
+def free_ways_m(ranges: Ranges, profile: Profile) -> tuple[float, ...]:
+    """Per sector, how far the robot can go that way, to the centimetre; at most the sensors' range."""
+    ways = (free_way_m(ranges, s * SECTOR_RAD, profile) for s in range(SECTORS))
+    return tuple(round(min(free_m, ranges.max_range_m), 2) for free_m in ways)
 
 
 def hidden_openings(ranges: Ranges, nodes: Sequence[tuple[Node, float]], profile: Profile) -> list[int]:

@@ -80,7 +80,7 @@ def verify_candidates(pipeline: Pipeline, request: MatchRequest, raw: RawMatches
         if node_id >= 0:
             return match
         target = request.targets[-1 - node_id]
-        return _looked_at(match, raw.thumbnail, target, pipeline.profile.crop_deg)
+        return _looked_at(match, raw.thumbnail, target)
 
     asked = sorted({*request.node_ids, *(n for n in raw.candidates if n < 0)})
     results = {node_id: verified(node_id) for node_id in asked}
@@ -94,11 +94,11 @@ def verify_candidates(pipeline: Pipeline, request: MatchRequest, raw: RawMatches
     return answer(results, asked, best, request.best_k)
 
 
-def _looked_at(match: NodeMatch, thumbnail: bytes, target: Features, crop_deg: float) -> NodeMatch:
+def _looked_at(match: NodeMatch, thumbnail: bytes, target: Features) -> NodeMatch:
     """The match of a picture that was taken nearby, with how much the two differ as pictures."""
     if match.yaw_rad is None or match.disparity_rad is None or match.disparity_rad > BESIDE_RAD:
         return match
-    differs = difference(thumbnail, target.thumbnail, match.yaw_rad, crop_deg)
+    differs = difference(thumbnail, target.thumbnail, match.yaw_rad)
     return match.model_copy(update={"difference": differs})
 
 

@@ -191,7 +191,7 @@ class GoalDestination:
             else:
                 self._settle(self.places.refuted(tracker.here))
             return f"aliased: a node of the map resembles this view more than the goal does, S {s_map}"
-        if another := self.places.shows_another(view, node):
+        if another := self.places.shows_another(view, tracker.here):
             self.aliased = True
             tracker.stand_at(None)
             return f"aliased: {another}"

@@ -22,6 +22,7 @@ from shared.mapgraph.local.hypotheses import (
     likely,
     typical_similarity,
 )
+from shared.mapgraph.local.sights import match_metres
 from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
 
@@ -37,6 +38,9 @@ SPOT_M = 0.75
 a metre apart, and a base stops a hand's breadth short."""
 AROUND_M = 2.0
 """Who is nearer than this to it is in the same part of a room; chosen."""
+BEYOND_FACTOR = 2.0
+"""A picture was taken within so many times the distance that its matches with a node stand for: in nine of
+ten edges of three worlds that is right to a factor of 1.6."""
 TRIES = 2
 """Times the picture may be lost, refuted or the way shut at one place before that counts."""
 
@@ -117,18 +121,19 @@ class GoalPlaces:
         seen = goal.model_copy(update={"yaw_rad": (goal.yaw_rad or 0.0) + self._yaw_rad[nearest]})
         return not elsewhere(self._maps.graph, {nearest: seen}, here, self._profile)
 
-    def shows_another(self, view: Matches, node: int | None) -> str:
+    def shows_another(self, view: Matches, here: Displacement | None) -> str:
         """Why a view is not of the place, where there is but one: a look-alike is a place of its own.
 
         Args:
             view: the frame against the nodes most like it.
-            node: the robot is about there; None where nobody knows.
+            here: where the frame was taken; None where nobody knows.
         """
         found = likely(self._hypotheses(view))
         if not (self.plain and self._places and found):
             return ""
         same = [not set(place.nodes).isdisjoint(self._places[0].nodes) for place in found]
-        if same[0] or (any(same) and self.is_near(node)):
+        may_be = same[0] or (any(same) and self.is_near(None if here is None else here.node_id))
+        if may_be and (here is None or not self._is_beyond(here)):
             return ""
         return f"this is about node {found[0].nodes[0]}, its place about {self.names}"
 
@@ -154,6 +159,12 @@ class GoalPlaces:
     def is_at(self, here: Displacement | None) -> bool:
         """Whether the robot stands where one of several places puts the picture, as far as is known."""
         return not self.plain and here is not None and self._is_within(SPOT_M, here)
+
+    def _is_beyond(self, here: Displacement) -> bool:
+        """Whether a robot is further from the place than matches with it allow, as far as is known."""
+        metres = match_metres(self._maps.graph)
+        far_m = SPOT_M + BEYOND_FACTOR * metres / max(self._places[0].similarity, 1)
+        return metres > 0.0 and not self._is_within(far_m, here)
 
     def _is_within(self, far_m: float, here: Displacement) -> bool:
         best = {place.nodes[0] for place in self._places}

@@ -4,7 +4,7 @@ from collections.abc import Collection
 
 from services.planner.ports import Matches
 from services.planner.profiles import Profile
-from services.planner.similarity import apart_rad, ranked, similarity, trusted
+from services.planner.similarity import apart_rad, ranked, similarity, tells_place, trusted
 from services.planner.surroundings import is_clear
 from shared.mapgraph.routing import (
     HOP_RAD,
@@ -41,7 +41,7 @@ def reachable_nodes(
     return {
         node: _cost(match, profile, clear=node in clear)
         for node, match in matches.items()
-        if similarity(match, profile) > s_min and trusted(match, profile)
+        if similarity(match, profile) > s_min and tells_place(match, profile)
     }
 
 

@@ -179,6 +179,9 @@ class Travel:
         return Decision("go", heading_rad, 0, 1.0, "search", why)
 
     def _give_up(self, failure: FailureKind, why: str) -> Decision:
+        """End the travel; one that is lost is not where it believed, and the next mission asks the map."""
+        if failure == "lost":
+            self.tracker.stand_at(None)
         self._change(Event.GIVEN_UP)
         return Decision("hold", why=why, outcome="failed", failure=failure)
 

@@ -1,5 +1,6 @@
 """Following a path: which waypoint to aim at, and what ends it early."""
 
+import math
 from collections.abc import Collection
 
 from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
@@ -32,7 +33,8 @@ STUCK_STEPS = 35
 the way round any one piece of furniture."""
 
 CLOSER = 0.95
-"""Share of the least disparity so far that counts as closer; chosen: one step of 0.12 m from 2.4 m away."""
+"""Share of the least disparity so far that counts as closer, as do matches the other way round: along a
+corridor disparity tells little. Chosen: one step of 0.12 m from 2.4 m away."""
 
 WAITING_STEPS = 8
 """Steps at a waypoint after which the next one should have shown; chosen: 2.4 s, in which a person has
@@ -68,7 +70,7 @@ class PathFollower:
         self._unseen_frames = 0
         self._heading_rad: float | None = None
         self._steady = SteadyHeading()
-        self._best_rad = float("inf")
+        self._best_rad, self._best_s = math.inf, 0
         self._stale = self._waiting = 0
         self.progress = Progress(via_points=tuple(path))
 
@@ -156,7 +158,7 @@ class PathFollower:
             if there is None or not self._may_advance(here, there, later, ranges):
                 continue
             learnt = self._mark_driven(here)
-            self.index, self._best_rad, self._stale = later, float("inf"), 0
+            self.index, self._best_rad, self._best_s, self._stale = later, math.inf, 0, 0
             s_here = similarity(here, self._profile) if here is not None else 0
             s_there = similarity(there, self._profile)
             values = {"s_cv": s_here, "s_nv": s_there, "via": self.path[later]}
@@ -198,10 +200,11 @@ class PathFollower:
 
     def _no_progress(self, match: NodeMatch) -> bool:
         disparity = match.disparity_rad if match.disparity_rad is not None else 0.0
-        if disparity < self._best_rad * CLOSER:
-            self._best_rad, self._stale = disparity, 0
-        else:
-            self._stale += 1
+        s_cv = similarity(match, self._profile)
+        nearer, liker = disparity < self._best_rad * CLOSER, s_cv * CLOSER > self._best_s
+        self._best_rad = disparity if nearer else self._best_rad
+        self._best_s = s_cv if liker else self._best_s
+        self._stale = 0 if nearer or liker else self._stale + 1
         return self._stale > (NEAREST_STEPS if self._near_end(match) else STUCK_STEPS)
 
     def _waits_too_long(self, match: NodeMatch) -> bool:

@@ -9,9 +9,9 @@ EXCLUDED_SHARE = 0.7
 """A place that resembles the goal by less than this share of the best one is excluded. Rooms furnished alike
 but for a few small things have 0.85 and more: they exclude nothing."""
 TOLD_FACTOR = 2.0
-"""A place from which the goal differs as a picture by so much more than from another is excluded. Of 96 pairs
-of rooms alike, each seen from 1 to 10 cm aside, the two together exclude no right one, 67 of 87 that a few
-small things tell apart, and one of nine that nothing does; with a share of 0.8 one right one."""
+"""A place from which the goal differs as a picture by so much more than from another is excluded. Of 200
+pairs of rooms alike, each seen from 1 to 5 cm aside, it excludes 176 of 177 that a few small things tell
+apart, and of 23 that nothing does one, the wrong one; from up to 10 cm 83 of 87, and a right one of nine."""
 
 
 @dataclass(frozen=True, order=True)

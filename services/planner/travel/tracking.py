@@ -12,7 +12,7 @@ from dataclasses import replace
 from services.planner.mapping.reach import claims, in_reach, nodes_nearby
 from services.planner.ports import MapAccess, Matcher, Matches, Observation
 from services.planner.profiles import Profile
-from services.planner.similarity import similarity, trusted
+from services.planner.similarity import similarity, tells_place
 from services.planner.travel.waypoints import is_at
 from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.local.claims import Claim
@@ -140,7 +140,7 @@ class Tracker:
     def was_carried(self) -> bool:
         """Whether this frame shows another place than the one before it."""
         match = self._against_before()
-        return self._at.before is not None and (match is None or not self._is_sure(match))
+        return self._at.before is not None and (match is None or not self._resembles(match))
 
     def likeness(self, s_goal: int) -> float:
         """Similarity of this frame to a picture, as a share of its similarity to the frame before."""
@@ -223,5 +223,8 @@ class Tracker:
         return any(self._is_sure(match) for match in matches.values())
 
     def _is_sure(self, match: NodeMatch) -> bool:
-        enough = similarity(match, self._profile) > self._profile.travel.s_via_min
-        return enough and trusted(match, self._profile)
+        return self._resembles(match) and tells_place(match, self._profile)
+
+    def _resembles(self, match: NodeMatch) -> bool:
+        """Whether enough agrees; of views 4 cm apart that tells no direction well."""
+        return similarity(match, self._profile) > self._profile.travel.s_via_min

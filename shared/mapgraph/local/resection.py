@@ -76,6 +76,9 @@ def resected(
         rad_per_m: disparity by distance, until driven edges say it better.
         most: nodes reckoned with, nearest to the root by number of edges first.
         reckoned: where the frame is by what the robot did; counts by its spread.
+
+    Bearings are lines to the equations: where they nearly agree they may cross behind the camera. A point
+    from which half of what is seen ahead lies behind is none (cheirality, as in two-view geometry).
     """
     factor = metres_per_rad(graph, 1.0 / rad_per_m)
     wanted = {*claims, *([reckoned.node_id] if reckoned is not None else [])}
@@ -95,6 +98,8 @@ def resected(
     )
     start = np.median([_guess_m(pose, claim, yaw_rad, factor) for pose, claim in seen], axis=0)
     (x_m, y_m, _), covariance = together.solved(np.array([*start, factor]))
+    if 2 * sum(_is_behind(pose, claim, yaw_rad, (x_m, y_m)) for pose, claim in seen) >= len(seen):
+        return None
     spread_m = math.sqrt(float(np.linalg.eigvalsh(covariance[:2, :2])[-1]) + POINT_M**2)
     return Displacement(root, float(x_m), float(y_m), yaw_rad, spread_m)
 
@@ -116,6 +121,15 @@ def _guess_m(pose: RelativePose, claim: Claim, yaw_rad: float, factor: float) ->
     return pose.position_m - factor * claim.disparity_rad * np.array(
         [math.cos(angle_rad), math.sin(angle_rad)]
     )
+
+
+def _is_behind(pose: RelativePose, claim: Claim, yaw_rad: float, at_m: tuple[float, float]) -> bool:
+    """Whether a node lies against the direction in which a frame taken there sees it."""
+    if claim.heading_rad is None:
+        return False
+    angle_rad = yaw_rad + claim.heading_rad
+    gap = pose.position_m - np.array(at_m)
+    return bool(gap @ np.array([math.cos(angle_rad), math.sin(angle_rad)]) < -SPOT_M)
 
 
 def _sight(pose: RelativePose, claim: Claim, yaw_rad: float, factor: float) -> _Equations:

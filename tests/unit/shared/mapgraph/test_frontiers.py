@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from services.planner.profiles import DEFAULT
-from services.planner.surroundings import openings
+from services.planner.surroundings import free_ways_m
 from shared.mapgraph.frontiers import (
     ExploredRules,
     best_sector,
@@ -25,10 +25,9 @@ def test_opening_is_a_way_the_robot_fits_through():
     distances = np.full(12, 4.0)
     distances[3] = 0.5
     ranges = Ranges(robot="r1", angles_rad=ANGLES, distances_m=tuple(distances), max_range_m=4.0)
-    open_ = openings(ranges, DEFAULT)
-    assert not open_[3]
-    assert open_[0]
-    assert open_[6]
+    free_m = free_ways_m(ranges, DEFAULT)
+    assert free_m[3] < DEFAULT.sensing.opening_m
+    assert free_m[0] == free_m[6] == 4.0
 
 
 def test_edge_to_a_near_place_explores_its_direction_only():

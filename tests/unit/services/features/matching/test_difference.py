@@ -10,7 +10,6 @@ from services.features.matching.difference import difference
 from tests.unit.services.features.matching.blobs import blobs
 
 COLUMNS = 320
-CROP_DEG = 25.0
 
 
 @pytest.fixture(scope="module")
@@ -36,33 +35,40 @@ def with_another_rug(picture):
 
 
 def test_a_step_aside_is_no_difference_but_another_rug_is(room):
-    same = difference(jpeg(from_beside(room)), jpeg(room), 0.0, CROP_DEG)
-    other = difference(jpeg(from_beside(room)), jpeg(with_another_rug(room)), 0.0, CROP_DEG)
+    same = difference(jpeg(from_beside(room)), jpeg(room), 0.0)
+    other = difference(jpeg(from_beside(room)), jpeg(with_another_rug(room)), 0.0)
     assert other > 2.0 * same
+
+
+def test_what_only_one_of_two_spots_sees_behind_an_edge_counts_the_same_from_both(room):
+    beside = from_beside(room)
+    beside[50:110, 200:230] = (200, 60, 220)  # a pillar
+    there = difference(jpeg(beside), jpeg(room), 0.0)
+    assert there == pytest.approx(difference(jpeg(room), jpeg(beside), 0.0), rel=1e-9)
 
 
 def test_a_turned_camera_sees_no_difference(room):
     turned_px = 90
     turned = np.roll(room, -turned_px, axis=1)
     yaw_rad = turned_px / COLUMNS * math.tau
-    assert difference(jpeg(turned), jpeg(room), yaw_rad, CROP_DEG) < 0.3 * difference(
-        jpeg(turned), jpeg(room), -yaw_rad, CROP_DEG
+    assert difference(jpeg(turned), jpeg(room), yaw_rad) < 0.3 * difference(
+        jpeg(turned), jpeg(room), -yaw_rad
     )
 
 
-def test_what_the_camera_sees_of_its_robot_is_no_difference(room):
-    driving = room.copy()
-    driving[-20:] = 40
-    assert difference(jpeg(driving), jpeg(room), 0.0, CROP_DEG) < 0.1 * difference(
-        jpeg(driving), jpeg(room), 0.0, 0.0
-    )
+def test_what_the_camera_sees_of_its_robot_and_of_who_stands_beside_it_is_little_of_one(room):
+    beside = room.copy()
+    beside[-24:] = 40
+    beside[-32:, 150:190] = 40
+    other = difference(jpeg(room), jpeg(with_another_rug(room)), 0.0)
+    assert difference(jpeg(beside), jpeg(room), 0.0) < 0.4 * other
 
 
 def test_another_exposure_is_none_beside_another_rug(room):
     darker = (room * 0.5 + 64.0).astype(np.uint8)
     brighter = np.clip(darker.astype(np.int16) + 20, 0, 255).astype(np.uint8)
-    exposed = difference(jpeg(brighter), jpeg(darker), 0.0, CROP_DEG)
-    assert exposed < 0.3 * difference(jpeg(darker), jpeg(with_another_rug(darker)), 0.0, CROP_DEG)
+    exposed = difference(jpeg(brighter), jpeg(darker), 0.0)
+    assert exposed < 0.3 * difference(jpeg(darker), jpeg(with_another_rug(darker)), 0.0)
 
 
 LARGE = jpeg(np.zeros((1100, 2200, 3), np.uint8))
@@ -71,5 +77,5 @@ LARGE = jpeg(np.zeros((1100, 2200, 3), np.uint8))
 
 @pytest.mark.parametrize("thumbnail", [b"", b"no picture", LARGE], ids=["none", "no JPEG", "no thumbnail"])
 def test_without_both_pictures_nothing_is_said(room, thumbnail):
-    assert difference(jpeg(room), thumbnail, 0.0, CROP_DEG) is None
-    assert difference(thumbnail, jpeg(room), 0.0, CROP_DEG) is None
+    assert difference(jpeg(room), thumbnail, 0.0) is None
+    assert difference(thumbnail, jpeg(room), 0.0) is None

@@ -40,12 +40,17 @@ class Maps:
 class Matcher:
     """Compares a frame with the one before it: they resemble one another by so many matches.
 
-    Of nodes it sees those of `near`.
+    Of nodes it sees those of `near`. The frame before was taken from the same spot, or a little behind it
+    in a direction known that well.
     """
 
     def __init__(self, inliers=200, near=()):
-        self.inliers, self.near = inliers, near
+        self.inliers, self.near, self.heading_std_rad = inliers, near, None
 
     def match(self, node_ids, best_k=0, targets=()):  # noqa: ARG002
         nodes = {node: match(node, 0.2, 0.0) for node in node_ids if node in self.near}
-        return {**nodes, **({GOAL: match(GOAL, 0.0, 0.0, self.inliers)} if targets else {})}
+        if not targets:
+            return nodes
+        moved_m = 0.0 if self.heading_std_rad is None else 0.2
+        before = match(GOAL, -moved_m, 0.0, self.inliers)
+        return {**nodes, GOAL: before.model_copy(update={"heading_std_rad": self.heading_std_rad})}

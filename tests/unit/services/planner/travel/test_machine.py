@@ -7,9 +7,11 @@ import pytest
 
 from services.drive.core import DriveLimits
 from services.planner.missions.explore import FrontierExploration
-from services.planner.missions.goto import Goto
+from services.planner.missions.goto import GoalDestination, Goto
 from services.planner.profiles import DEFAULT
+from services.planner.travel.destination import Verdict
 from services.planner.travel.states import TRANSITIONS, Event, State
+from services.planner.travel.whereabouts import Whereabouts
 from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, picture, run
 
 START = (2.6, 1.3, 0.0)
@@ -77,6 +79,25 @@ def test_a_robot_that_never_finds_anything_again_fails_as_lost(mapped):
     states, _, decision = states_of(mission, world, 1000, blind)
     assert states[-2:] == ["searching", "failed"]
     assert (decision.outcome, decision.failure) == ("failed", "lost")
+
+
+def test_who_is_lost_asks_the_map_the_next_time(mapped, monkeypatch):
+    """One went on believing to be 20 m further along a street, mission after mission."""
+    world, maps = mapped
+    world.pose = START
+    where = Whereabouts()
+    mission = Goto(DEFAULT, maps, PlaneMatcher(world, maps), picture(HALL), where)
+    run(world, mission, DriveLimits(), 5)
+    assert where.here is not None
+    match = PlaneMatcher.match
+
+    def sees_no_node(self, _nodes, _best_k=0, targets=()):
+        return match(self, [], 0, targets)
+
+    monkeypatch.setattr(PlaneMatcher, "match", sees_no_node)
+    monkeypatch.setattr(GoalDestination, "setback", lambda *_: Verdict(failure="lost"))
+    decision, _ = run(world, mission, DriveLimits(), 30)
+    assert (decision.failure, where.here) == ("lost", None)
 
 
 def test_exploration_travels_by_the_same_machine():

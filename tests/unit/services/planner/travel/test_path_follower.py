@@ -8,10 +8,11 @@ import pytest
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT
 from services.planner.travel.edge_experience import EdgeExperience
-from services.planner.travel.path_follower import PathFollower
+from services.planner.travel.path_follower import NEAREST_STEPS, PathFollower
 from services.planner.travel.states import Event
 from services.planner.travel.tracking import Tracker
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.routing import GOAL
 from shared.messages.base import SECTORS
 from shared.messages.maps import Node
 from shared.messages.sensors import Ranges
@@ -38,6 +39,32 @@ def event_before(free_m, **leg):
     follower = PathFollower(DEFAULT, maps, [0, 1], to_a_node, set(), experience, tracker)
     ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(free_m + 0.3,) * SECTORS, max_range_m=4.0)
     return follower.step(Observation(features(), ranges), Seen())[0], follower.index
+
+
+def last_event(views):
+    """What becomes of a robot that sees the goal so, frame by frame, and heads for it."""
+    maps = Maps(MapGraph([Node(node_id=0)], []))
+    tracker = Tracker(DEFAULT, maps, Seen(), certain=False)
+    goal = SimpleNamespace(
+        picture=features(), arrival_rad=DEFAULT.arrival.arrival_rad, aliased=False, sees=lambda *_: None
+    )
+    follower = PathFollower(DEFAULT, maps, [GOAL], goal, set(), EdgeExperience(DEFAULT, maps), tracker)
+    ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(3.0,) * SECTORS, max_range_m=4.0)
+    for view in views:
+        seen = SimpleNamespace(match=lambda *_, **__: {GOAL: view})  # noqa: B023
+        event, _ = follower.step(Observation(features(), ranges), seen)
+    return event
+
+
+STEPS = NEAREST_STEPS + 2
+
+
+def test_a_goal_that_comes_no_nearer_is_as_near_as_obstacles_allow():
+    assert last_event([match(GOAL, 0.3, 0.0, 110 + step % 2) for step in range(STEPS)]) is Event.REACHED
+
+
+def test_a_goal_that_shows_ever_better_comes_nearer_though_disparity_stays():
+    assert last_event([match(GOAL, 0.3, 0.0, 110 + 4 * step) for step in range(STEPS)]) is None
 
 
 def test_a_leg_never_driven_nor_seen_free_is_doubted_where_ground_is_free_for_half_of_it():

@@ -61,6 +61,12 @@ def test_a_robot_that_was_carried_is_where_it_stands(tracker, matcher):
     assert set(tracker.possible(ELSEWHERE)) == {9, 10}
 
 
+def test_two_views_that_tell_no_direction_well_are_still_of_one_place(tracker, matcher):
+    matcher.heading_std_rad = 0.2
+    drive(tracker)
+    assert tracker.possible(ELSEWHERE) == {}
+
+
 def test_one_that_was_carried_smoothly_is_found_after_a_while(tracker):
     for seq in range(PATIENCE_FRAMES):
         drive(tracker, (0.0, 0.0), seq)

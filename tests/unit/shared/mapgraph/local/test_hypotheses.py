@@ -34,6 +34,15 @@ def test_a_rival_makes_a_list_and_a_weak_one_does_not():
     assert len(likely(places_of({**ROUND_NODE_1, 9: claim(0.0, 0.0, 170)}))) == 1
 
 
+def test_a_place_where_nodes_are_few_is_named_beside_one_where_they_are_many():
+    """A goal in a hostel; the right room had two nodes among those compared."""
+    dense = {node: claim(node - 2.0, 0.0, 100) for node in range(5)}
+    rival = {6: claim(-1.0, 0.0, 150), 7: claim(0.0, 0.0, 150)}
+    few = {11: claim(0.0, 0.0, 180)}
+    places = likely(places_of({**dense, **rival, **few}))
+    assert [set(place.nodes) for place in places] == [set(dense), set(rival), set(few)]
+
+
 def test_a_place_alone_is_plain_where_it_resembles_as_much_as_itself():
     typical = typical_similarity(GRAPH)
     assert typical == 80

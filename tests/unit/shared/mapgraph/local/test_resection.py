@@ -45,6 +45,13 @@ def test_along_a_corridor_nodes_before_and_behind_say_how_far_disparities_reach(
     assert found.spread_m > 1.5 * crossing.spread_m, "less sure than where bearings cross"
 
 
+def test_bearings_that_cross_beyond_what_is_ahead_say_nothing():
+    """A street: two nodes far ahead, one a few degrees off; their lines cross between the nodes."""
+    ahead = {5: claim(9.0, -0.36), 7: replace(claim(9.0, 0.0), heading_rad=0.19)}
+    assert place(CORRIDOR, ahead, root=5) is None
+    assert place(CORRIDOR, seen(12, (5, 7), 1.0, 0.0), root=5) is not None
+
+
 def test_a_robot_that_has_not_moved_yet_is_where_it_was():
     claims = {0: replace(claim(1.0, 0.0), heading_rad=None, disparity_rad=0.0)}
     found = place(SQUARE, claims, reckoned=Displacement(0))
