@@ -75,6 +75,8 @@ class MappingRules(_Rules):
         edge_candidates: most nodes compared for edges of a new one.
         edge_window: so many of the newest nodes may get an edge instead; 0: the most similar of all.
         explored: which directions an edge covers.
+        covers_m: floor this near to a node needs no other one; 0: every open direction is explored.
+        gain_min: share of the floor around a spot that must be new for a direction to be explored.
         departure_steps: steps in an unexplored direction after which nothing new is to be expected there.
         saturation_steps: frames without anything known before the robot turns back (Q17).
         exploration_noise_rad, admissible_noise_rad: half widths of the strategies' random headings (Q18).
@@ -98,6 +100,8 @@ class MappingRules(_Rules):
     )
     edge_window: NonNegativeInt = 0
     explored: ExploredRules = ExploredRules()
+    covers_m: float = Field(default=1.0, ge=0.0)
+    gain_min: float = Field(default=0.1, ge=0.0, le=1.0)
     departure_steps: PositiveInt = 18  # 2.2 m at 0.12 m a step; the median S is below s_node_max after 1 m
     saturation_steps: PositiveInt = 5  # reading Q17 (decision 0012)
     exploration_noise_rad: float = math.radians(50.0)  # the thesis's 50, read as degrees (Q18)
@@ -197,6 +201,7 @@ THESIS = DEFAULT.replaced(
     s_max=150,
     heading_method="histogram",
     exploration="strategies",
+    covers_m=0.0,
     path_cost="nodes",
     suspend_after=1,
     delete_edges=True,
@@ -216,6 +221,7 @@ OUTDOOR_SPACE = {
 
 OUTDOOR = DEFAULT.replaced(
     name="outdoor",
+    covers_m=0.0,
     **OUTDOOR_SPACE,
     s_edge_min=25,  # above the 22 of wrong bearings
     s_node_max=100,  # between 144 at 1 to 2 m and 78 at 2 to 3: nodes 2 m apart recognise each other

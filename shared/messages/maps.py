@@ -9,6 +9,10 @@ from shared.messages.base import SECTORS, Bearing, Message, Name, Part
 from shared.messages.features import Features
 from shared.messages.missions import FailureKind, KindName, Parameters
 
+Ways = Annotated[
+    tuple[Annotated[float, Field(ge=0.0)], ...],
+    Field(min_length=SECTORS, max_length=SECTORS, fail_fast=True),
+]
 Sectors = Annotated[tuple[bool, ...], Field(min_length=SECTORS, max_length=SECTORS, fail_fast=True)]
 MAP_ITEMS = 2_000_000
 """Values in one message about a map: 20,000 nodes with 12 directions each, and as many edges."""
@@ -21,6 +25,7 @@ class Node(Part):
         stamp_ns: capture time of its frame.
         frame_seq: number of its frame.
         open: directions (node's camera frame) in which the distance sensors saw room.
+        free_m: how far the robot could go in each direction; None where nobody measured.
         explored: directions already known: an edge leads there or the robot left that way.
     """
 
@@ -30,6 +35,7 @@ class Node(Part):
     pipeline: str = ""
     keypoints: int = Field(default=0, ge=0)
     open: Sectors = (False,) * SECTORS
+    free_m: Ways | None = None
     explored: Sectors = (False,) * SECTORS
 
 

@@ -4,10 +4,11 @@ from collections.abc import Sequence
 from typing import Any
 
 from services.planner.mapping.edges import NewEdges
+from services.planner.mapping.floor_gain import without_poor_directions
 from services.planner.ports import MapAccess, Matches, Note, Observation
 from services.planner.profiles import Profile
 from services.planner.similarity import heading_of, ranked, similarity
-from services.planner.surroundings import openings
+from services.planner.surroundings import free_ways_m
 from shared.mapgraph.edge_ends import edge_between
 from shared.mapgraph.frontiers import with_explored
 from shared.mapgraph.graph import MapGraph
@@ -47,14 +48,15 @@ def add_node(
     """
     node_id = maps.graph.next_id()
     admitted = _driven(edges_to(node_id, edges.admitted, edges, profile), maps.graph, here, profile)
-    features = observation.features
+    features, free_m = observation.features, free_ways_m(observation.ranges, profile)
     node = Node(
         node_id=node_id,
         stamp_ns=features.stamp_ns,
         frame_seq=features.seq,
         pipeline=features.pipeline,
         keypoints=len(features.lonlat_rad),
-        open=openings(observation.ranges, profile),
+        open=tuple(free >= profile.sensing.opening_m for free in free_m),
+        free_m=free_m,
     )
     seen = admitted + edges_to(node_id, edges.covered, edges, profile)
     node, *others = explored_along(maps.graph, node, seen, profile)
@@ -63,6 +65,8 @@ def add_node(
     operations += [UpdateNode(node=other) for other in others]
     maps.commit(operations)
     node_id = max(maps.graph.nodes)  # another robot may have taken the id meanwhile: the newest one is this
+    if poor := without_poor_directions(maps.graph, node_id, profile):
+        maps.commit([UpdateNode(node=n) for n in poor])
     why = [f"node {node_id}: {reason}" for reason in edges.refused.values()]
     return node_id, tuple(Note("closure_refused", reason) for reason in why)
 

@@ -1,0 +1,68 @@
+"""Directions that lead to floor which nodes around cover already are not explored."""
+
+import pytest
+
+from services.planner.mapping.floor_gain import without_poor_directions
+from services.planner.profiles import DEFAULT
+from shared.mapgraph.frontiers import frontier_sectors
+from shared.mapgraph.graph import MapGraph
+from shared.messages.maps import Node
+from tests.unit.shared.mapgraph.local.grid import edge
+
+ALL = (True,) * 12
+EAST, SOUTH, WEST, NORTH = {11, 0, 1}, {8, 9, 10}, {5, 6, 7}, {2, 3, 4}
+COLUMNS, ROWS = 5, 4
+INSIDE, BORDER, CORNER = 7, 2, 0
+
+
+def grid(free_m=(3.0,) * 12, *, clear=True):
+    """Nodes a metre apart that look along x, all open; edges over free ground join those side by side."""
+    count = COLUMNS * ROWS
+    nodes = [Node(node_id=n, open=ALL, free_m=free_m) for n in range(count)]
+    pairs = [(n, n + 1) for n in range(count) if (n + 1) % COLUMNS]
+    pairs += [(n, n + COLUMNS) for n in range(count - COLUMNS)]
+    edges = [edge(a, b, COLUMNS).model_copy(update={"traversals": 0, "clear": clear}) for a, b in pairs]
+    return MapGraph(nodes, edges)
+
+
+def left(graph, root, **changes):
+    """Directions that are still to be explored, by node."""
+    changed = {n.node_id: n for n in without_poor_directions(graph, root, DEFAULT.replaced(**changes))}
+    return {n: set(frontier_sectors(changed.get(n, node))) for n, node in graph.nodes.items()}
+
+
+def test_inside_the_map_nothing_is_worth_the_way_and_at_its_border_what_leads_out():
+    found = left(grid(), INSIDE)
+    assert found[INSIDE] == set()
+    assert found[BORDER] >= SOUTH
+    assert not found[BORDER] & (NORTH | {0, 6})
+    assert found[CORNER] >= {7, 8}
+    assert not found[CORNER] & {1, 2}
+
+
+def test_a_few_decimetres_before_a_wall_lead_nowhere():
+    assert left(grid(free_m=(0.4,) * 12), INSIDE)[BORDER] == set()
+
+
+def test_a_node_behind_a_wall_covers_nothing_on_this_side():
+    walled = left(grid(clear=False), INSIDE)
+    assert walled[INSIDE] == set(range(12))
+
+
+def test_a_map_from_before_free_ways_were_kept_counts_as_open():
+    assert left(grid(free_m=None), INSIDE)[BORDER] >= {9}
+
+
+def test_far_from_the_new_node_nothing_is_judged():
+    found = left(grid(), 0, covers_m=0.9)
+    assert found[COLUMNS * ROWS - 1] == set(range(12))
+
+
+@pytest.mark.parametrize("changes", [{"covers_m": 0.0}, {"gain_min": 0.0}])
+def test_profiles_that_ask_for_no_gain_explore_everything(changes):
+    assert left(grid(), INSIDE, **changes)[INSIDE] == set(range(12))
+
+
+def test_an_empty_neighbourhood_is_all_new():
+    lonely = MapGraph([Node(node_id=0, open=ALL, free_m=(3.0,) * 12)], [])
+    assert left(lonely, 0)[0] == set(range(12))
