@@ -73,7 +73,10 @@ class Simulation:
         self._build((x_m, y_m, yaw_rad), self._physics.time_s, self._physics.collisions)
 
     def place_hider(self, x_m: float, y_m: float, yaw_rad: float) -> None:
-        """Put the second robot somewhere; it is only seen, nothing bumps into it."""
+        """Put the second robot somewhere; it is only seen, nothing bumps into it.
+
+        It makes room for who finds it: where the two would stand in one another it is not seen either.
+        """
         self._hider = (x_m, y_m, yaw_rad)
 
     def remove_hider(self) -> None:
@@ -219,7 +222,14 @@ class Simulation:
         walkers = [walker.pose() for walker in self._crowd.walkers]
         moment = Moment(self._seed, self._physics.time_s, camera)
         lean = self._camera.lean(self._physics.time_s, motion, rocked)
-        return self._view.picture(camera, motion, lean, Bodies(bodies, self._hider, walkers), moment)
+        return self._view.picture(camera, motion, lean, Bodies(bodies, self._seen_hider(), walkers), moment)
+
+    def _seen_hider(self) -> Pose2 | None:
+        x_m, y_m, _ = self._physics.robot.pose()
+        touching_m = 2.0 * self.settings.robot.body_radius_m
+        if self._hider is None or math.hypot(self._hider[0] - x_m, self._hider[1] - y_m) < touching_m:
+            return None
+        return self._hider
 
     def _change(self, changes: Changes) -> None:
         """Build the changed world round the robot, which stops but stays where it is."""

@@ -34,7 +34,7 @@ from services.launcher.commands import (
 ADDED = "topnav.commands"
 """Entry points of this group are Typer apps of further commands."""
 
-STUDIES = ("hide-and-seek", "study", "calibrate", "bench", "soak")
+STUDIES = ("hide-and-seek", "suite", "study", "calibrate", "bench", "soak")
 """Commands of the distribution topnav-studies; without it they say where to get it."""
 
 app = typer.Typer(

@@ -1,7 +1,7 @@
 """World files: the YAML that describes a world, checked on loading."""
 
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, ValidationError, ValidationInfo, field_validator, model_validator
 
@@ -107,6 +107,15 @@ class Lighting(FileModel):
     occlusion: float = Field(default=0.9, ge=0.0, le=1.0)
 
 
+class Generated(FileModel):
+    """Where a world that nobody drew comes from, and what it is for: building, or judging what was built."""
+
+    kind: Name
+    seed: Seed
+    size: Name
+    split: Literal["development", "validation", "test"]
+
+
 class WorldFile(FileModel):
     """A whole world.
 
@@ -115,6 +124,7 @@ class WorldFile(FileModel):
         sky, sun: of worlds with grounds; a sky is there whenever there is open ground.
         groups, placed: furniture that is there more than once; its copies follow the world's own furniture,
             and what is read from them is not written again.
+        generated: of a world that nobody drew; nothing in the world depends on it.
         alike: whether what is equal looks equal to the last grain, light included. Otherwise each piece shows
             another part of its textures, as real wood does.
     """
@@ -132,6 +142,7 @@ class WorldFile(FileModel):
     openings: tuple[Opening, ...] = Field(default=(), max_length=400)
     groups: dict[Name, tuple[Item, ...]] = Field(default_factory=dict, max_length=200, exclude=True)
     placed: tuple[Placement, ...] = Field(default=(), max_length=MOST_ITEMS, exclude=True)
+    generated: Generated | None = None
     alike: bool = False
     furniture: tuple[Item, ...] = Field(default=(), max_length=MOST_ITEMS, validate_default=True)
     start: Start
@@ -196,6 +207,12 @@ def load_world(name_or_path: str) -> WorldFile:
     Raises:
         WorldFileError: no such world, not YAML, or a value that does not fit; all faults are listed.
     """
+    path = world_path(name_or_path)
+    return world_of(path, read_contents(path))
+
+
+def world_path(name_or_path: str) -> Path:
+    """The file of a world, by its name or path; raises WorldFileError where there is none."""
     path = Path(name_or_path)
     if path.suffix not in {".yaml", ".yml"}:
         path = WORLDS / f"{name_or_path}.yaml"
@@ -203,6 +220,11 @@ def load_world(name_or_path: str) -> WorldFile:
         raise WorldFileError(
             f"world must be one of {', '.join(world_names())} or a .yaml file; got {name_or_path!r}"
         )
+    return path
+
+
+def read_contents(path: Path) -> dict[str, Any]:
+    """What a world file says, unchecked; raises WorldFileError where it is no mapping."""
     try:
         data = read_yaml(path)
     except YamlFileError as error:
@@ -211,8 +233,17 @@ def load_world(name_or_path: str) -> WorldFile:
         raise WorldFileError(
             f"{path}: must be a mapping with format, name, rooms, start; got {type(data).__name__}"
         )
+    return data
+
+
+def world_of(path: Path, contents: dict[str, Any]) -> WorldFile:
+    """The world of a file's contents; models and pictures are read from its folder.
+
+    Raises:
+        WorldFileError: values that do not fit, all of them.
+    """
     try:
-        return WorldFile.model_validate(data, context=AssetFolder(path.parent))
+        return WorldFile.model_validate(contents, context=AssetFolder(path.parent))
     except ValidationError as error:
         faults = "; ".join(
             f"{'.'.join(str(part) for part in e['loc']) or 'world'}: {e['msg']}" for e in error.errors()

@@ -8,7 +8,7 @@ from pathlib import Path
 from services.launcher.client.address import Address, find_address
 from services.launcher.client.environments import environment_of
 from services.launcher.client.failure import ExperimentError, one_line_errors
-from services.launcher.processes.stack_settings import Ports
+from services.launcher.processes.stack_settings import Ports, located
 from services.launcher.processes.state import StateFolder
 from services.launcher.processes.supervisor import Launcher
 from shared.bus import Bus, wait_until
@@ -47,13 +47,14 @@ class StackChoice:
 
 @dataclass(frozen=True)
 class Stack:
-    """A stack in use. `launcher` is None when somebody else runs it."""
+    """A stack in use. `launcher` is None when somebody else runs it, `world` "" where nobody knows it."""
 
     bus: Bus
     address: Address
     gateway_url: str | None
     launcher: Launcher | None
     robot: str = ROBOT
+    world: str = ""
 
     @property
     def endpoint(self) -> str:
@@ -87,10 +88,11 @@ def _opened(choice: StackChoice) -> Iterator[Stack]:
     address = find_address(choice.endpoint, choice.data_dir)
     if address is not None:
         _refuse_settings(choice)
-        url = running.gateway_url if running and address.endpoint == running.endpoint else None
+        own_folder = running is not None and address.endpoint == running.endpoint
+        url, world = (running.gateway_url, running.world) if running and own_folder else (None, "")
         with address.open() as bus:
             _require_services(bus, address.endpoint)
-            yield Stack(bus, address, url, None)
+            yield Stack(bus, address, url, None, world=world)
         return
     with _launcher(choice) as launcher:
         own = Address(launcher.endpoint, launcher.certs)
@@ -98,6 +100,16 @@ def _opened(choice: StackChoice) -> Iterator[Stack]:
             _require_services(bus, own.endpoint)
             _end_left_mission(bus)
             yield Stack(bus, own, launcher.gateway_url, launcher)
+
+
+def other_world(stack: Stack, world: str) -> str:
+    """A warning where a stack that was joined runs another world than the one that figures are judged in."""
+    if not stack.world or located(world) == stack.world:
+        return ""
+    return (
+        f"this stack runs in {stack.world}, not in {world}: true positions are judged on the wrong plan; "
+        f"say --world {stack.world}, or stop it ('topnav down')"
+    )
 
 
 def _launcher(choice: StackChoice) -> Launcher:

@@ -24,6 +24,7 @@ def explore(
     fresh: Annotated[bool, typer.Option("--fresh", help="Delete a map of this name first.")] = False,
     max_steps: options.MaxSteps = 30_000,
     drawing: Annotated[Path | None, typer.Option(help="Draw the map to this PNG.")] = None,
+    curve: Annotated[Path | None, typer.Option(help="Draw coverage over driven metres to this PNG.")] = None,
     profile: options.ProfileName = None,
     pipeline: options.PipelineName = None,
     data_dir: options.DataDir = options.DATA_DIR,
@@ -31,7 +32,7 @@ def explore(
 ) -> None:
     """Explore a world and build a map of pictures."""
     from services.launcher.client import failure, run_record, stack
-    from services.launcher.drawing import plans
+    from services.launcher.drawing import curves, plans
     from services.launcher.evaluation import exploration, truth_file
     from services.launcher.terminal import output, progress
     from simulator.world import freespace, world_file
@@ -40,6 +41,7 @@ def explore(
     space, path = freespace.free_space(file), truth_file.truth_path(data_dir, map_name)
     choice = stack.StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
     with stack.open_stack(choice) as opened:
+        output.print_warning(stack.other_world(opened, world))
         before = exploration.make_room(opened, map_name, path, go_on=continue_, fresh=fresh)
         with progress.mission_progress(output.wide_console(stderr=True), f"exploring {world}") as watch:
             result = exploration.explore(opened, world, map_name, seed, max_steps, before, watch)
@@ -58,6 +60,8 @@ def explore(
     )
     if drawing is not None:
         plans.draw_map(drawing, file, result.truth.poses, result.graph.edges)
+    if curve is not None:
+        curves.draw_coverage(curve, f"exploring {world}", exploration.curve(result, space))
     output.print_figures(f"map {map_name}", report)
     if not result.run.succeeded:
         status = result.run.status

@@ -12,6 +12,7 @@ from services.launcher.client.maps import delete_map, read_map, require_map
 from services.launcher.client.mission import MissionClient, MissionRun
 from services.launcher.client.stack import Stack
 from services.launcher.client.trail import collisions, driven_m, manual_moves
+from services.launcher.evaluation.coverage_curve import Curve, coverage_curve
 from services.launcher.evaluation.map_quality import EdgeCheck, check_edges, components, coverage
 from services.launcher.evaluation.truth_file import MapTruth, join_truth, load_truth
 from services.launcher.terminal.output import rounded
@@ -103,12 +104,19 @@ def figures(result: Exploration, space: FreeSpace, map_name: str, seed: int) -> 
         "wall_s": rounded(run.wall_s, 1),
         "steps_per_s": rounded(run.steps_per_s, 2),
         "driven_m": rounded(driven_m(run.truths), 2),
+        "coverage_curve": [[rounded(metres, 2), rounded(share)] for metres, share in curve(result, space)],
         "outcome": run.status.state,
         "reason": run.status.reason,
         "final_pose": {k: rounded(v, 9) for k, v in result.final.model_dump().items()},
         "bearing_error_deg": _bearing_errors(checks),
         "false_edge_list": [_false_edge(check) for check in checks if check.false],
     }
+
+
+def curve(result: Exploration, space: FreeSpace) -> Curve:
+    """Driven metres and coverage after each node."""
+    radius_m = environment_of(result.truth.world).covered_m
+    return coverage_curve(space.centres_m(), result.truth, result.run.truths, radius_m)
 
 
 def _bearing_errors(checks: list[EdgeCheck]) -> dict[str, float]:

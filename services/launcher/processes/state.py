@@ -32,6 +32,7 @@ class StackState(BaseModel):
     """One running stack; `certs` is the certificate of the shell, None on an open one.
 
     Attributes:
+        world: what its simulator was started with; "" where it has none.
         silent_s: since when nothing was heard of the launcher, as who reads it sees it.
     """
 
@@ -43,6 +44,7 @@ class StackState(BaseModel):
     map_store_url: str
     logs: str
     certs: Path | None = None
+    world: str = ""
     services: dict[str, ServiceStatus]
     silent_s: float = 0.0
 

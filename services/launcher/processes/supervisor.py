@@ -35,6 +35,9 @@ from shared.access.rules import robot_names
 
 log = logging.getLogger(__name__)
 
+WORLD = "SIMULATOR_WORLD"
+"""Variable of the simulator that names its world."""
+
 
 class Launcher:
     """A running stack. As a context manager it starts everything, waits until all is healthy, and stops all.
@@ -81,6 +84,7 @@ class Launcher:
         self._liveliness = Liveliness()
         self._variables = dict(variables or {})
         specs = self._specs(compose_file, variables, only)
+        self._world = next((spec.environment[WORLD] for spec in specs if WORLD in spec.environment), "")
         self._checks: list[CommandHealth] = []
         policy = policy or RestartPolicy()
         runners = {spec.name: ServiceRunner(spec, self._health(spec), self._spawn, policy) for spec in specs}
@@ -241,6 +245,7 @@ class Launcher:
                 map_store_url=self.map_store_url,
                 logs=str(self.logs),
                 certs=self.certs,
+                world=self._world,
                 services=dict(services),
             )
         )

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 PIPE_WIDTH = 160
@@ -58,6 +59,12 @@ def print_rows(title: str, rows: Sequence[Mapping[str, object]], columns: Sequen
         values = [row[name] for name in columns] if columns else list(row.values())
         table.add_row(*(f"{v:.3g}" if isinstance(v, float) else str(v) for v in values))
     wide_console().print(table)
+
+
+def print_warning(text: str) -> None:
+    """Print a warning beside the results; nothing where there is none."""
+    if text:
+        wide_console(stderr=True).print(f"[yellow]warning[/yellow] {escape(text)}", highlight=False)
 
 
 def wide_console(*, stderr: bool = False) -> Console:

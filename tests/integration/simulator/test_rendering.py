@@ -92,6 +92,13 @@ def test_hider_is_seen_where_it_stands_and_below_the_horizon_only(simulation):
     assert not changed[: HEIGHT // 2].any()
 
 
+def test_a_hider_makes_room_for_who_finds_it(simulation):
+    truth = simulation.truth()
+    before = simulation.panorama()
+    simulation.place_hider(truth.x_m + 0.3, truth.y_m, 1.0)
+    np.testing.assert_array_equal(simulation.panorama(), before)
+
+
 def test_same_pose_gives_the_same_bytes(simulation):
     np.testing.assert_array_equal(simulation.panorama(), simulation.panorama())
 

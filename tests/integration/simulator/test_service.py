@@ -7,7 +7,9 @@ import subprocess
 import sys
 
 import pytest
+from typer.testing import CliRunner
 
+from services.launcher.commands.world import app
 from shared.bus import Bus, open_bus, wait_until
 from shared.messages.drive import Command
 from shared.messages.estop import EStopState
@@ -156,6 +158,23 @@ def test_requests_place_robots_return_pictures_and_keep_counting(start):
         peer.ask(action="place_robot", pose=Pose(x_m=9.0, y_m=2.0, yaw_rad=0.0))
     with pytest.raises(RefusedError, match="needs a pose"):
         peer.ask(action="place_hider")
+
+
+def test_furniture_is_moved_from_the_shell(start, router_endpoint):
+    def shell(*words):
+        return CliRunner().invoke(app, ["move", *words, "--endpoint", router_endpoint])
+
+    peer = start(lockstep=True)
+    peer.wait_for(lambda: peer.complete(0))
+    pictures = [peer.ask(action="look").frame.data]
+    for words in (["--gone"], ["--to", "1.0", "2.0", "45"], ["--back"]):
+        done = shell("rug-1", *words)
+        assert done.exit_code == 0, done.output
+        pictures.append(peer.ask(action="look").frame.data)
+    assert pictures[3] == pictures[0]
+    assert len(set(pictures)) == 3
+    assert "picture-2" in str(shell("rug-7", "--gone").exception)
+    assert shell("rug-1", "--gone", "--back").exit_code == 2
 
 
 def test_real_time_runs_by_itself_and_stops_when_commands_end(start):

@@ -8,7 +8,7 @@ import yaml
 from typer.testing import CliRunner
 
 from services.launcher.commands.world import app
-from simulator.world.world_file import WorldFileError
+from simulator.world.world_file import WorldFileError, load_world
 
 PAINT = {"texture": "lacquer", "colour": [200, 200, 200]}
 WORLD = {
@@ -68,3 +68,27 @@ def test_page_without_marks_is_refused(tmp_path):
     result = CliRunner().invoke(app, ["kinds", "--into", str(tmp_path / "page.md")])
     with pytest.raises(ValueError, match="must have the lines"):
         raise result.exception
+
+
+def generate(*arguments):
+    return CliRunner().invoke(app, ["generate", *map(str, arguments)])
+
+
+def test_a_generated_world_is_a_file_like_any_other(tmp_path):
+    file = tmp_path / "new" / "yard.yaml"
+    result = generate("--kind", "yard", "--seed", 1, "--size", "small", "--into", file)
+    assert result.exit_code == 0
+    assert "split " + load_world(str(file)).generated.split in result.output
+    assert CliRunner().invoke(app, ["check", str(file)]).exit_code == 0
+
+
+def test_a_kind_that_there_is_not_leaves_no_file(tmp_path):
+    file = tmp_path / "castle.yaml"
+    result = generate("--kind", "castle", "--seed", 1, "--into", file)
+    assert "kind must be one of flat" in str(result.exception)
+    assert not file.exists()
+
+
+def test_a_generated_world_needs_the_name_of_a_world_file(tmp_path):
+    result = generate("--kind", "flat", "--seed", 1, "--into", tmp_path / "flat.txt")
+    assert "--into must end in .yaml" in str(result.exception)
