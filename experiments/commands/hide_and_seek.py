@@ -89,9 +89,9 @@ def _play_rounds(
     from experiments.hide_and_seek.report import report, rounds_figures
     from services.launcher.client.failure import ExperimentError
     from services.launcher.client.run_record import keep_run
-    from services.launcher.client.stack import open_stack
+    from services.launcher.client.stack import open_stack, other_world
     from services.launcher.evaluation.truth_file import load_truth, truth_path
-    from services.launcher.terminal.output import print_rows, write_json
+    from services.launcher.terminal.output import print_rows, print_warning, write_json
     from simulator.world.world_file import load_world
 
     started = datetime.now(UTC)
@@ -99,6 +99,7 @@ def _play_rounds(
     played: list[dict[str, Any]] = []
     told: dict[str, Any] = {}
     with open_stack(choice) as stack:
+        print_warning(other_world(stack, world))
         for one in play_rounds(stack, scene, rounds, seed, max_steps, folder):
             played.append(one)
             told = report(world, choice.profile or "default", seed, played)

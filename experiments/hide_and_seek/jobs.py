@@ -49,6 +49,16 @@ def make_map(world: str, folder: str) -> MapFiles:
     Raises:
         ExperimentError: the exploration did not end by itself.
     """
+    files = map_or_part(world, folder)
+    explored = json.loads(files[FIGURES])
+    if explored["outcome"] != "succeeded":
+        shutil.rmtree(Path(folder) / world_label(world), ignore_errors=True)  # the next try explores again
+        raise ExperimentError(f"exploring {world}: {explored['outcome']}: {explored['reason']}")
+    return files
+
+
+def map_or_part(world: str, folder: str) -> MapFiles:
+    """The same, of an exploration that was given up as well."""
     own = Path(folder) / world_label(world)
     if not (own / FIGURES).exists():
         _explore(world, own)
@@ -61,8 +71,6 @@ def _explore(world: str, own: Path) -> None:
     shutil.rmtree(data_dir, ignore_errors=True)
     with open_stack(StackChoice(data_dir, world, MAP_SEED, lockstep=True)) as stack:
         result = explore(stack, world, MAP, MAP_SEED, EXPLORE_STEPS)
-        if not result.run.succeeded:
-            raise ExperimentError(f"exploring {world}: {result.run.status.state}: {result.run.status.reason}")
         with _store(stack) as store:
             archive = store.get(f"/maps/{MAP}/export").raise_for_status().content
         memory = peak_memory_mb(stack.launcher)
@@ -101,8 +109,17 @@ def play_run(plan: RunPlan, files: MapFiles, folder: str) -> dict[str, Any]:
                     post_archive(store, files[ARCHIVE], MAP)
             with Listener(stack.address, stack.robot, most=TIMED_MESSAGES) as listener:
                 drawings = own if plan.draw else None
+                recordings = own if plan.record else None
                 played = play_rounds(
-                    stack, scene, plan.rounds, plan.seed, plan.max_steps, drawings, rounds, quiet=True
+                    stack,
+                    scene,
+                    plan.rounds,
+                    plan.seed,
+                    plan.max_steps,
+                    drawings,
+                    rounds,
+                    recordings=recordings,
+                    quiet=True,
                 )
                 for one in played:
                     rounds.append(one)

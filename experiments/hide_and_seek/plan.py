@@ -22,6 +22,7 @@ class RunPlan:
         profile: rules of planner and drive as a command names them.
         max_steps: a round is given up after so many frames.
         draw: draw the plan and the final frames of every round.
+        record: keep a recording of every round that fails.
     """
 
     world: str
@@ -30,6 +31,7 @@ class RunPlan:
     seed: int
     max_steps: int
     draw: bool = True
+    record: bool = False
 
     @property
     def name(self) -> str:

@@ -2,12 +2,14 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from rich.console import Console
 
+from experiments.hide_and_seek.recorded import played_on_record
 from services.launcher.client.environments import environment_of
 from services.launcher.client.maps import require_map
 from services.launcher.client.stack import Stack
@@ -39,6 +41,7 @@ def play_rounds(
     folder: Path | None,
     before: Sequence[dict[str, Any]] = (),
     *,
+    recordings: Path | None = None,
     quiet: bool = False,
 ) -> Iterator[dict[str, Any]]:
     """Play one round after the other; the seeker stays where the last one ended.
@@ -51,6 +54,7 @@ def play_rounds(
         max_steps: bound of a round.
         folder: for the drawings, or None.
         before: figures of the rounds already played; only the others are.
+        recordings: folder for recordings of the rounds that fail, or None.
         quiet: print nothing.
 
     Yields:
@@ -69,9 +73,9 @@ def play_rounds(
         game.experimenter.place_robot(Pose.model_validate(done[-1]["final"]))
     poses = scene.truth.poses if scene.truth is not None else {}
     for number in range(len(done) + 1, rounds + 1):
-        played = play_told(
-            console, game, f"{scene.world.name} round {number}/{rounds}", seed + number, max_steps
-        )
+        title = f"{scene.world.name} round {number}/{rounds}"
+        play = partial(play_told, console, game, title, seed + number, max_steps)
+        played = played_on_record(stack, recordings and recordings / f"round-{number:02d}.mcap", play)
         if folder is not None:
             edges = require_map(stack, scene.map_name).edges
             views = game.final_views(played.hider)

@@ -1,23 +1,21 @@
 """`topnav hide-and-seek --suite`: explore what is not yet mapped, play all runs, tell the result."""
 
 import json
-import time
-from collections.abc import Callable, Sequence
-from concurrent.futures import Executor, Future, wait
+from collections.abc import Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from experiments.hide_and_seek.jobs import FIGURES, MapFiles, make_map, play_run
 from experiments.hide_and_seek.plan import RunPlan
 from experiments.hide_and_seek.report import combined, run_row, suite_markdown
+from experiments.work.follow import follow
 from experiments.work.workers import workers
 from services.launcher.terminal.output import print_rows, wide_console, write_json
 
-POLL_S = 1.0  # a round takes 20 s and more
 SHOWN = ("world", "profile", "found", "median left (m)", "SPL", "collisions", "steps/s")
 
 
@@ -67,7 +65,7 @@ def run_suite(choice: SuiteChoice, json_file: Path | None) -> dict[str, Any]:
 def _maps(console: Console, pool: Executor, choice: SuiteChoice, folder: Path) -> dict[str, MapFiles]:
     worlds = list(dict.fromkeys(plan.world for plan in choice.plans))
     jobs = {world: pool.submit(make_map, world, str(folder)) for world in worlds}
-    _follow(
+    follow(
         console, "worlds mapped", list(jobs.values()), len(jobs), lambda: sum(f.done() for f in jobs.values())
     )
     return {world: job.result() for world, job in jobs.items()}
@@ -79,32 +77,10 @@ def _runs(
     jobs = [pool.submit(play_run, plan, maps[plan.world], str(folder)) for plan in choice.plans]
     total = sum(plan.rounds for plan in choice.plans)
     records = [folder / plan.name / "rounds.json" for plan in choice.plans]
-    _follow(console, "rounds played", jobs, total, lambda: sum(_on_record(record) for record in records))
+    follow(console, "rounds played", jobs, total, lambda: sum(_on_record(record) for record in records))
     return [job.result() for job in jobs]
 
 
 def _on_record(record: Path) -> int:
     """Rounds on record here; workers of a cluster keep their own until they are done."""
     return record.read_text(encoding="utf-8").count('"success":') if record.exists() else 0
-
-
-def _follow(
-    console: Console, title: str, jobs: Sequence[Future[Any]], total: int, done: Callable[[], int]
-) -> None:
-    """Show how far the work is until all of it has ended; one failed job ends the others' wait."""
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
-        task = progress.add_task(title, total=total)
-        last = -1
-        while True:
-            pending = wait(jobs, timeout=POLL_S).not_done
-            count = done()
-            progress.update(task, completed=count)
-            if count != last and not console.is_terminal:
-                console.print(f"{time.strftime('%H:%M:%S')} {title}: {count}/{total}", highlight=False)
-            last = count
-            for job in jobs:
-                if job.done():
-                    job.result()
-            if not pending:
-                return
