@@ -13,6 +13,7 @@ import numpy as np
 from services.drive.core import DriveLimits, compute_command
 from services.drive.passing import Passing
 from services.planner.ports import Decision, Mission, Observation
+from services.planner.profiles import DEFAULT
 from shared.mapgraph.graph import MapGraph
 from shared.messages.drive import Heading
 from shared.messages.features import Features
@@ -29,6 +30,7 @@ DISTANCES_M = (0.0, 0.35, 0.75, 1.25, 1.75, 2.25, 3.0, 5.0)
 INLIERS = (260, 109, 81, 54, 43, 33, 22, 12)
 DISPARITY_DEG = (0.1, 4.5, 8.1, 12.4, 15.0, 18.3, 22.0, 30.0)
 BEAM_RAYS = np.deg2rad(np.linspace(-15.0, 15.0, 7))
+KEYPOINTS = 300
 MAX_RANGE_M = 4.0
 STEP_S = 0.3
 WHEEL_RADIUS_M = 0.08
@@ -175,9 +177,9 @@ def picture(pose: Pose, seq: int = 0) -> Features:
         seq=seq,
         stamp_ns=seq,
         pipeline="plane",
-        lonlat_rad=np.zeros((1, 2), np.float32),
-        scores=np.zeros(1, np.float32),
-        descriptors=np.array([pose], np.float32),
+        lonlat_rad=np.zeros((KEYPOINTS, 2), np.float32),
+        scores=np.zeros(KEYPOINTS, np.float32),
+        descriptors=np.tile(np.array([pose], np.float32), (KEYPOINTS, 1)),
     )
 
 
@@ -283,7 +285,7 @@ def run(
             s_cv=decision.s_cv,
             s_slow=150,
             s_max=300,
-            speed_fraction=decision.speed_fraction,
+            speed_fraction=DEFAULT.travel.room_speed * decision.speed_fraction,
             why=decision.why,
         )
         command, memory = compute_command(heading, observation.ranges, memory, world.rng, limits)

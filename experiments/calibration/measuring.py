@@ -34,7 +34,7 @@ def measured(
     error_rad = None
     if answered and match.heading_rad is not None:
         error_rad = abs(math.remainder(match.heading_rad - bearing_rad, math.tau))
-    return Pair(match.inliers, error_rad, distance_m, match.disparity_rad)
+    return Pair(match.inliers, error_rad, distance_m)
 
 
 def matched(here: FeatureSet, there: FeatureSet, pipeline: Pipeline, seed: int) -> NodeMatch:
@@ -46,4 +46,4 @@ def matched(here: FeatureSet, there: FeatureSet, pipeline: Pipeline, seed: int) 
 def of_rendering(result: PairResult) -> Pair:
     """A rendered pair that was measured for all heading methods."""
     error_rad = result.verified_errors_rad["epipolar"]
-    return Pair(result.verified, error_rad, result.distance_m, result.disparity_rad)
+    return Pair(result.verified, error_rad, result.distance_m)

@@ -39,13 +39,11 @@ class Pair:
         verified: matches that agree with one motion.
         error_rad: of the bearing, None without an answer.
         distance_m: between the two; None where nobody knows.
-        disparity_rad: None without an answer.
     """
 
     verified: int
     error_rad: float | None
     distance_m: float | None = None
-    disparity_rad: float | None = None
 
     @property
     def is_wrong(self) -> bool:
@@ -74,8 +72,7 @@ def propose(
         s_edge_min: the same times the thesis's safety factor, and above all look-alikes.
         s_node_max: median between frames as far apart as nodes should be.
         s_via_max: median between frames nearer than a reached via point.
-        disparity_rad_per_m: median of disparity over distance where nodes should be.
-        The last three are left out where nobody knows distances.
+        The last two are left out where nobody knows distances.
 
     Raises:
         ExperimentError: no pair at those distances; measure more.
@@ -89,7 +86,6 @@ def propose(
         **found,
         "s_node_max": _median_within(pairs, *spans.node_m),
         "s_via_max": _median_within(pairs, 0.0, spans.near_m),
-        "disparity_rad_per_m": _disparity_rad_per_m(pairs, *spans.node_m),
     }
 
 
@@ -124,12 +120,3 @@ def _median_within(pairs: Sequence[Pair], low_m: float, high_m: float) -> int:
             "(--pairs)"
         )
     return round(float(np.median(inside)))
-
-
-def _disparity_rad_per_m(pairs: Sequence[Pair], low_m: float, high_m: float) -> float:
-    ratios = [
-        pair.disparity_rad / pair.distance_m
-        for pair in pairs
-        if pair.distance_m and pair.is_within(low_m, high_m) and pair.disparity_rad is not None
-    ]
-    return rounded(np.median(ratios)) if ratios else 0.0

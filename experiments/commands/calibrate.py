@@ -50,9 +50,9 @@ def calibrate(
     if tours is not None and recording is not None:
         raise ExperimentError("expected --tours or --recording, got both: calibrate on one at a time")
     place = environment_of(world)
-    name = pipeline or place.pipeline or ("photo" if tours is not None else "sift")
+    name = pipeline or ("photo" if tours is not None else "sift")
     chosen = Pipeline(find_profile(name))
-    base = "photo" if name == "photo" else place.profile(None) or "default"
+    base = "photo" if name == "photo" else "default"
     facts: dict[str, Any] = {"pipeline": name, "seed": seed}
     rows: list[dict[str, Any]] = []
     with wide_console(stderr=True).status("") as status:

@@ -39,7 +39,7 @@ def failures(
     from experiments.driving.thesis_failures import corner, oscillation
     from experiments.rendered.thesis_failures import long_edges, wrong_headings
     from services.launcher.terminal.output import print_rows, write_json
-    from services.planner.profiles import OUTDOOR
+    from services.planner.profiles import DEFAULT
 
     studies: dict[str, Callable[[], dict[str, Any]]] = {
         "oscillation": lambda: oscillation(data_dir, "apartment", map_name, rounds, seed),
@@ -50,7 +50,7 @@ def failures(
         "truck": lambda: wrong_headings(
             data_dir, "factory", "false motion at the truck", TRUCK_M, TRUCK_RADIUS_M, pairs
         ),
-        "long-edges": lambda: long_edges(data_dir, village_map, OUTDOOR, LONG_M),
+        "long-edges": lambda: long_edges(data_dir, village_map, DEFAULT, LONG_M),
     }
     if only and only not in studies:
         raise typer.BadParameter(f"--only must be one of {', '.join(KINDS)}, got {only!r}")

@@ -14,7 +14,6 @@ from experiments.rendered.pairs import APART_M, PosePair, draw_pair
 from services.features.matching.verification import feature_set
 from services.features.pipeline.named_pipelines import find_profile
 from services.features.pipeline.pipeline import Pipeline
-from services.launcher.client.environments import environment_of
 from services.launcher.client.maps import require_map
 from services.launcher.client.stack import StackChoice, open_stack
 from services.launcher.evaluation.truth_file import load_truth, truth_path
@@ -44,7 +43,7 @@ def wrong_headings(
     The thesis's choice (methods 1 and 4 by the histogram, raw matches) is method 4 here, its best one.
     """
     world = load_world(world_name)
-    pipeline = Pipeline(find_profile(environment_of(world).pipeline or "sift"))
+    pipeline = Pipeline(find_profile("sift"))
     drawn = _near(free_space(world), centre_m, radius_m, pairs, np.random.default_rng(1))
     folder = cache_folder(data_dir / "cache", what.replace(" ", "-"), world, pipeline, 1)
     judged = judge_pairs(drawn, world, pipeline, folder, lambda _: None)
@@ -68,8 +67,7 @@ def long_edges(data_dir: Path, map_name: str, profile: Profile, longest_m: float
     """
     truth = load_truth(truth_path(data_dir, map_name))
     poses = truth.poses if truth is not None else {}
-    place = environment_of("village")
-    pipeline = Pipeline(find_profile(place.pipeline or "sift"))
+    pipeline = Pipeline(find_profile("sift"))
     with open_stack(StackChoice(data_dir, "village", lockstep=True)) as stack:
         graph = require_map(stack, map_name)
         reply = stack.bus.ask(MAP, MapRequest(action="read_features"), READ_TIMEOUT_S, map=map_name)

@@ -15,12 +15,12 @@ SLOWEST = 0.25
 
 
 class WheelLimits(BaseModel):
-    """Wheel speeds of a profile; section 6.2 of the thesis: 5 and 3 rad/s indoors, 10 and 6 outdoors."""
+    """Wheel speeds at full speed; section 6.2 of the thesis has 5 and 3 rad/s indoors, 10 and 6 outdoors."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    max_radps: PositiveFloat = 5.0
-    min_radps: PositiveFloat = 3.0
+    max_radps: PositiveFloat = 10.0
+    min_radps: PositiveFloat = 6.0
 
     @model_validator(mode="after")
     def _ordered(self) -> "WheelLimits":
@@ -35,8 +35,8 @@ class DriveLimits(BaseModel):
     Attributes:
         avoidance: "passing" remembers the side it passes; "momentary" is the thesis's rule.
         obstacle_range_m: distance at which the momentary rule reacts (decision 0012, Q19: 0.5 m indoors).
-        full_speed_clearance_m: free way ahead below which passing slows down in proportion; chosen: a little
-            more than the look-ahead, within which the way ahead changes.
+        full_speed_clearance_m: free way ahead that full speed needs, and half speed half of it; chosen: a
+            little more than the look-ahead, within which the way ahead changes.
         command_ttl_ms: the robot stops so long after the last command; a new one comes with the distances,
             every 100 ms: this bears the loss of one (tests/unit/services/drive/test_core.py).
     """
@@ -47,7 +47,7 @@ class DriveLimits(BaseModel):
     wheels: WheelLimits = WheelLimits()
     passing: PassingLimits = PassingLimits()
     obstacle_range_m: PositiveFloat = 0.5
-    full_speed_clearance_m: PositiveFloat = 0.5
+    full_speed_clearance_m: PositiveFloat = 1.0
     command_ttl_ms: PositiveInt = 250
 
 
@@ -70,7 +70,8 @@ def compute_command(
         return stop_command(heading, steering.why, limits), memory
     speed = wheel_speed(heading.s_cv, heading.s_slow, heading.s_max, heading.speed_fraction, limits.wheels)
     if limits.avoidance == "passing":
-        speed *= min(1.0, max(SLOWEST, steering.clearance_m / limits.full_speed_clearance_m))
+        safe = limits.wheels.max_radps * steering.clearance_m / limits.full_speed_clearance_m
+        speed = min(speed, max(SLOWEST * speed, safe))
     return _command(heading, steering.why, limits, steering.heading_rad, speed, steering.avoiding), memory
 
 

@@ -32,7 +32,7 @@ class PassingLimits(BaseModel):
 
     Attributes:
         radius_m, radius_slow_m: of the disc that must fit, at full speed and near standstill: the body's
-            radius of 0.25 m (simulator/settings.py), with 4 and 2.5 cm to spare.
+            radius of 0.25 m (simulator/settings.py), with 5.5 and 2.5 cm to spare; 4 cm at half speed.
         lookahead_m, lookahead_min_m: free way that a direction needs, likewise.
         memory_steps: the side is remembered so long after a border was left.
         patience_steps, patience_growth: a side is given up after so many steps, then so many times as many
@@ -41,9 +41,9 @@ class PassingLimits(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    radius_m: PositiveFloat = 0.29
+    radius_m: PositiveFloat = 0.305
     radius_slow_m: PositiveFloat = 0.275
-    lookahead_m: PositiveFloat = 0.45
+    lookahead_m: PositiveFloat = 0.78
     lookahead_min_m: PositiveFloat = 0.12
     memory_steps: PositiveInt = 15
     patience_steps: PositiveInt = 14

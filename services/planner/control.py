@@ -12,6 +12,7 @@ from services.planner.ports import Decision, Mission, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.remote import RemoteMap, RemoteMatcher
 from services.planner.settings import PlannerSettings
+from services.planner.surroundings import at_speed
 from services.planner.travel.whereabouts import Whereabouts
 from shared.bus import Bus
 from shared.mapgraph.frontiers import open_directions
@@ -87,6 +88,7 @@ class MissionControl:
         """Decide for one frame of a running mission."""
         assert self._mission is not None
         assert self._matcher is not None
+        assert self.map is not None
         self._matcher.begin(observation.features.seq, observation.features.stamp_ns)
         if (lost := self._notice_lost_nodes()) is not None:
             decision = lost
@@ -95,6 +97,7 @@ class MissionControl:
             decision = Decision("hold", why=why, outcome="failed", failure="timeout")
         else:
             decision = self._mission.decide(observation)
+            decision = at_speed(decision, self.map.graph, self._mission.progress.nearest_node, self._profile)
         self.step_count += 1
         self._reason = decision.why
         if decision.outcome:

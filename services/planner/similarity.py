@@ -3,11 +3,15 @@
 from services.planner.heading.choose import choose_heading
 from services.planner.ports import Matches
 from services.planner.profiles import Profile
+from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.view_range import openness
 from shared.messages.matching import NodeMatch
 
 CLOSE = 2.0
 """A view that resembles a node by more than so many times rule 4.2's bound is that of the node itself: of
 pairs 0.3 to 0.5 m apart nine in ten have at most 151 inliers (`topnav calibrate`), so 180 means nearer."""
+OPEN_POWER = 2.0
+"""How the matches of a near view grow with how far views carry; chosen: 22 in a room, 80 in a street."""
 
 
 def similarity(match: NodeMatch, profile: Profile) -> int:
@@ -28,24 +32,18 @@ def trusted(match: NodeMatch, profile: Profile) -> bool:
     )
 
 
-def tells_place(match: NodeMatch, profile: Profile) -> bool:
+def tells_place(match: NodeMatch, graph: MapGraph, profile: Profile) -> bool:
     """Whether a match says where its node is.
 
     Bearings that do not change mean this very spot where many agree, else that both see what is far away.
     """
-    return trusted(match, profile) and (match.status != "no_baseline" or close_enough(match, profile))
+    return trusted(match, profile) and (match.status != "no_baseline" or close_enough(match, graph, profile))
 
 
-def apart_rad(disparity_rad: float, inliers: int, profile: Profile) -> float:
-    """How far apart two views are as an angle: their disparity, or more where so few matches agree."""
-    least_m = profile.sensing.similarity_m / max(inliers, 1)
-    return max(disparity_rad, least_m * profile.sensing.disparity_rad_per_m)
-
-
-def close_enough(match: NodeMatch, profile: Profile) -> bool:
-    """Whether so many matches agree that a small disparity means near."""
-    least = CLOSE * profile.mapping.s_node_max if profile.sensing.similarity_m else profile.travel.s_via_min
-    return similarity(match, profile) >= least
+def close_enough(match: NodeMatch, graph: MapGraph, profile: Profile) -> bool:
+    """Whether so many matches agree that a small disparity means near: in the open far things agree, too."""
+    least = profile.travel.s_via_min * openness(graph, match.node_id) ** OPEN_POWER
+    return bool(similarity(match, profile) >= min(least, CLOSE * profile.mapping.s_node_max))
 
 
 def ranked(matches: Matches, profile: Profile) -> list[tuple[int, NodeMatch]]:

@@ -2,12 +2,15 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from services.planner.ports import Decision
 from services.planner.profiles import Profile
-from services.planner.similarity import apart_rad
 from shared.geometry.clearance import Obstacles
+from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.view_range import half_m, keypoints_of, match_length_m, openness
 from shared.messages.base import SECTORS
 from shared.messages.maps import Node
 from shared.messages.matching import NodeMatch
@@ -68,55 +71,56 @@ def _knows(node: Node, heading_rad: float) -> bool:
     return node.open[round(heading_rad / SECTOR_RAD) % SECTORS]
 
 
-def length_m(match: NodeMatch, profile: Profile) -> float:
-    """Rough length of the way to a node: disparity grows with distance, faster in rooms than in yards."""
-    disparity_rad = match.disparity_rad if match.disparity_rad is not None else 0.0
-    return apart_rad(disparity_rad, match.inliers, profile) / profile.sensing.disparity_rad_per_m
-
-
-def is_clear(match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
-    """Whether the sensors see free ground all the way to the matched node."""
-    return _is_free_for(length_m(match, profile), match, ranges, profile)
-
-
-def is_surely_clear(match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
-    """The same where the matched node may be as far away as nodes with so few matches are."""
-    most_m = (
-        profile.sensing.unsure_m / max(match.inliers, 1) if match.inliers < profile.mapping.s_sure else 0.0
-    )
-    return _is_free_for(max(most_m, length_m(match, profile)), match, ranges, profile)
-
-
-def is_half_clear(match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
-    """Whether nothing stands on the nearer half of the way to the matched node.
-
-    Disparity tells a distance to a factor of about two (0.06 to 0.24 rad a metre in an office):
-    where `is_clear` cannot be told, this tells a way that was free before from one that is shut now.
-    """
+def length_m(match: NodeMatch, graph: MapGraph) -> float:
+    """Rough length of the way to a node or goal picture, by how much the frame has in common with it."""
     if match.status == "no_baseline":
-        return True
-    if match.heading_rad is None:
-        return False
-    return free_way_m(ranges, match.heading_rad, profile) >= 0.5 * length_m(match, profile)
+        return 0.0
+    node_id = match.node_id
+    return match_length_m(match.inliers, keypoints_of(graph, node_id), half_m(graph, node_id))
 
 
-def _is_free_for(leg_m: float, match: NodeMatch, ranges: Ranges, profile: Profile) -> bool:
+def is_clear(match: NodeMatch, graph: MapGraph, ranges: Ranges, profile: Profile) -> bool:
+    """Whether the sensors see free ground all the way to the matched node."""
     if match.status == "no_baseline":
         return True
     if match.heading_rad is None or match.disparity_rad is None:
         return False
     obstacles = Obstacles.from_ranges(ranges.angles_rad, ranges.distances_m, ranges.max_range_m)
     free_m = obstacles.clearance_m(np.array([match.heading_rad]), profile.sensing.robot_radius_m)[0]
-    return bool(leg_m <= free_m + profile.sensing.robot_radius_m)
+    return bool(length_m(match, graph) <= free_m + profile.sensing.robot_radius_m)
 
 
-def is_clear_from(node: Node, match: NodeMatch, profile: Profile) -> bool:
+def is_half_clear(match: NodeMatch, graph: MapGraph, ranges: Ranges, profile: Profile) -> bool:
+    """Whether nothing stands on the nearer half of the way to the matched node.
+
+    Matches tell a distance to a factor of 1.5: where `is_clear` cannot be told, this tells a way that was
+    free before from one that is shut now.
+    """
+    if match.status == "no_baseline":
+        return True
+    if match.heading_rad is None:
+        return False
+    return free_way_m(ranges, match.heading_rad, profile) >= 0.5 * length_m(match, graph)
+
+
+def is_clear_from(node: Node, match: NodeMatch, graph: MapGraph, profile: Profile) -> bool:
     """Whether the way from a node to the picture that was matched with it is free, as the node remembers."""
     if match.heading_rad is None or match.yaw_rad is None or match.disparity_rad is None:
         return match.status == "no_baseline"
     back_rad = match.heading_rad + math.pi - match.yaw_rad
     sector = round(back_rad / SECTOR_RAD) % SECTORS
-    return (
-        node.open[sector]
-        and length_m(match, profile) <= profile.sensing.opening_m + profile.sensing.robot_radius_m
-    )
+    surely_m = profile.sensing.opening_m + profile.sensing.robot_radius_m
+    return node.open[sector] and length_m(match, graph) <= surely_m
+
+
+def at_speed(decision: Decision, graph: MapGraph, nearest: int | None, profile: Profile) -> Decision:
+    """As fast as suits the place: where views carry far, things are far apart.
+
+    Args:
+        decision: of a mission, which slows down only to stop in time.
+        graph: the map.
+        nearest: node where the robot is; None where nobody knows.
+        profile: speed in a room.
+    """
+    share = min(1.0, profile.travel.room_speed * openness(graph, nearest))
+    return replace(decision, speed_fraction=share * decision.speed_fraction)

@@ -18,24 +18,16 @@ K = TypeVar("K")
 NEAR_HOPS = 1
 """Within so many edges of the node the robot came from an edge closes no loop."""
 
-FAR_HOPS = 3
-"""Beyond so many edges an aliased view is as likely as the node itself: of 153 such edges in a village of
-equal houses 58 were wrong, of 1195 nearer ones 11; none of the wrong had more than 106 inliers (decision
-0015)."""
-
 
 def unsupported_loop_closures(
-    graph: MapGraph, matches: Mapping[int, NodeMatch], driven_from: int | None, s_far: int = 0
+    graph: MapGraph, matches: Mapping[int, NodeMatch], driven_from: int | None
 ) -> dict[int, str]:
     """Nodes far from where the robot came from that no neighbour of theirs supports.
-
-    Beyond FAR_HOPS at least `s_far` inliers are needed as well: the robot must nearly stand there.
 
     Args:
         graph: the map without the new node.
         matches: trusted matches of the new frame that would become edges.
         driven_from: node the robot came from; None (the first node, or carried) asks for no support.
-        s_far: inliers needed beyond FAR_HOPS.
 
     Returns:
         Node and reason.
@@ -43,12 +35,8 @@ def unsupported_loop_closures(
     if driven_from is None or driven_from not in graph.nodes:
         return {}
     near = graph.within(driven_from, NEAR_HOPS)
-    far = far_nodes(graph, matches, driven_from) if s_far else set()
     refused = {}
     for node in sorted(set(matches) - near):
-        if node in far and matches[node].inliers < s_far:
-            refused[node] = f"node {node} is far in the map, {matches[node].inliers} of {s_far} matches"
-            continue
         seen = [n for n in graph.neighbours(node) if n in matches]
         if not any(is_consistent(graph, matches, node, neighbour) for neighbour in seen):
             refused[node] = f"{len(seen)} neighbours of node {node} seen, none agrees"
@@ -152,8 +140,3 @@ def is_consistent(graph: MapGraph, matches: Mapping[int, NodeMatch], node: int, 
         Sight(to_neighbour.heading_rad, to_neighbour.yaw_rad),
         onward,
     )
-
-
-def far_nodes(graph: MapGraph, matches: Mapping[int, NodeMatch], driven_from: int) -> set[int]:
-    """Nodes of `matches` more than FAR_HOPS edges from where the robot came from."""
-    return {n for n in matches if n in graph.nodes} - graph.within(driven_from, FAR_HOPS)

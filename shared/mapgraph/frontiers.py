@@ -71,16 +71,6 @@ def frontier_sectors(node: Node) -> list[int]:
     return [s for s in range(SECTORS) if node.open[s] and not node.explored[s]]
 
 
-def best_sector(node: Node, preferred_rad: float) -> int | None:
-    """The frontier sector nearest to a direction in the node's frame; the lower number when equal."""
-    sectors = frontier_sectors(node)
-    return min(
-        sectors,
-        key=lambda s: (round(abs(math.remainder(sector_rad(s) - preferred_rad, math.tau)), 6), s),
-        default=None,
-    )
-
-
 def open_directions(graph: MapGraph) -> int:
     """How many frontiers the whole map has."""
     return sum(len(frontier_sectors(node)) for node in graph.nodes.values())

@@ -91,6 +91,20 @@ class MapGraph:
         """Nodes at most so many edges from `start`, suspended ones excluded; `start` is one of them."""
         return set(nx.single_source_shortest_path_length(self._links(), start, cutoff=hops))
 
+    def within_cost(self, start: int, most: float, cost: Callable[[Edge], float | None]) -> set[int]:
+        """Nodes to which a path costs at most so much; `start` is one of them.
+
+        Args:
+            start: the node to begin at.
+            most: cost of a path.
+            cost: of an edge; None where it may not be used.
+        """
+
+        def weight(a: int, b: int, _: dict[str, Any]) -> float | None:
+            return cost(self.edges[edge_key(a, b)])
+
+        return set(nx.single_source_dijkstra_path_length(self._links(), start, cutoff=most, weight=weight))
+
     def nearest(self, start: int, most: int) -> list[int]:
         """`start` and the nodes that edges join to it, nearest by number of edges first, at most so many."""
         links = self._links()

@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Mapping
 import networkx as nx
 
 from shared.mapgraph.graph import EdgeKey, MapGraph, edge_key
+from shared.mapgraph.local.view_range import edge_length_m
 from shared.messages.maps import Edge
 
 EdgeCost = Callable[[Edge], float]
@@ -16,34 +17,29 @@ GOAL = -1
 UNSEEN_GROUND = 6.0
 """Ground nobody has driven or seen free counts this much more: furniture may stand there (decision 0004)."""
 
-UNKNOWN_DISPARITY_RAD = 0.5
-"""Disparity of an edge that has none: 29 degrees, that of nodes 5 m apart indoors (`topnav study
-heading-frames`)."""
+HOP_M = 0.2
+"""Added per edge, so that of equally long paths the one with fewer nodes wins; chosen: a third of an edge."""
 
-HOP_RAD = 0.03
-"""Added per edge, so that of equally long paths the one with fewer nodes wins: 1.7 degrees, 0.2 m indoors."""
+FAILURE_M = 2.0
+"""Added per failure of an edge; chosen: a way round a piece of furniture is preferred."""
 
-FAILURE_RAD = 0.3
-"""Added per failure: an edge driven in vain costs two metres more, by 9 degrees of disparity a metre."""
-
-SUSPENDED_RAD = 20.0
+SUSPENDED_M = 1000.0
 """Cost of an edge that experience speaks against: more than a path across any map, so the last resort."""
 
-UNCLEAR_RAD = 2.0
-"""Added to an edge along which no free ground was seen: a detour of some ten metres is preferred."""
+UNCLEAR_M = 12.0
+"""Added to an edge along which no free ground was seen: a detour of so many metres is preferred; chosen."""
 
 
 def fewest_nodes(edge: Edge) -> float:
     """The thesis's cost: every edge counts one (section 4.1)."""
-    return SUSPENDED_RAD if edge.suspended else 1.0
+    return SUSPENDED_M if edge.suspended else 1.0
 
 
-def least_disparity(edge: Edge, least_rad: float = 0.0) -> float:
-    """Sum of angular disparities, each at least `least_rad`; prefers edges driven or seen free."""
-    measured_rad = edge.disparity_rad if edge.disparity_rad is not None else UNKNOWN_DISPARITY_RAD
+def way_m(graph: MapGraph, edge: Edge) -> float:
+    """Length of an edge in metres, with what speaks against it; prefers edges driven or seen free."""
     trust = 1.0 if edge.traversals or edge.clear else UNSEEN_GROUND
-    failed_rad = FAILURE_RAD * edge.failures + SUSPENDED_RAD * edge.suspended
-    return trust * max(least_rad, measured_rad) + HOP_RAD + failed_rad
+    failed_m = FAILURE_M * edge.failures + SUSPENDED_M * edge.suspended
+    return trust * edge_length_m(graph, edge) + HOP_M + failed_m
 
 
 def plan_path(
@@ -67,9 +63,9 @@ def plan_path(
 
     def cost(edge: Edge) -> float:
         key = (edge.a, edge.b)
-        return math.inf if key in banned else edge_cost(edge) + UNCLEAR_RAD * (key in unclear)
+        return math.inf if key in banned else edge_cost(edge) + UNCLEAR_M * (key in unclear)
 
-    beyond = {n: more + UNCLEAR_RAD * (edge_key(GOAL, n) in unclear) for n, more in targets.items()}
+    beyond = {n: more + UNCLEAR_M * (edge_key(GOAL, n) in unclear) for n, more in targets.items()}
     to_go, paths = _to_targets(graph, beyond, cost)
     reachable = [(there + to_go[node], node) for node, there in starts.items() if node in to_go]
     return paths[min(reachable)[1]] if reachable else []

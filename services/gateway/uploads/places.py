@@ -1,20 +1,18 @@
 """Where in the map a picture was taken: the places that its matches speak for."""
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 from services.gateway.state import Gateway
 from shared.mapgraph.graph import MapGraph
-from shared.mapgraph.local.claims import Claim, claim_of
+from shared.mapgraph.local.claims import claim_of, is_claim
 from shared.mapgraph.local.hypotheses import Hypothesis, hypotheses, is_plain, likely, typical_similarity
 from shared.messages.maps import MapRequest
-from shared.messages.matching import MatchReply
+from shared.messages.matching import MatchReply, NodeMatch
 from shared.topics import MAP
 from shared.web.problems import ProblemError
 
-RAD_PER_M = 0.16
-"""Disparity by distance, 9 degrees a metre indoors, where no edge of the map was driven that would say it."""
 INLIERS_MIN = 22
 """Fewer prove nothing: no bearing of a pair with more was wrong by 20 degrees (`topnav calibrate`)."""
 
@@ -42,10 +40,8 @@ async def places_of(gateway: Gateway, reply: MatchReply) -> Places:
     While the map store is away nobody knows which nodes are one place: then no place is named.
     """
     timeout_s = gateway.settings.compute_timeout_s
-    claims = {
-        m.node_id: c for m in reply.results if m.inliers > INLIERS_MIN and (c := claim_of(m)) is not None
-    }
-    if not claims:
+    sure = [match for match in reply.results if match.inliers > INLIERS_MIN and is_claim(match)]
+    if not sure:
         agreeing = any(match.status in ("ok", "no_baseline") for match in reply.results)
         return Places("weak" if agreeing else "not_found", [])
     wish = MapRequest(action="read")
@@ -55,12 +51,13 @@ async def places_of(gateway: Gateway, reply: MatchReply) -> Places:
         if problem.status_code not in AWAY:
             raise
         return Places("weak", [])
-    return await gateway.work(lambda: judged(MapGraph(found.nodes, found.edges), claims))
+    return await gateway.work(lambda: judged(MapGraph(found.nodes, found.edges), sure))
 
 
-def judged(graph: MapGraph, claims: Mapping[int, Claim]) -> Places:
-    """The places that claims speak for."""
-    places = hypotheses(graph, claims, RAD_PER_M)
+def judged(graph: MapGraph, sure: Sequence[NodeMatch]) -> Places:
+    """The places that matches speak for."""
+    claims = {match.node_id: claim_of(graph, match.node_id, match) for match in sure}
+    places = hypotheses(graph, {node: claim for node, claim in claims.items() if claim is not None})
     plain = is_plain(places, typical_similarity(graph))
     left = likely(places)
     return Places("ambiguous" if len(left) > 1 else "found" if plain else "weak", left)

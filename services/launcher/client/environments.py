@@ -1,6 +1,7 @@
-"""What the operator of a stack chooses for a world: indoors or outdoors. Pure.
+"""The robot that a world is for, and what counts there: indoors or outdoors. Pure.
 
-No service reads the world file; these are the settings that a person would pick for such a place.
+No service reads the world file. A robot for streets and yards has distance sensors that reach further and
+takes fewer pictures a second; how it decides is the same everywhere.
 """
 
 from dataclasses import dataclass, field
@@ -29,17 +30,15 @@ class Environment:
     """Settings and bounds of one kind of place.
 
     Attributes:
-        profiles: planner and drive profile by the name that a command asks for.
-        pipeline: feature pipeline unless a command names one.
+        profiles: planner and drive profile by the name that a command asks for, where it is another one here.
         variables: of the services, where they differ from the Compose file.
         arrived_m: a round succeeds within this distance of the hider.
-        covered_m: a node covers the floor within this distance.
+        covered_m: a node covers the floor within this distance; an exploration is told so.
         blind_m: an edge may be this long between nodes with something in between.
         spans: distances that calibration measures.
     """
 
     profiles: dict[str, str] = field(default_factory=dict)
-    pipeline: str | None = None
     variables: dict[str, str] = field(default_factory=dict)
     arrived_m: float = 0.5
     covered_m: float = 1.0
@@ -48,18 +47,17 @@ class Environment:
 
     def profile(self, asked: str | None) -> str | None:
         """The profile that `asked` means here; None leaves the stack's default."""
-        return self.profiles.get(asked or "default", asked)
+        return asked if asked is None else self.profiles.get(asked, asked)
 
 
 INDOOR = Environment()
 OUTDOOR = Environment(
-    profiles={"default": "outdoor", "thesis": "thesis_outdoor"},
-    pipeline="sift_dense",
+    profiles={"thesis": "thesis_outdoor"},
     variables={"SIMULATOR_RANGE_MAX_M": "12.0", "SIMULATOR_CONTROL_PERIOD_S": "0.5"},
     arrived_m=1.0,
     covered_m=4.0,
     blind_m=12.0,
-    spans=Spans(pair_m=(0.5, 12.0), node_m=(2.5, 4.5), near_m=2.0),
+    spans=Spans(pair_m=(0.5, 12.0), node_m=(1.0, 1.8), near_m=1.0),
 )
 ENVIRONMENTS = {"indoor": INDOOR, "outdoor": OUTDOOR}
 

@@ -115,9 +115,8 @@ def other_world(stack: Stack, world: str) -> str:
 def _launcher(choice: StackChoice) -> Launcher:
     place = environment_of(choice.world)
     environment = {**place.variables, **choice.environment}
-    pipeline = choice.pipeline or place.pipeline
-    if pipeline is not None:
-        environment.setdefault("FEATURES_PIPELINE", pipeline)
+    if choice.pipeline is not None:
+        environment.setdefault("FEATURES_PIPELINE", choice.pipeline)
     return Launcher(
         data_dir=choice.data_dir,
         world=choice.world,

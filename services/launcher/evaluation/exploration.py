@@ -73,7 +73,10 @@ def explore(
         client, experimenter = MissionClient(own.bus, own.robot), Experimenter(own.bus, own.robot)
         client.wait_for_frame(experimenter.reset(seed).stamp_ns)
         moved = experimenter.moves
-        request = MissionRequest(action="explore", map=map_name, seed=seed, max_steps=max_steps)
+        wish = {"covers_m": environment_of(world).covered_m}
+        request = MissionRequest(
+            action="explore", map=map_name, seed=seed, max_steps=max_steps, parameters=wish
+        )
         run = client.run(request, watch)
         moved = experimenter.moves - moved
         final = experimenter.settled_truth(run.last_seq).pose

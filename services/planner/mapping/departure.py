@@ -10,10 +10,17 @@ from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, 
 from services.planner.profiles import Profile
 from services.planner.similarity import ranked, similarity, trusted
 from services.planner.surroundings import hidden_openings, through_gap
-from shared.mapgraph.cycle_consistency import far_nodes
 from shared.mapgraph.frontiers import mark_explored, sector_rad
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
+from shared.mapgraph.local.view_range import (
+    LONGEST_SHARE,
+    ROOM_HALF_M,
+    SHORTEST_M,
+    keypoints_of,
+    match_length_m,
+    openness,
+)
 from shared.messages.maps import UpdateNode
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
@@ -24,6 +31,10 @@ COMPARED = 5
 CORNER_STEPS = 2
 """Steps after which a view that is out of sight of the map means a corner; chosen: before, a frame was
 missed."""
+
+UNSURE_FRAMES = 6
+"""Frames that resemble nodes and tell no direction, as along a corrugated wall, before the robot goes back;
+chosen: 0.7 m in a room."""
 
 TURN_RAD = math.radians(15.0)
 """A robot turns less than that between two frames; chosen: half a radian a second."""
@@ -68,7 +79,9 @@ class Departure:
         self._profile, self._maps, self._matcher = profile, maps, matcher
         self.node_id, self.sector, self.heading_rad = start.node_id, sector, heading_rad
         self.here = start
-        self._steps = self._unseen_frames = 0
+        self._steps = self._unseen_frames = self._unsure_frames = 0
+        self._driven_m = 0.0
+        self._carries = openness(maps.graph, start.node_id)
         self._retreating = False
         self._began_beside = self._beside = start.length_m > BESIDE_M
         self._back_to_node = False
@@ -78,6 +91,7 @@ class Departure:
     def step(self, observation: Observation) -> Decision | NewNode:
         """Go straight on, or end."""
         self._steps += 1
+        self._driven_m += math.hypot(*observation.moved_m)
         rules = self._profile.mapping
         self.here = self.here.moved(observation.moved_m)
         matches = self._seen()
@@ -92,9 +106,21 @@ class Departure:
             return self._new_node(observation, {**self._candidates(), **matches})
         if is_new_node(matches, self._profile) and not self._is_crowded(matches):
             return self._new_or_known(observation, {**self._candidates(), **matches})
-        if self._steps > rules.departure_steps:
+        if self._driven_m > rules.departure_m * self._view_carries(matches.get(self.node_id)):
+            if self._is_apart(matches, rules.departure_m):
+                return self._new_node(observation, {**self._candidates(), **matches})
             return self._close("nothing new on the way")
         return self._straight_on(observation.ranges, s_best)
+
+    def _view_carries(self, origin: NodeMatch | None) -> float:
+        """How many times further views carry here than in a room, as far as this way has told."""
+        graph = self._maps.graph
+        if origin is not None and origin.status == "ok" and self.here.length_m > SHORTEST_M:
+            told = self.here.length_m / match_length_m(
+                origin.inliers, keypoints_of(graph, self.node_id), ROOM_HALF_M
+            )
+            self._carries = min(max(self._carries, told), LONGEST_SHARE)
+        return self._carries
 
     def _straight_on(self, ranges: Ranges, s_best: int) -> Decision:
         """On in the direction; where it is blocked beside the node, first to the node: it was open there."""
@@ -139,17 +165,20 @@ class Departure:
         graph = self._maps.graph
         edges = judge_edges(graph, observation, matches, self._profile, self.here)
         credible = self._credible(matches, edges)
-        closes_loop = self._profile.mapping.s_far and far_nodes(graph, edges.admitted, self.node_id)
-        if is_new_node(credible, self._profile) or closes_loop:
+        if is_new_node(credible, self._profile):
             return self._new_node(observation, credible)
         return self._close(f"leads to node {ranked(credible, self._profile)[0][0]}")
 
     def _is_crowded(self, matches: Matches) -> bool:
         """Whether a node that is seen lies too near for another one: where desks repeat views change fast."""
-        if not self._profile.mapping.node_apart_m:
-            return False
-        apart_m = distances(self._maps.graph, self.here, matches, self._profile)
-        return min(apart_m.values(), default=math.inf) < self._profile.mapping.node_apart_m
+        return not self._is_apart(matches, self._profile.mapping.node_apart_m)
+
+    def _is_apart(self, matches: Matches, apart_m: float) -> bool:
+        """Whether no node that is seen lies nearer than so much."""
+        if not apart_m:
+            return True
+        away_m = distances(self._maps.graph, self.here, matches)
+        return min(away_m.values(), default=math.inf) >= apart_m
 
     def _credible(self, matches: Matches, edges: NewEdges) -> Matches:
         """What the robot surely sees: the node left, nodes that lie where they are seen, those of edges."""
@@ -181,7 +210,12 @@ class Departure:
         graph = self._maps.graph
         edges = judge_edges(graph, observation, matches, self._profile, self.here)
         if not edges.admitted:
-            return self._close("no view back to be sure of", lost=True)
+            self._unsure_frames += 1
+            if self._retreating or self._unsure_frames > UNSURE_FRAMES:
+                return self._close("no view back to be sure of", lost=True)
+            return self._straight_on(
+                observation.ranges, similarity(ranked(matches, self._profile)[0][1], self._profile)
+            )
         if self._is_on_course():
             self._mark_explored()
         node_id, refused = add_node(self._maps, observation, edges, self._profile, self.here)

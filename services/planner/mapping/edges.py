@@ -3,8 +3,7 @@
 A match becomes an edge when
 
 1. its similarity is above s_edge_min and two-view geometry is sure of its bearing (`_admitted`),
-2. it is the node the robot came from; or the node is not far away, free ground leads there or the match is
-   far above doubt, and enough of the raw matches agree (`_credible`),
+2. it is the node the robot came from; or what agrees is not far away (`_is_near`),
 3. the node lies where the frame sees it and not too far for an edge, as far as the robot knows what it did
    (`reach`),
 4. one motion alone explains it (`is_ambiguous`),
@@ -21,7 +20,7 @@ from services.planner.mapping.reach import no_edges
 from services.planner.ports import Matches, Observation
 from services.planner.profiles import Profile
 from services.planner.similarity import similarity, trusted
-from services.planner.surroundings import is_clear_from, is_surely_clear
+from services.planner.surroundings import is_clear, is_clear_from
 from shared.geometry.two_view import TwoViewSettings, two_view
 from shared.mapgraph.cycle_consistency import contradicted, supported_by, unsupported_loop_closures
 from shared.mapgraph.graph import MapGraph
@@ -84,12 +83,10 @@ def judge_edges(
     clear = frozenset(
         n
         for n, m in similar.items()
-        if is_surely_clear(m, observation.ranges, profile) or is_clear_from(graph.nodes[n], m, profile)
+        if is_clear(m, graph, observation.ranges, profile) or is_clear_from(graph.nodes[n], m, graph, profile)
     )
-    credible = {
-        n: m for n, m in similar.items() if n == driven_from or _credible(m, profile, clear=n in clear)
-    }
-    refused = {} if profile.sensing.similarity == "raw" else _refused(graph, credible, profile, driven_from)
+    credible = {n: m for n, m in similar.items() if n == driven_from or _is_near(m, profile)}
+    refused = {} if profile.sensing.similarity == "raw" else _refused(graph, credible, driven_from)
     admitted = {n: m for n, m in credible.items() if n not in refused}
     covered = {n: similar[n] for n in supported_by(graph, similar, set(admitted))}
     return NewEdges(admitted, clear, away | refused, covered)
@@ -97,7 +94,7 @@ def judge_edges(
 
 def stands_alone(match: NodeMatch, profile: Profile) -> bool:
     """Whether a match becomes an edge by itself: no map, no drive and no free ground speak for it."""
-    admitted = _admitted(match, profile) and _credible(match, profile, clear=False)
+    admitted = _admitted(match, profile) and _is_near(match, profile)
     return admitted and (profile.sensing.similarity == "raw" or not is_ambiguous(match))
 
 
@@ -147,18 +144,13 @@ def _here(match: NodeMatch, profile: Profile) -> bool:
     return not (noisy or blurred) and (match.moved or 0) >= rules.moved_min
 
 
-def _credible(match: NodeMatch, profile: Profile, *, clear: bool) -> bool:
-    """Whether a match other than that of the node just left is more than a chance resemblance."""
-    rules, s = profile.mapping, similarity(match, profile)
-    share = match.inliers / max(match.raw_matches, 1)
-    disparity_rad = match.disparity_rad if match.disparity_rad is not None else 0.0
-    far_away = disparity_rad < rules.far_rad and s < rules.s_sure
-    surely_there = clear or (s >= rules.s_blind_min and share >= rules.share_min)
-    enough_agree = s >= rules.s_sure or match.inliers >= rules.share_min * match.raw_matches
-    return not far_away and surely_there and enough_agree
+def _is_near(match: NodeMatch, profile: Profile) -> bool:
+    """Whether what agrees is not far away: few matches that hardly move may be, and so may the node."""
+    rules, disparity_rad = profile.mapping, match.disparity_rad or 0.0
+    return disparity_rad >= rules.far_rad or similarity(match, profile) >= rules.s_sure
 
 
-def _refused(graph: MapGraph, credible: Matches, profile: Profile, driven_from: int | None) -> dict[int, str]:
+def _refused(graph: MapGraph, credible: Matches, driven_from: int | None) -> dict[int, str]:
     """Edges that are ambiguous, unsupported or outvoted.
 
     The view of the node the robot came from was followed frame by frame, so it is not ambiguous.
@@ -166,6 +158,6 @@ def _refused(graph: MapGraph, credible: Matches, profile: Profile, driven_from: 
     why = "two motions explain the view of node"
     refused = {n: f"{why} {n}" for n, m in credible.items() if n != driven_from and is_ambiguous(m)}
     left = {n: m for n, m in credible.items() if n not in refused}
-    refused |= unsupported_loop_closures(graph, left, driven_from, profile.mapping.s_far)
+    refused |= unsupported_loop_closures(graph, left, driven_from)
     left = {n: m for n, m in credible.items() if n not in refused}
     return refused | contradicted(graph, left, credible)

@@ -2,26 +2,33 @@
 
 import math
 from collections.abc import Mapping
+from functools import reduce
 
 import numpy as np
 import numpy.typing as npt
 
 from services.planner.profiles import Profile
-from shared.mapgraph.frontiers import SECTOR_RAD, frontier_sectors, mark_explored
+from shared.mapgraph.frontiers import SECTOR_RAD, frontier_sectors, mark_explored, sector_rad
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.hypotheses import NEAR_NODES
 from shared.mapgraph.local.relative_poses import RelativePose, relative_poses
-from shared.mapgraph.local.sights import metres_per_rad
+from shared.mapgraph.local.view_range import edge_length_m, openness
 from shared.messages.base import SECTORS
-from shared.messages.maps import Edge, Node
+from shared.messages.maps import Node
 
 FloatArray = npt.NDArray[np.float64]
 ACROSS = 13
 """Points across the disc that a node covers; chosen: 130 in all, so that 1 % of it counts."""
 OCCLUDED = 0.25
 """What floor behind an obstacle counts: there may be a way round it, or none; chosen."""
-HOPS = 3
-"""Edges over free ground to nodes whose floor is on the same side of every wall; chosen: 2 to 3 m."""
+ROOM_COVERS_M = 1.0
+"""How far around a node floor counts as known in a room, unless a mission says otherwise; chosen."""
+STRAIGHT_SHARE = 0.25
+"""Share of its gain that a direction loses which turns the robot round; chosen: of two that are as good the
+one ahead comes first."""
+SIDE_FACTOR = 2.5
+"""So many times as far as a node covers, over free ground, lie the nodes whose floor is on the same side of
+every wall; chosen: beyond twice nothing is covered by both."""
 
 
 def without_poor_directions(graph: MapGraph, root: int, profile: Profile) -> list[Node]:
@@ -35,29 +42,58 @@ def without_poor_directions(graph: MapGraph, root: int, profile: Profile) -> lis
     Returns:
         Those nodes, with the directions explored that are not worth the way.
     """
-    covers_m = profile.mapping.covers_m
+    covers_m = _covered_m(graph, root, profile)
     if not covers_m:
         return []
-    scale = metres_per_rad(graph, 1.0 / profile.sensing.disparity_rad_per_m)
-    poses = relative_poses(graph, root, graph.nearest(root, NEAR_NODES), scale, NEAR_NODES)
+    poses = relative_poses(graph, root, graph.nearest(root, NEAR_NODES), NEAR_NODES)
     near = [n for n, pose in poses.items() if np.linalg.norm(pose.position_m) < 3.0 * covers_m]
-    looked = [_without_poor(graph, poses, graph.nodes[node_id], profile) for node_id in near]
-    return [node for node in looked if node != graph.nodes[node.node_id]]
+    changed = []
+    for node in (graph.nodes[node_id] for node_id in near):
+        gains = _gains(graph, poses, node, covers_m)
+        poor = [sector for sector, gain in gains.items() if gain < profile.mapping.gain_min]
+        if poor:
+            changed.append(reduce(mark_explored, poor, node))
+    return changed
 
 
-def _without_poor(graph: MapGraph, poses: Mapping[int, RelativePose], node: Node, profile: Profile) -> Node:
-    """The node with the directions explored in which too little floor is new."""
+def _covered_m(graph: MapGraph, node_id: int, profile: Profile) -> float:
+    """How far around a node floor counts as known; 0 where every direction is to be explored."""
+    if profile.mapping.covers_m is not None:
+        return profile.mapping.covers_m
+    return ROOM_COVERS_M * openness(graph, node_id)
+
+
+def best_sector(graph: MapGraph, node_id: int, preferred_rad: float, profile: Profile) -> int | None:
+    """The unexplored direction of a node with most new floor, rather about a preferred one; None without any.
+
+    Args:
+        graph: the map.
+        node_id: the node.
+        preferred_rad: where the robot goes already, in the node's camera frame.
+        profile: how far a node covers.
+    """
+
+    def worth(sector: int) -> tuple[float, int]:
+        turn_rad = abs(math.remainder(sector_rad(sector) - preferred_rad, math.tau))
+        return round(gains[sector] * (1.0 - STRAIGHT_SHARE * turn_rad / math.pi), 6), -sector
+
+    node, covers_m = graph.nodes[node_id], _covered_m(graph, node_id, profile)
+    gains = dict.fromkeys(frontier_sectors(node), 1.0)
+    if covers_m:
+        poses = relative_poses(graph, node_id, graph.nearest(node_id, NEAR_NODES), NEAR_NODES)
+        gains = _gains(graph, poses, node, covers_m)
+    return max(gains, key=worth, default=None)
+
+
+def _gains(
+    graph: MapGraph, poses: Mapping[int, RelativePose], node: Node, covers_m: float
+) -> dict[int, float]:
     sectors = frontier_sectors(node)
     if not sectors:
-        return node
-    known_m = np.array([poses[n].position_m for n in _on_this_side(graph, node.node_id) if n in poses])
-    for sector in sectors:
-        if (
-            _gain(known_m, poses[node.node_id], node, sector, profile.mapping.covers_m)
-            < profile.mapping.gain_min
-        ):
-            node = mark_explored(node, sector)
-    return node
+        return {}
+    beside = _on_this_side(graph, node.node_id, SIDE_FACTOR * covers_m)
+    known_m = np.array([poses[n].position_m for n in beside if n in poses])
+    return {sector: _gain(known_m, poses[node.node_id], node, sector, covers_m) for sector in sectors}
 
 
 def _gain(known_m: FloatArray, own: RelativePose, node: Node, sector: int, covers_m: float) -> float:
@@ -88,17 +124,11 @@ def _weights(floor: FloatArray, own: RelativePose, free_m: FloatArray) -> FloatA
     return np.where(np.linalg.norm(offset, axis=1) <= free_m[sector], 1.0, OCCLUDED)
 
 
-def _on_this_side(graph: MapGraph, start: int) -> set[int]:
-    """Nodes that free ground joins to one, itself among them."""
-    reached = {start}
-    for _ in range(HOPS):
-        beside = {(node, other) for node in reached for other in graph.neighbours(node)}
-        reached |= {other for node, other in beside if _is_free(graph.edge(node, other))}
-    return reached
-
-
-def _is_free(edge: Edge | None) -> bool:
-    return edge is not None and (edge.clear or edge.traversals > 0)
+def _on_this_side(graph: MapGraph, start: int, far_m: float) -> set[int]:
+    """Nodes that at most so many metres of free ground join to one, itself among them."""
+    return graph.within_cost(
+        start, far_m, lambda edge: edge_length_m(graph, edge) if edge.clear or edge.traversals else None
+    )
 
 
 def _disc() -> FloatArray:

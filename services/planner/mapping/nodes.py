@@ -47,7 +47,7 @@ def add_node(
         The new node's id, and a note for each edge that was refused.
     """
     node_id = maps.graph.next_id()
-    admitted = _driven(edges_to(node_id, edges.admitted, edges, profile), maps.graph, here, profile)
+    admitted = _driven(edges_to(node_id, edges.admitted, edges, profile), maps.graph, here)
     features, free_m = observation.features, free_ways_m(observation.ranges, profile)
     node = Node(
         node_id=node_id,
@@ -86,12 +86,12 @@ def edges_to(node_id: int, matches: Matches, judged: NewEdges, profile: Profile)
     return [_edge(node_id, n, match, profile, clear=n in judged.clear) for n, match in matches.items()]
 
 
-def _driven(edges: list[Edge], graph: MapGraph, here: Displacement | None, profile: Profile) -> list[Edge]:
+def _driven(edges: list[Edge], graph: MapGraph, here: Displacement | None) -> list[Edge]:
     """The edges of a new node with what the robot's way to it says of them."""
     if here is None:
         return edges
     others = {edge.a for edge in edges}
-    known = driven_length(graph, here, others, profile.sensing.disparity_rad_per_m, LOOP_NODES)
+    known = driven_length(graph, here, others, LOOP_NODES)
     learnt: dict[int, dict[str, Any]] = {here.node_id: {"traversals": 1, "why": "driven"}}
     if known is not None:
         length = {"length_m": known.length_m, "length_std_m": known.std_m}

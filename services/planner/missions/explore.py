@@ -7,14 +7,16 @@ strategies, so that the map stops growing only when nothing open is left. A prof
 import math
 
 import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
 
 from services.planner.mapping.departure import Departure, NewNode
 from services.planner.mapping.edges import NewEdges
+from services.planner.mapping.floor_gain import best_sector
 from services.planner.mapping.nodes import add_node
 from services.planner.mapping.reach import nodes_nearby
 from services.planner.mapping.reobservation import close_known_directions
 from services.planner.mapping.strategies import ThesisExploration
-from services.planner.mission_kinds import MissionContext, MissionKind, NoParameters
+from services.planner.mission_kinds import MissionContext, MissionKind
 from services.planner.ports import Decision, MapAccess, Matcher, Mission, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.travel.edge_experience import EdgeExperience
@@ -22,8 +24,27 @@ from services.planner.travel.frontier_destination import FrontierDestination
 from services.planner.travel.machine import Travel
 from services.planner.travel.states import State
 from services.planner.travel.whereabouts import Whereabouts
-from shared.mapgraph.frontiers import best_sector, sector_rad
+from shared.mapgraph.frontiers import sector_rad
 from shared.mapgraph.local.displacement import Displacement
+from shared.mapgraph.local.view_range import half_m, openness
+
+TELLING_NODES = 6
+"""Nodes after which driving tells what kind of place this is; chosen: some 50 steps."""
+NEWS = 1.3
+"""By so much must that change to be told again; chosen: more than from room to room."""
+
+
+class ExploreParameters(BaseModel):
+    """How dense the map is to be."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    covers_m: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=20.0,
+        description="Metres around a node that need no other one; by the place.",
+    )
 
 
 class FrontierExploration:
@@ -43,6 +64,7 @@ class FrontierExploration:
         self._travel = Travel(profile, maps, matcher, self._destination, experience, whereabouts)
         self._departure: Departure | None = None
         self._heading_rad = 0.0
+        self._told_m = 0.0
         self.progress = Progress()
 
     def decide(self, observation: Observation) -> Decision:
@@ -82,8 +104,7 @@ class FrontierExploration:
         """Start a departure from a node the robot stands at, or hold when it has no frontier."""
         node_id, yaw_rad = here.node_id, -here.yaw_rad
         self._travel.set_out(here)
-        node = self._maps.graph.nodes[node_id]
-        sector = best_sector(node, self._heading_rad - yaw_rad)
+        sector = best_sector(self._maps.graph, node_id, self._heading_rad - yaw_rad, self._profile)
         if sector is None:
             return Decision("hold", why=f"node {node_id} has no unexplored direction", notes=notes)
         heading_rad = math.remainder(sector_rad(sector) + yaw_rad, math.tau)
@@ -103,20 +124,36 @@ class FrontierExploration:
         if isinstance(result, NewNode):
             self._departure = None
             self._head(departure.heading_rad)
-            return self._leave(Displacement(result.node_id), result.notes)
+            return self._leave(
+                Displacement(result.node_id), (*result.notes, *self._surroundings(result.node_id))
+            )
         if departure.done:
             self._departure = None
             self._travel.tracker.stand_at(departure.here)
         return result
+
+    def _surroundings(self, node_id: int) -> tuple[Note, ...]:
+        """What driving has told of this place, where that is news: a room, a hall, a yard."""
+        graph, told_m = self._maps.graph, self._told_m
+        carries_m = half_m(graph, node_id)
+        if len(graph.nodes) < TELLING_NODES or (told_m and 1 / NEWS < carries_m / told_m < NEWS):
+            return ()
+        self._told_m = carries_m
+        times = openness(graph, node_id)
+        why = f"half of the matches are lost after {carries_m:.2f} m: views carry {times:.1f} times a room's"
+        return (Note("surroundings", why, {"half_m": round(carries_m, 3), "openness": round(times, 2)}),)
 
     def _head(self, heading_rad: float) -> None:
         """Remember where a departure led: the next one goes on about that way, a lost robot goes back."""
         self._heading_rad = self._travel.last_heading_rad = heading_rad
 
 
-def _make(context: MissionContext, _parameters: NoParameters) -> Mission:
-    robot = (context.profile, context.maps, context.matcher, context.rng)
-    if context.profile.mapping.exploration == "strategies":
+def _make(context: MissionContext, parameters: ExploreParameters) -> Mission:
+    profile = context.profile
+    if parameters.covers_m is not None and profile.mapping.covers_m != 0.0:
+        profile = profile.replaced(covers_m=parameters.covers_m)
+    robot = (profile, context.maps, context.matcher, context.rng)
+    if profile.mapping.exploration == "strategies":
         return ThesisExploration(*robot)
     return FrontierExploration(*robot, context.whereabouts)
 
@@ -124,7 +161,7 @@ def _make(context: MissionContext, _parameters: NoParameters) -> Mission:
 KIND = MissionKind(
     name="explore",
     title="Explore",
-    parameters=NoParameters,
+    parameters=ExploreParameters,
     make=_make,
     shown=("nodes", "edges", "open_directions"),
     makes_map=True,

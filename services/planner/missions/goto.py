@@ -48,10 +48,10 @@ REFUTED_MAX = 16
 SEARCH_STEPS = 150
 """Steps of searching before the mission ends as lost (decision 0014)."""
 
-AVOID_RAD = 0.5
-"""Added to the cost of starting at a waypoint that failed; chosen: another node within 3 m comes first."""
+AVOID_M = 3.0
+"""Added to the cost of starting at a waypoint that failed; chosen: another node as near comes first."""
 
-LAST_EDGE_RAD = 1.0
+LAST_EDGE_M = 6.0
 """Added to the way from a last node from which the goal was not found; chosen: its other sides come first."""
 
 GOAL_SHARE = 0.6
@@ -85,7 +85,7 @@ class GoalDestination:
         self.aliased = not self.places.plain
         self.arrival_rad = profile.arrival.arrival_rad * (1.0 if self.places.plain else CLOSER_SHARE)
         self._targets = self._reachable(found)
-        self._targets |= dict.fromkeys(self.places.without(self._targets), LAST_EDGE_RAD)
+        self._targets |= dict.fromkeys(self.places.without(self._targets), LAST_EDGE_M)
         self._avoid: dict[int, float] = {}
         self._lost = self._stuck = self._refuted = 0
         self._strayed = False
@@ -126,7 +126,7 @@ class GoalDestination:
         notes = list(self._judge_suspect(sure))
         for near in (node for node, match in sure.items() if match.status == "no_baseline"):
             for far, match in sure.items():
-                if far != near and is_clear(match, ranges, self._profile):
+                if far != near and is_clear(match, self._maps.graph, ranges, self._profile):
                     note = self._experience.seen_free(edge_key(near, far), match)
                     notes += [] if note is None else [note]
         return tuple(notes)
@@ -146,10 +146,10 @@ class GoalDestination:
         """Blame the edge or the waypoint that failed."""
         edge, waypoint = setback.edge, setback.waypoint
         if waypoint == GOAL and edge is not None and setback.path[-2] in self._targets:
-            self._targets[setback.path[-2]] += LAST_EDGE_RAD
+            self._targets[setback.path[-2]] += LAST_EDGE_M
         if waypoint == GOAL:
             self._settle(self._place_missed(setback))
-        self._avoid[waypoint] = self._avoid.get(waypoint, 0.0) + AVOID_RAD
+        self._avoid[waypoint] = self._avoid.get(waypoint, 0.0) + AVOID_M
         edge = edge if edge is None or GOAL not in edge else None
         notes: tuple[Note, ...] = (Note("replan", f"{setback.event.value}: {setback.why}"),)
         if setback.event is Event.WAYPOINT_LOST:
@@ -204,9 +204,10 @@ class GoalDestination:
         return ruling.why
 
     def _reachable(self, found: Matches) -> dict[int, float]:
-        nodes = self._maps.graph.nodes
-        clear = {n for n, m in found.items() if n in nodes and is_clear_from(nodes[n], m, self._profile)}
-        return reachable_nodes(found, self._profile, self._profile.mapping.s_edge_min, clear)
+        graph, profile = self._maps.graph, self._profile
+        known = {n: m for n, m in found.items() if n in graph.nodes}
+        clear = {n for n, m in known.items() if is_clear_from(graph.nodes[n], m, graph, profile)}
+        return reachable_nodes(found, graph, profile, profile.mapping.s_edge_min, clear)
 
     def _rule_out(self, here: Matches) -> None:
         """This is not where the picture was taken: nor is that beside the nodes seen from here."""

@@ -22,7 +22,7 @@ from shared.mapgraph.local.hypotheses import (
     likely,
     typical_similarity,
 )
-from shared.mapgraph.local.sights import match_metres
+from shared.mapgraph.local.view_range import half_m, keypoints_of, match_length_m
 from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
 
@@ -162,13 +162,14 @@ class GoalPlaces:
 
     def _is_beyond(self, here: Displacement) -> bool:
         """Whether a robot is further from the place than matches with it allow, as far as is known."""
-        metres = match_metres(self._maps.graph)
-        far_m = SPOT_M + BEYOND_FACTOR * metres / max(self._places[0].similarity, 1)
-        return metres > 0.0 and not self._is_within(far_m, here)
+        graph, place = self._maps.graph, self._places[0]
+        node_id = place.nodes[0]
+        apart_m = match_length_m(place.similarity, keypoints_of(graph, node_id), half_m(graph, node_id))
+        return not self._is_within(SPOT_M + BEYOND_FACTOR * apart_m, here)
 
     def _is_within(self, far_m: float, here: Displacement) -> bool:
         best = {place.nodes[0] for place in self._places}
-        return min(distances(self._maps.graph, here, best, self._profile).values(), default=math.inf) < far_m
+        return min(distances(self._maps.graph, here, best).values(), default=math.inf) < far_m
 
     def arrived(self, node: int | None, visit: Visit) -> Ruling:
         """The robot stands where the goal picture agrees with the view.
@@ -244,7 +245,7 @@ class GoalPlaces:
         if profile.sensing.similarity == "raw":
             return []
         similar = {n: m for n, m in matches.items() if similarity(m, profile) > profile.travel.s_via_min}
-        return hypotheses(self._maps.graph, claims(similar, profile), profile.sensing.disparity_rad_per_m)
+        return hypotheses(self._maps.graph, claims(self._maps.graph, similar, profile))
 
     def _nearest(self, node: int | None) -> Hypothesis | None:
         """The place a node belongs to: by the fewest edges."""

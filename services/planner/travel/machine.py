@@ -87,16 +87,16 @@ class Travel:
         self._notes += destination.localised(seen, observation.ranges)
         if goal is not None:
             destination.sees(goal, self.tracker.here)
-            in_view = in_sight(goal, observation.ranges, profile)
+            in_view = in_sight(goal, graph, observation.ranges, profile)
             if in_view and destination.goes_straight(goal, self.tracker.here):
                 self._set_off([GOAL], Event.GOAL_IN_SIGHT)
                 return None
         targets = destination.targets()
         if not targets:
             return self._give_up(*destination.unreachable())
-        visible = starts_in_sight(seen, observation.ranges, profile)
+        visible = starts_in_sight(seen, graph, observation.ranges, profile)
         starts, banned = destination.starts(visible), self._experience.banned
-        path = plan_path(graph, starts, targets, edge_cost(profile), self._unclear, banned)
+        path = plan_path(graph, starts, targets, edge_cost(graph, profile), self._unclear, banned)
         if path:
             destination.set_out()
             self._set_off([*path, GOAL] if pictures else path, Event.PATH_FOUND)

@@ -86,8 +86,7 @@ class PathFollower:
         match, name = matches.get(waypoint), _name(waypoint)
         s_cv = similarity(match, self._profile) if match is not None else 0
         self._report(waypoint, s_cv, match)
-        arrival_rad = self._destination.arrival_rad
-        if self._at_end() and match is not None and has_arrived(match, self._profile, arrival_rad):
+        if self._has_arrived(match):
             return Event.REACHED, _hold(f"arrived at {name}, S {s_cv}", notes)
         if self._next_is_unclear(match, matches, observation.ranges):
             return Event.WAY_UNCLEAR, _hold(f"no free ground seen beyond {name}", notes)
@@ -102,8 +101,8 @@ class PathFollower:
             if self._near_end(match):
                 return Event.REACHED, _hold(f"as near to {name} as obstacles allow, S {s_cv}", notes)
             return Event.NO_PROGRESS, _hold(f"no progress towards {name}", notes)
-        slow = self._at_end() and arrival_rad > 0.0
-        speed = speed_fraction(match, self._profile) if slow else 1.0
+        slow = self._at_end() and self._destination.arrival_rad > 0.0
+        speed = speed_fraction(match, self._maps.graph) if slow else 1.0
         return None, Decision("go", self._heading_rad, s_cv, speed, method, f"to {name}, S {s_cv}", notes)
 
     def failed_edge(self) -> tuple[EdgeKey | None, int]:
@@ -120,12 +119,26 @@ class PathFollower:
         """The edge being driven; None at index 0, where there is none (thesis equation 6.4)."""
         return edge_key(*self.path[self.index - 1 : self.index + 1]) if self.index else None
 
+    def _is_at(self, match: NodeMatch | None) -> bool:
+        """Whether the robot stands at the present waypoint."""
+        at = is_at(match, self._maps.graph, self._profile)
+        return at and (self._strict or not self._tracker.is_beyond(self.path[self.index]))
+
+    def _has_arrived(self, match: NodeMatch | None) -> bool:
+        if (
+            match is None
+            or not self._at_end()
+            or (not self._strict and self._tracker.is_beyond(self.path[-1]))
+        ):
+            return False
+        return has_arrived(match, self._maps.graph, self._profile, self._destination.arrival_rad)
+
     def _at_end(self) -> bool:
         return self.index == len(self.path) - 1
 
     def _next_is_unclear(self, here: NodeMatch | None, seen: Matches, ranges: Ranges) -> bool:
         """At a waypoint with no sight of free ground to the next: ask for another way, once."""
-        standing = not (self._strict or self._at_end()) and is_at(here, self._profile)
+        standing = not (self._strict or self._at_end()) and self._is_at(here)
         return standing and not self._next_is_known(seen.get(self.path[self.index + 1]), ranges)
 
     def _next_is_known(self, there: NodeMatch | None, ranges: Ranges) -> bool:
@@ -135,7 +148,7 @@ class PathFollower:
             return True
         if edge is None or not edge.clear or there is None:
             return False
-        return is_half_clear(there, ranges, self._profile)
+        return is_half_clear(there, self._maps.graph, ranges, self._profile)
 
     def _compare(self, matcher: Matcher) -> dict[int, NodeMatch]:
         ahead = self.path[self.index : self.index + WINDOW]
@@ -166,11 +179,12 @@ class PathFollower:
         return ()
 
     def _may_advance(self, here: NodeMatch | None, there: NodeMatch, later: int, ranges: Ranges) -> bool:
-        beside = later == self.index + 1 and is_at(here, self._profile)
+        beside = later == self.index + 1 and self._is_at(here)
         aliased_goal = self._destination.aliased and self.path[later] == GOAL
         return may_advance(
             here,
             there,
+            self._maps.graph,
             ranges,
             self._profile,
             straight=beside or not aliased_goal,
@@ -180,7 +194,7 @@ class PathFollower:
     def _mark_driven(self, match: NodeMatch | None) -> tuple[Note, ...]:
         """The robot stands at a waypoint: the edge to it has been driven."""
         edge = self._current_edge()
-        if edge is None or GOAL in edge or not is_at(match, self._profile):
+        if edge is None or GOAL in edge or not self._is_at(match):
             return ()
         note = self._experience.driven(edge, match)
         return () if note is None else (note,)
@@ -209,12 +223,14 @@ class PathFollower:
 
     def _waits_too_long(self, match: NodeMatch) -> bool:
         """At a waypoint from which the next one does not show: what leads there is shut."""
-        standing = not (self._strict or self._at_end()) and is_at(match, self._profile)
+        standing = not (self._strict or self._at_end()) and self._is_at(match)
         self._waiting = self._waiting + 1 if standing else 0
         return self._waiting > WAITING_STEPS
 
     def _near_end(self, match: NodeMatch) -> bool:
-        return self._at_end() and is_near_end(match, self._profile, self._destination.arrival_rad)
+        return self._at_end() and is_near_end(
+            match, self._maps.graph, self._profile, self._destination.arrival_rad
+        )
 
     def _report(self, waypoint: int, s_cv: int, match: NodeMatch | None) -> None:
         disparity = match.disparity_rad if match is not None else None

@@ -9,7 +9,7 @@ import logging
 from collections.abc import Mapping
 from dataclasses import replace
 
-from services.planner.mapping.reach import claims, in_reach, nodes_nearby
+from services.planner.mapping.reach import claims, distances, in_reach, nodes_nearby
 from services.planner.ports import MapAccess, Matcher, Matches, Observation
 from services.planner.profiles import Profile
 from services.planner.similarity import similarity, tells_place
@@ -19,13 +19,17 @@ from shared.mapgraph.local.claims import Claim
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import NEAR_NODES, Hypothesis, hypotheses, likely
 from shared.mapgraph.local.resection import resected
-from shared.mapgraph.local.sights import match_metres, metres_per_rad
+from shared.mapgraph.local.view_range import openness
 from shared.mapgraph.routing import GOAL
 from shared.messages.matching import NodeMatch
 
 PATIENCE_FRAMES = 40
 """Frames that show nothing within reach after which the robot must have been carried, however smoothly;
 chosen: 5 m of search, twice the way on which it can have gone astray by itself."""
+
+BEYOND_M, BEYOND_STDS = 0.6, 2.0
+"""Who is further than this from a node in a room, and so many standard deviations of where the robot is, is
+not there; chosen: half as far again as `travel_arrival_rad` stands for."""
 
 AT_NODE_M = 0.2
 """How far a robot is from a node at which it arrived, where nothing more is known: half of what counts as
@@ -114,8 +118,8 @@ class Tracker:
         graph, sights = self._maps.graph, self._sights(matches)
         if not sights:
             return
-        nearest = min(sights, key=lambda node: (sights[node].disparity_rad, node))
-        best = self._resected(self._ranged(sights), nearest)
+        nearest = min(sights, key=lambda node: (sights[node].length_m, node))
+        best = self._resected(sights, nearest)
         if best is None:
             return
         if self.here is None or best.spread_m <= self.here.spread_m or self.here.node_id not in graph.nodes:
@@ -137,6 +141,14 @@ class Tracker:
         yaw_rad = match.yaw_rad if match is not None and match.yaw_rad is not None else 0.0
         return Displacement(node_id, yaw_rad=-yaw_rad, spread_m=AT_NODE_M)
 
+    def is_beyond(self, node_id: int) -> bool:
+        """Whether the robot is surely not at a node, however little the bearings of far things differ."""
+        graph, here = self._maps.graph, self.here
+        if here is None or node_id not in graph.nodes:
+            return False
+        away_m = distances(graph, here, [node_id]).get(node_id, 0.0)
+        return away_m > BEYOND_M * openness(graph, node_id) + BEYOND_STDS * here.spread_m
+
     def was_carried(self) -> bool:
         """Whether this frame shows another place than the one before it."""
         match = self._against_before()
@@ -155,7 +167,7 @@ class Tracker:
             self.stand_at(None)
             return
         seen = self._matcher.match([here.node_id], 0, (before,))
-        stands = is_at(seen.get(GOAL), self._profile)
+        stands = is_at(seen.get(GOAL), self._maps.graph, self._profile)
         if not stands or here.node_id not in seen or not self._is_sure(seen[here.node_id]):
             log.info("not about node %d any more: where the robot is has to be seen", here.node_id)
             self.stand_at(None)
@@ -190,40 +202,24 @@ class Tracker:
         return {node: matches[node] for node in found[0].nodes}
 
     def _places(self, matches: Matches) -> list[Hypothesis]:
-        rad_per_m = self._profile.sensing.disparity_rad_per_m
-        return hypotheses(self._maps.graph, self._sights(matches), rad_per_m)
+        return hypotheses(self._maps.graph, self._sights(matches))
 
     def _sights(self, matches: Matches) -> dict[int, Claim]:
         """What the frame claims for sure of nodes of the map."""
         nodes = self._maps.graph.nodes
         sure = {node: match for node, match in matches.items() if node in nodes and self._is_sure(match)}
-        return claims(sure, self._profile)
+        return claims(self._maps.graph, sure, self._profile)
 
     def _resected(
         self, sights: Mapping[int, Claim], node_id: int, reckoned: Displacement | None = None
     ) -> Displacement | None:
-        rad_per_m = self._profile.sensing.disparity_rad_per_m
-        return resected(self._maps.graph, sights, node_id, rad_per_m, NEAR_NODES, reckoned)
-
-    def _ranged(self, sights: Mapping[int, Claim]) -> dict[int, Claim]:
-        """No node is taken for nearer than its matches say.
-
-        Along a corridor what two views share lies far ahead and hardly shifts: a node 1.3 m away seemed to be
-        0.3 m away, and nearer than what the robot had driven was sure of.
-        """
-        graph = self._maps.graph
-        scale = metres_per_rad(graph, 1.0 / self._profile.sensing.disparity_rad_per_m)
-        least_rad = match_metres(graph) / scale
-        return {
-            node: replace(claim, disparity_rad=max(claim.disparity_rad, least_rad / max(claim.similarity, 1)))
-            for node, claim in sights.items()
-        }
+        return resected(self._maps.graph, sights, node_id, NEAR_NODES, reckoned)
 
     def _shows_any(self, matches: Matches) -> bool:
         return any(self._is_sure(match) for match in matches.values())
 
     def _is_sure(self, match: NodeMatch) -> bool:
-        return self._resembles(match) and tells_place(match, self._profile)
+        return self._resembles(match) and tells_place(match, self._maps.graph, self._profile)
 
     def _resembles(self, match: NodeMatch) -> bool:
         """Whether enough agrees; of views 4 cm apart that tells no direction well."""

@@ -1,13 +1,24 @@
 """When a waypoint is reached, and when a later one is headed for instead (thesis equation 4.3). Pure."""
 
+import math
+
 from services.planner.profiles import Profile
-from services.planner.similarity import apart_rad, close_enough, similarity, trusted
-from services.planner.surroundings import is_clear
+from services.planner.similarity import close_enough, similarity, trusted
+from services.planner.surroundings import is_clear, length_m
+from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.view_range import openness
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
 
 SLOW_M = 1.33
 """Where the robot begins to slow down; chosen: at 0.12 m a step it would pass the 0.1 m of `arrival_rad`."""
+
+ROOM_RAD_PER_M = math.radians(9.0)
+"""How fast bearings change near a picture taken in a room: 15.6 degrees at 1.75 m (`topnav calibrate`)."""
+
+NEARER_SHARE = 0.5
+"""The end is hardly nearer than this share of what matches say, however little bearings differ: far things
+alone may agree, and rain or another light takes half of the matches at the very spot."""
 
 SLOWEST = 0.15
 """Least share of full speed; chosen: 2 cm a step, a fifth of the arrival distance."""
@@ -18,31 +29,33 @@ def is_strict(profile: Profile) -> bool:
     return profile.travel.path_cost == "nodes"
 
 
-def is_at(match: NodeMatch | None, profile: Profile) -> bool:
+def is_at(match: NodeMatch | None, graph: MapGraph, profile: Profile) -> bool:
     """Whether the robot stands at the waypoint: many matches agree, and bearings hardly differ."""
-    if match is None or not close_enough(match, profile):
+    if match is None or not close_enough(match, graph, profile):
         return False
-    return match.status == "no_baseline" or _nearer(match, profile.arrival.travel_arrival_rad)
+    return match.status == "no_baseline" or _nearer(match, profile.arrival.travel_arrival_rad, graph)
 
 
-def has_arrived(match: NodeMatch, profile: Profile, arrival_rad: float) -> bool:
+def has_arrived(match: NodeMatch, graph: MapGraph, profile: Profile, arrival_rad: float) -> bool:
     """Whether the end of a path is reached: by count alone (thesis), or by disparity below `arrival_rad`."""
     if similarity(match, profile) > profile.arrival.s_final:
         return True
-    if arrival_rad <= 0.0 or match.inliers < profile.mapping.s_edge_min or not close_enough(match, profile):
+    enough = match.inliers >= profile.mapping.s_edge_min and close_enough(match, graph, profile)
+    if arrival_rad <= 0.0 or not enough:
         return False
-    return match.status == "no_baseline" or (match.status == "ok" and _nearer(match, arrival_rad))
+    return match.status == "no_baseline" or (match.status == "ok" and _nearer(match, arrival_rad, graph))
 
 
-def is_near_end(match: NodeMatch, profile: Profile, arrival_rad: float) -> bool:
+def is_near_end(match: NodeMatch, graph: MapGraph, profile: Profile, arrival_rad: float) -> bool:
     """Whether a robot that comes no nearer may stop here: obstacles surround many a spot."""
-    near = _nearer(match, profile.arrival.near_rad)
+    near = _nearer(match, profile.arrival.near_rad, graph)
     return near and similarity(match, profile) > profile.arrival.s_near and arrival_rad > 0.0
 
 
 def may_advance(
     here: NodeMatch | None,
     there: NodeMatch,
+    graph: MapGraph,
     ranges: Ranges,
     profile: Profile,
     *,
@@ -57,6 +70,7 @@ def may_advance(
     Args:
         here: the frame against the present waypoint.
         there: the frame against the later one.
+        graph: the map.
         ranges: the distances around.
         profile: thresholds.
         straight: whether free ground alone is enough; not towards a goal that resembles a wrong spot too.
@@ -66,18 +80,21 @@ def may_advance(
     s_there = similarity(there, profile)
     if is_strict(profile):
         return s_here > profile.travel.s_via_max and s_there > profile.travel.s_via_min
-    if straight and trusted(there, profile) and is_clear(there, ranges, profile):
+    if straight and trusted(there, profile) and is_clear(there, graph, ranges, profile):
         return s_there > profile.mapping.s_edge_min
     return beside and s_there > profile.travel.s_via_min
 
 
-def speed_fraction(match: NodeMatch, profile: Profile) -> float:
-    """Slow down towards the end of a path, as disparity tells the distance, so as not to pass it."""
+def speed_fraction(match: NodeMatch, graph: MapGraph) -> float:
+    """Slow down towards the end of a path, as disparity and matches tell the distance."""
     if match.disparity_rad is None:
         return 1.0
-    left_rad = apart_rad(match.disparity_rad, match.inliers, profile)
-    return min(1.0, max(SLOWEST, left_rad / (SLOW_M * profile.sensing.disparity_rad_per_m)))
+    by_disparity_m = openness(graph, match.node_id) * match.disparity_rad / ROOM_RAD_PER_M
+    left_m = max(by_disparity_m, NEARER_SHARE * length_m(match, graph))
+    return min(1.0, max(SLOWEST, left_m / SLOW_M))
 
 
-def _nearer(match: NodeMatch, disparity_rad: float) -> bool:
-    return match.disparity_rad is not None and match.disparity_rad < disparity_rad
+def _nearer(match: NodeMatch, disparity_rad: float, graph: MapGraph) -> bool:
+    """Whether bearings differ by less than so much in a room; in the open they differ less."""
+    least_rad = disparity_rad / math.sqrt(openness(graph, match.node_id))
+    return match.disparity_rad is not None and match.disparity_rad < least_rad

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.view_range import half_m, keypoints_of, match_length_m
 from shared.messages.matching import NodeMatch
 
 CONFIDENCE_MIN = 0.5
@@ -17,31 +19,42 @@ class Claim:
         heading_rad: bearing of the node, camera frame of the picture; None where both are one spot.
         heading_std_rad: its error.
         yaw_rad: rotation from the picture's camera to the node's.
-        disparity_rad: that says how far it is.
+        length_m: rough distance of the node, by how much the two have in common.
     """
 
     similarity: int
     heading_rad: float | None
     heading_std_rad: float
     yaw_rad: float
-    disparity_rad: float
+    length_m: float
+
+
+def is_claim(match: NodeMatch, confidence_min: float = CONFIDENCE_MIN) -> bool:
+    """Whether two-view geometry is sure of anything."""
+    if match.yaw_rad is None or match.status not in ("ok", "no_baseline"):
+        return False
+    return _at_the_spot(match) or match.confidence >= confidence_min
 
 
 def claim_of(
-    match: NodeMatch, disparity_rad: float | None = None, confidence_min: float = CONFIDENCE_MIN
+    graph: MapGraph, node_id: int, match: NodeMatch, confidence_min: float = CONFIDENCE_MIN
 ) -> Claim | None:
     """What a match claims; None where two-view geometry is not sure of anything.
 
     Args:
+        graph: the map, which tells how far views carry.
+        node_id: the node.
         match: picture against node.
         confidence_min: below it a match claims nothing.
-        disparity_rad: takes the place of the match's, where something else says more.
     """
-    if match.yaw_rad is None or match.status not in ("ok", "no_baseline"):
+    if match.yaw_rad is None or not is_claim(match, confidence_min):
         return None
-    if match.status == "no_baseline" or match.heading_rad is None or match.disparity_rad is None:
+    if _at_the_spot(match):
         return Claim(match.inliers, None, 0.0, match.yaw_rad, 0.0)
-    if match.confidence < confidence_min:
-        return None
-    apart_rad = match.disparity_rad if disparity_rad is None else disparity_rad
-    return Claim(match.inliers, match.heading_rad, match.heading_std_rad or 0.0, match.yaw_rad, apart_rad)
+    length_m = match_length_m(match.inliers, keypoints_of(graph, node_id), half_m(graph, node_id))
+    return Claim(match.inliers, match.heading_rad, match.heading_std_rad or 0.0, match.yaw_rad, length_m)
+
+
+def _at_the_spot(match: NodeMatch) -> bool:
+    """Whether the two are taken for one spot: there is no direction."""
+    return match.status == "no_baseline" or match.heading_rad is None or match.disparity_rad is None

@@ -9,7 +9,6 @@ import numpy as np
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.relative_poses import relative_poses
-from shared.mapgraph.local.sights import metres_per_rad
 
 
 @dataclass(frozen=True)
@@ -22,7 +21,7 @@ class DrivenLength:
 
 
 def driven_length(
-    graph: MapGraph, here: Displacement, neighbours: Collection[int], rad_per_m: float, most: int
+    graph: MapGraph, here: Displacement, neighbours: Collection[int], most: int
 ) -> DrivenLength | None:
     """To the node that the robot came from, or to the neighbour whose place relative to it is known best.
 
@@ -31,15 +30,13 @@ def driven_length(
         here: where the new node is.
         neighbours: the nodes that it shares an edge with: not always the one that the robot came from, of
             which a corner may hide all but a few keypoints.
-        rad_per_m: disparity by distance, until driven edges say it better.
         most: nodes of the map reckoned with.
     """
     if here.node_id in neighbours:
         return DrivenLength(here.node_id, here.length_m, here.spread_m)
     if here.node_id not in graph.nodes:
         return None
-    scale = metres_per_rad(graph, 1.0 / rad_per_m)
-    poses = relative_poses(graph, here.node_id, neighbours, scale, most)
+    poses = relative_poses(graph, here.node_id, neighbours, most)
     if not poses:
         return None
     std_m = {node: math.sqrt(float(np.trace(pose.covariance_m2))) for node, pose in poses.items()}

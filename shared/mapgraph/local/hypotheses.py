@@ -21,7 +21,7 @@ NEAR_NODES = 60
 CORE_NODES = 3
 """Nodes of one place, most similar first, that its core counts; chosen: those around a spot."""
 SPREAD = 0.5
-"""Error of a distance by disparity, as a share of it: things are near here and far there."""
+"""Error of a distance by matches, as a share of it (view_range)."""
 
 
 @dataclass(frozen=True)
@@ -41,23 +41,22 @@ class Hypothesis:
     core: int = 0
 
 
-def hypotheses(graph: MapGraph, claims: Mapping[int, Claim], rad_per_m: float) -> list[Hypothesis]:
+def hypotheses(graph: MapGraph, claims: Mapping[int, Claim]) -> list[Hypothesis]:
     """The places that claims speak for, the one with most support first.
 
     Args:
         graph: the map.
         claims: what a picture says of nodes of it.
-        rad_per_m: disparity by distance.
     """
     left = dict(sorted(claims.items(), key=lambda item: (-item[1].similarity, item[0])))
     left = {node: claim for node, claim in left.items() if node in graph.nodes}
     found = []
     while left:
         node, claim = next(iter(left.items()))
-        far_m = claim.disparity_rad / rad_per_m
+        far_m = claim.length_m
         here = seen_from(node, claim.heading_rad, claim.yaw_rad, far_m, SPREAD * far_m + SPOT_M / 2.0)
         near = set(graph.nearest(node, NEAR_NODES))
-        elsewhere = out_of_reach(graph, left, here, rad_per_m, NEAR_NODES)
+        elsewhere = out_of_reach(graph, left, here, NEAR_NODES)
         agreeing = {n: c for n, c in left.items() if n == node or (n in near and n not in elsewhere)}
         each = [c.similarity for c in agreeing.values()]
         found.append(Hypothesis(tuple(agreeing), claim.similarity, sum(each), sum(each[:CORE_NODES])))

@@ -15,7 +15,6 @@ from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.claims import Claim
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.relative_poses import RelativePose, relative_poses
-from shared.mapgraph.local.sights import metres_per_rad
 
 STDS = 3.0
 """A sight further than so many standard deviations from where its node lies is refused; the usual three."""
@@ -25,8 +24,8 @@ degrees."""
 BEARING_RAD = math.radians(4.0)
 """Error of the bearing of a sight, generous: what stands near bends it."""
 LENGTH_FACTOR = 2.0
-"""A node may be so many times nearer or further than its disparity says: things are near here and far
-there."""
+"""A node may be so many times nearer or further than its matches say, beside the usual three deviations: they
+tell it to a factor of 1.5 in two of three cases."""
 SPOT_M = 0.4
 """Where no baseline is seen the node is this near; and what a length is uncertain by in any case."""
 LOOP_NODES = 400
@@ -38,7 +37,6 @@ def out_of_reach(
     graph: MapGraph,
     claims: Mapping[int, Claim],
     here: Displacement,
-    rad_per_m: float,
     most: int = LOOP_NODES,
     longest_m: float = math.inf,
 ) -> dict[int, str]:
@@ -48,42 +46,34 @@ def out_of_reach(
         graph: the map without the frame.
         claims: by node.
         here: where the frame was taken; without its node in the map nothing is known.
-        rad_per_m: disparity by distance, until driven edges say it better.
         most: nodes of the map reckoned with; of those further off nothing is known, and none is refused.
         longest_m: what surely lies further away is elsewhere, too.
     """
     if here.node_id not in graph.nodes or not claims:
         return {}
-    scale = metres_per_rad(graph, 1.0 / rad_per_m)
-    poses = relative_poses(graph, here.node_id, claims, scale, most)
+    poses = relative_poses(graph, here.node_id, claims, most)
     judged = {
-        node: _contradiction(poses[node], c, here, scale, longest_m)
-        for node, c in claims.items()
-        if node in poses
+        node: _contradiction(poses[node], c, here, longest_m) for node, c in claims.items() if node in poses
     }
     return {node: f"node {node} {why}" for node, why in judged.items() if why}
 
 
-def distances_m(graph: MapGraph, here: Displacement, rad_per_m: float, most: int) -> dict[int, float]:
+def distances_m(graph: MapGraph, here: Displacement, most: int) -> dict[int, float]:
     """How far the nodes around a frame are from it, by where they lie, not by what they look like.
 
     Args:
         graph: the map.
         here: where the frame was taken; without its node in the map nothing is known.
-        rad_per_m: as for `out_of_reach`.
         most: nodes reckoned with, nearest by number of edges first.
     """
     if here.node_id not in graph.nodes:
         return {}
-    scale, around = metres_per_rad(graph, 1.0 / rad_per_m), graph.nearest(here.node_id, most)
-    poses = relative_poses(graph, here.node_id, around, scale, most)
+    poses = relative_poses(graph, here.node_id, graph.nearest(here.node_id, most), most)
     at_m = np.array([here.x_m, here.y_m])
     return {node: float(np.linalg.norm(pose.position_m - at_m)) for node, pose in poses.items()}
 
 
-def _contradiction(
-    pose: RelativePose, claim: Claim, here: Displacement, scale: float, longest_m: float
-) -> str:
+def _contradiction(pose: RelativePose, claim: Claim, here: Displacement, longest_m: float) -> str:
     """Why the node cannot be where the frame sees it; "" when it can."""
     yaw_miss = abs(math.remainder(here.yaw_rad + claim.yaw_rad - pose.yaw_rad, math.tau))
     if yaw_miss > YAW_RAD + STDS * pose.yaw_std_rad:
@@ -99,7 +89,7 @@ def _contradiction(
     angle_rad = here.yaw_rad + claim.heading_rad
     along = np.array([math.cos(angle_rad), math.sin(angle_rad)])
     across = np.array([-along[1], along[0]])
-    claimed_m = claim.disparity_rad * scale
+    claimed_m = claim.length_m
     least_m, most_m = claimed_m / LENGTH_FACTOR - SPOT_M, claimed_m * LENGTH_FACTOR + SPOT_M
     ahead_m, aside_m = float(gap @ along), float(gap @ across)
     beyond = max(least_m - ahead_m, ahead_m - most_m, 0.0) / max(_std(covariance, along), 1e-6)

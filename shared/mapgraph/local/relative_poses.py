@@ -53,20 +53,16 @@ class RelativePose:
     yaw_std_rad: float
 
 
-def relative_poses(
-    graph: MapGraph, root: int, wanted: Collection[int], metres_per_rad: float, most: int
-) -> dict[int, RelativePose]:
+def relative_poses(graph: MapGraph, root: int, wanted: Collection[int], most: int) -> dict[int, RelativePose]:
     """Poses of the wanted nodes that edges join to `root`.
 
     Args:
         graph: the map; suspended edges do not count.
         root: the node to start from.
         wanted: whose poses are asked for; those out of the part reckoned with are left out.
-        metres_per_rad: rough length of an edge that was not driven, by its disparity.
         most: nodes to reckon with, nearest by number of edges first.
     """
-    key = ("local part", root, metres_per_rad, most)
-    part = graph.made_once(key, lambda: _solved(graph, root, metres_per_rad, most))
+    part = graph.made_once(("local part", root, most), lambda: _solved(graph, root, most))
     asked = sorted(node for node in set(wanted) if node in part.index)
     rows = np.array([part.index[node] for node in asked], dtype=np.intp)
     covariance_m2, variance = part.positions.covariance(rows), part.yaws.covariance(rows)
@@ -107,10 +103,10 @@ class _Part:
     positions: _Solution
 
 
-def _solved(graph: MapGraph, root: int, metres_per_rad: float, most: int) -> _Part:
+def _solved(graph: MapGraph, root: int, most: int) -> _Part:
     order = graph.nearest(root, most)
     index = {node: i for i, node in enumerate(order)}
-    sights = sights_among(graph, index, metres_per_rad)
+    sights = sights_among(graph, index)
     tree = _tree(len(order), sights)
     yaws = _solve_yaws(len(order), sights, tree)
     return _Part(index, yaws, _solve_positions(len(order), sights, tree, yaws.values[:, 0]))

@@ -1,8 +1,8 @@
 """Where a frame was taken, by all that it sees of the nodes around: resection in a local map. Pure.
 
 Bearings of known nodes cross at one point. Along a corridor they hardly cross: there distances decide, which
-follow from disparities up to one factor. It is unknown, for things are near in one place and far in another,
-and solved for with the position. For a node at p, seen in direction u with normal n at disparity d:
+follow from matches up to one factor: views carry further in one place than in the next one. It is solved for
+with the position. For a node at p, seen in direction u with normal n, by its matches d away:
 
     n . (p - x) = 0 +- bearing error times distance,    u . (p - x) = f d +- a share of it,
 
@@ -28,16 +28,15 @@ from shared.mapgraph.local.relative_poses import (
     cauchy,
     relative_poses,
 )
-from shared.mapgraph.local.sights import SPOT_M, metres_per_rad
+from shared.mapgraph.local.sights import SPOT_M
 
 FloatArray = npt.NDArray[np.float64]
 
-FACTOR_SHARE = 0.5
-"""Error of the factor between distance and disparity, as a share of what it is in the whole map."""
+FACTOR_SHARE = 0.3
+"""Error of the factor f, which is about 1: how far views carry differs so much within one place."""
 RANGE_SHARE = 0.35
 RANGE_M = 0.1
-"""Error of one distance beside that of the factor: 0.36 of it for 68 % of the edges of 400 nodes in an office
-and a hostel; the factor of half of these nodes is 0.65 to 1.5 times that of the whole map or beyond."""
+"""Error of one distance beside that of the factor, as a share of it and in metres (view_range)."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +62,6 @@ def resected(
     graph: MapGraph,
     claims: Mapping[int, Claim],
     root: int,
-    rad_per_m: float,
     most: int,
     reckoned: Displacement | None = None,
 ) -> Displacement | None:
@@ -73,22 +71,20 @@ def resected(
         graph: the map.
         claims: what the frame claims of nodes, those that lie elsewhere removed.
         root: the node to say it of.
-        rad_per_m: disparity by distance, until driven edges say it better.
         most: nodes reckoned with, nearest to the root by number of edges first.
         reckoned: where the frame is by what the robot did; counts by its spread.
 
     Bearings are lines to the equations: where they nearly agree they may cross behind the camera. A point
     from which half of what is seen ahead lies behind is none (cheirality, as in two-view geometry).
     """
-    factor = metres_per_rad(graph, 1.0 / rad_per_m)
     wanted = {*claims, *([reckoned.node_id] if reckoned is not None else [])}
-    poses = relative_poses(graph, root, wanted, factor, most) if root in graph.nodes else {}
+    poses = relative_poses(graph, root, wanted, most) if root in graph.nodes else {}
     seen = [(poses[node], claim) for node, claim in claims.items() if node in poses]
     if not seen:
         return None
     yaw_rad = _yaw_rad(seen)
-    parts = [_Equations(np.array([[0, 0, 1.0]]), np.array([factor]), np.array([FACTOR_SHARE * factor]))]
-    parts += [_sight(pose, claim, yaw_rad, factor) for pose, claim in seen]
+    parts = [_Equations(np.array([[0, 0, 1.0]]), np.ones(1), np.array([FACTOR_SHARE]))]
+    parts += [_sight(pose, claim, yaw_rad) for pose, claim in seen]
     if reckoned is not None and reckoned.node_id in poses:
         parts.append(_driven(poses[reckoned.node_id], reckoned))
     together = _Equations(
@@ -96,8 +92,8 @@ def resected(
         np.concatenate([part.values for part in parts]),
         np.concatenate([part.spread for part in parts]),
     )
-    start = np.median([_guess_m(pose, claim, yaw_rad, factor) for pose, claim in seen], axis=0)
-    (x_m, y_m, _), covariance = together.solved(np.array([*start, factor]))
+    start = np.median([_guess_m(pose, claim, yaw_rad) for pose, claim in seen], axis=0)
+    (x_m, y_m, _), covariance = together.solved(np.array([*start, 1.0]))
     if 2 * sum(_is_behind(pose, claim, yaw_rad, (x_m, y_m)) for pose, claim in seen) >= len(seen):
         return None
     spread_m = math.sqrt(float(np.linalg.eigvalsh(covariance[:2, :2])[-1]) + POINT_M**2)
@@ -115,12 +111,10 @@ def _yaw_rad(seen: list[tuple[RelativePose, Claim]]) -> float:
     return math.remainder(float(said[middle]) + step, math.tau)
 
 
-def _guess_m(pose: RelativePose, claim: Claim, yaw_rad: float, factor: float) -> FloatArray:
+def _guess_m(pose: RelativePose, claim: Claim, yaw_rad: float) -> FloatArray:
     """(2,) where one node alone puts the frame."""
     angle_rad = yaw_rad + (claim.heading_rad or 0.0)
-    return pose.position_m - factor * claim.disparity_rad * np.array(
-        [math.cos(angle_rad), math.sin(angle_rad)]
-    )
+    return pose.position_m - claim.length_m * np.array([math.cos(angle_rad), math.sin(angle_rad)])
 
 
 def _is_behind(pose: RelativePose, claim: Claim, yaw_rad: float, at_m: tuple[float, float]) -> bool:
@@ -132,20 +126,20 @@ def _is_behind(pose: RelativePose, claim: Claim, yaw_rad: float, at_m: tuple[flo
     return bool(gap @ np.array([math.cos(angle_rad), math.sin(angle_rad)]) < -SPOT_M)
 
 
-def _sight(pose: RelativePose, claim: Claim, yaw_rad: float, factor: float) -> _Equations:
+def _sight(pose: RelativePose, claim: Claim, yaw_rad: float) -> _Equations:
     """One node: across and along its bearing; both axes alike where it is this very spot."""
     angle_rad = yaw_rad + (claim.heading_rad or 0.0)
     along = np.array([math.cos(angle_rad), math.sin(angle_rad)])
     across = np.array([-along[1], along[0]])
     if claim.heading_rad is None:
-        disparity_rad, aside_m, far_m = 0.0, SPOT_M, SPOT_M
+        length_m, aside_m, far_m = 0.0, SPOT_M, SPOT_M
     else:
-        disparity_rad, length_m = claim.disparity_rad, factor * claim.disparity_rad
+        length_m = claim.length_m
         aside_m = math.hypot(max(BEARING_RAD, claim.heading_std_rad) * length_m, POINT_M)
         far_m = RANGE_SHARE * length_m + RANGE_M
     known = [float(axis @ pose.covariance_m2 @ axis) for axis in (across, along)]
     return _Equations(
-        np.array([[*across, 0.0], [*along, disparity_rad]]),
+        np.array([[*across, 0.0], [*along, length_m]]),
         np.array([across @ pose.position_m, along @ pose.position_m]),
         np.sqrt([aside_m**2 + known[0], far_m**2 + known[1]]),
     )

@@ -32,7 +32,7 @@ def test_hold_gives_still_wheels():
 
 def test_free_way_follows_the_heading_at_full_speed():
     answer = command(Heading(robot="r1", seq=9, epoch=3, heading_rad=1.0), ranges())
-    assert (answer.seq, answer.epoch, answer.steer_rad, answer.wheel_speed_radps) == (9, 3, 1.0, 5.0)
+    assert (answer.seq, answer.epoch, answer.steer_rad, answer.wheel_speed_radps) == (9, 3, 1.0, 10.0)
     assert not answer.avoiding
 
 
@@ -40,6 +40,16 @@ def test_obstacle_ahead_changes_the_heading_and_slows():
     answer = command(Heading(robot="r1", heading_rad=0.0), ranges(ahead_m=0.45))
     assert answer.avoiding
     assert abs(answer.steer_rad) > math.radians(20.0)
+
+
+def test_a_slow_robot_needs_less_free_way_for_its_speed_than_a_fast_one():
+    def speed(fraction, ahead_m):
+        heading = Heading(robot="r1", heading_rad=0.0, speed_fraction=fraction)
+        return command(heading, ranges(ahead_m)).wheel_speed_radps
+
+    assert (speed(1.0, 4.0), speed(0.5, 4.0)) == (10.0, 5.0)
+    assert 5.0 < speed(1.0, 1.15) < 10.0
+    assert speed(0.5, 1.15) == 5.0
 
 
 def test_commands_outlive_two_readings_and_end_well_within_half_a_second():

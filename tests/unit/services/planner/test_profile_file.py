@@ -6,7 +6,7 @@ import pytest
 from pydantic import ValidationError
 
 from services.launcher.processes.stack_settings import profile_variables
-from services.planner.profiles import OUTDOOR
+from services.planner.profiles import PHOTO
 from services.planner.settings import PlannerSettings
 
 
@@ -21,19 +21,19 @@ def write(tmp_path):
 
 
 def test_thresholds_of_the_file_replace_those_of_its_base(write):
-    path = write({"base": "outdoor", "thresholds": {"s_edge_min": 33, "disparity_rad_per_m": 0.05}})
+    path = write({"base": "photo", "thresholds": {"s_edge_min": 33, "departure_m": 3.0}})
     rules = PlannerSettings(profile_file=path).rules()
-    assert rules == OUTDOOR.replaced(s_edge_min=33, disparity_rad_per_m=0.05)
-    assert (rules.mapping.s_edge_min, rules.sensing.disparity_rad_per_m) == (33, 0.05)
+    assert rules == PHOTO.replaced(s_edge_min=33, departure_m=3.0)
+    assert (rules.mapping.s_edge_min, rules.mapping.departure_m) == (33, 3.0)
 
 
 def test_no_file_leaves_the_named_profile():
-    assert PlannerSettings(profile="outdoor", profile_file="").rules() == OUTDOOR
+    assert PlannerSettings(profile="photo", profile_file="").rules() == PHOTO
 
 
 def test_the_launcher_gives_the_base_to_everybody_and_the_file_to_the_planner(write):
-    path = write({"base": "outdoor", "thresholds": {"s_edge_min": 33}})
-    assert profile_variables(str(path)) == {"TOPNAV_PROFILE": "outdoor", "TOPNAV_PROFILE_FILE": str(path)}
+    path = write({"base": "photo", "thresholds": {"s_edge_min": 33}})
+    assert profile_variables(str(path)) == {"TOPNAV_PROFILE": "photo", "TOPNAV_PROFILE_FILE": str(path)}
     assert profile_variables("thesis") == {"TOPNAV_PROFILE": "thesis"}
 
 
@@ -44,8 +44,8 @@ def test_the_launcher_gives_the_base_to_everybody_and_the_file_to_the_planner(wr
         ("1" * 5_000, "not one of"),
         ({"thresholds": {}}, "base"),
         ({"base": "moon", "thresholds": {}}, "must be one of"),
-        ({"base": "outdoor", "thresholds": {"s_edge_mim": 3}}, "s_edge_mim"),
-        ({"base": "outdoor", "thresholds": {"s_edge_min": -3}}, "s_edge_min"),
+        ({"base": "photo", "thresholds": {"s_edge_mim": 3}}, "s_edge_mim"),
+        ({"base": "photo", "thresholds": {"s_edge_min": -3}}, "s_edge_min"),
     ],
 )
 def test_what_does_not_fit_is_told_by_name(write, content, words):

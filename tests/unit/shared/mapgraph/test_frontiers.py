@@ -8,9 +8,6 @@ from services.planner.profiles import DEFAULT
 from services.planner.surroundings import free_ways_m
 from shared.mapgraph.frontiers import (
     ExploredRules,
-    best_sector,
-    frontier_sectors,
-    mark_explored,
     with_explored,
 )
 from shared.mapgraph.graph import MapGraph
@@ -48,11 +45,3 @@ def test_edge_to_a_far_place_leaves_the_ground_between_unexplored():
     far = Edge(a=0, b=1, heading_ab_rad=0.0, heading_ba_rad=math.pi, inliers=35)
     nodes = [Node(node_id=0, open=ALL_OPEN), Node(node_id=1)]
     assert not any(with_explored(nodes[0], MapGraph(nodes, [far]), ExploredRules()).explored)
-
-
-def test_best_sector_is_nearest_to_the_wished_direction():
-    node = mark_explored(Node(node_id=0, open=ALL_OPEN), 0)
-    assert best_sector(node, 0.1) == 1
-    assert best_sector(node, -0.1) == 11
-    assert len(frontier_sectors(node)) == 11
-    assert best_sector(Node(node_id=0), 0.0) is None

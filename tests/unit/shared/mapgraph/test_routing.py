@@ -2,18 +2,19 @@
 
 import itertools
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 
 from shared.mapgraph.edge_ends import edge_between
 from shared.mapgraph.graph import MapGraph
-from shared.mapgraph.routing import fewest_nodes, least_disparity, plan_path
+from shared.mapgraph.routing import fewest_nodes, plan_path, way_m
 from shared.messages.maps import DeleteNode, Edge, Node, PutEdge
 
 
 def graph(edges, count=8):
-    made = [Edge(a=min(p), b=max(p), disparity_rad=0.1, clear=True) for p in edges]
+    made = [Edge(a=min(p), b=max(p), inliers=80, clear=True) for p in edges]
     return MapGraph([Node(node_id=n) for n in range(count)], made)
 
 
@@ -37,29 +38,33 @@ def test_fewest_nodes_equals_brute_force_on_random_graphs():
 
 def test_unseen_ground_is_avoided_when_there_is_another_way():
     nodes = [Node(node_id=n) for n in range(3)]
-    direct = Edge(a=0, b=2, disparity_rad=0.1)
-    around = [Edge(a=0, b=1, disparity_rad=0.1, clear=True), Edge(a=1, b=2, disparity_rad=0.1, traversals=1)]
-    assert plan_path(MapGraph(nodes, [direct, *around]), {0: 0.0}, {2: 0.0}, least_disparity) == [0, 1, 2]
-    assert plan_path(MapGraph(nodes, [direct, *around]), {0: 0.0}, {2: 0.0}, fewest_nodes) == [0, 2]
+    direct = Edge(a=0, b=2, inliers=80)
+    around = [Edge(a=0, b=1, inliers=80, clear=True), Edge(a=1, b=2, inliers=80, traversals=1)]
+    flat = MapGraph(nodes, [direct, *around])
+    assert plan_path(flat, {0: 0.0}, {2: 0.0}, partial(way_m, flat)) == [0, 1, 2]
+    assert plan_path(flat, {0: 0.0}, {2: 0.0}, fewest_nodes) == [0, 2]
 
 
-@pytest.mark.parametrize("cost", [fewest_nodes, least_disparity])
-def test_suspended_edge_is_the_last_resort(cost):
+def test_the_shorter_of_two_ways_is_taken_whatever_the_number_of_nodes():
+    """Four short edges, or two long ones that few matches tell."""
+    nodes = [Node(node_id=n) for n in range(5)]
+    chain = [Edge(a=n, b=n + 1, inliers=200, length_m=0.5, clear=True) for n in range(3)]
+    far = [Edge(a=0, b=4, inliers=25, clear=True), Edge(a=3, b=4, inliers=25, clear=True)]
+    flat = MapGraph(nodes, [*chain, *far])
+    assert plan_path(flat, {0: 0.0}, {3: 0.0}, partial(way_m, flat)) == [0, 1, 2, 3]
+    assert plan_path(flat, {0: 0.0}, {3: 0.0}, fewest_nodes) == [0, 4, 3]
+
+
+@pytest.mark.parametrize("by_length", [False, True])
+def test_suspended_edge_is_the_last_resort(by_length):
     nodes = [Node(node_id=n) for n in range(8)]
-    suspended = Edge(a=0, b=1, disparity_rad=0.1, clear=True, suspended=True)
-    around = [Edge(a=min(p), b=max(p), disparity_rad=0.3) for p in itertools.pairwise([0, 2, 3, 4, 5, 6, 7])]
-    around.append(Edge(a=1, b=7, disparity_rad=0.3))
-    assert plan_path(MapGraph(nodes, [suspended]), {0: 0.0}, {1: 0.0}, cost) == [0, 1]
-    assert plan_path(MapGraph(nodes, [suspended, *around]), {0: 0.0}, {1: 0.0}, cost) == [
-        0,
-        2,
-        3,
-        4,
-        5,
-        6,
-        7,
-        1,
-    ]
+    suspended = Edge(a=0, b=1, inliers=80, clear=True, suspended=True)
+    around = [Edge(a=min(p), b=max(p), inliers=40) for p in itertools.pairwise([0, 2, 3, 4, 5, 6, 7])]
+    around.append(Edge(a=1, b=7, inliers=40))
+    for edges, way in (([suspended], [0, 1]), ([suspended, *around], [0, 2, 3, 4, 5, 6, 7, 1])):
+        flat = MapGraph(nodes, edges)
+        cost = partial(way_m, flat) if by_length else fewest_nodes
+        assert plan_path(flat, {0: 0.0}, {1: 0.0}, cost) == way
 
 
 def test_an_edge_of_infinite_cost_is_no_way():

@@ -1,7 +1,6 @@
 """Indoors and outdoors: settings of the stack and bounds of the evaluation."""
 
 from services.drive.settings import DriveSettings
-from services.features.pipeline.named_pipelines import find_profile
 from services.launcher.client.environments import INDOOR, OUTDOOR, environment_of
 from services.planner.profiles import profile_named
 
@@ -13,17 +12,15 @@ def test_worlds_say_what_they_are():
 
 
 def test_names_of_profiles_exist_in_planner_and_drive():
-    for asked in (None, "default", "thesis"):
-        name = OUTDOOR.profile(asked)
-        assert name is not None
-        outside, inside = (profile_named(each).sensing.disparity_rad_per_m for each in (name, "default"))
-        assert outside < inside
-        assert DriveSettings(profile=name).limits().wheels.max_radps == 10.0
-    assert OUTDOOR.pipeline is not None
-    assert find_profile(OUTDOOR.pipeline).keypoints == 500
+    for place in (INDOOR, OUTDOOR):
+        for asked in ("default", "thesis"):
+            name = place.profile(asked)
+            assert profile_named(name).name == DriveSettings(profile=name).profile == name
+    assert DriveSettings(profile=OUTDOOR.profile("thesis")).limits().wheels.max_radps == 10.0
+    assert DriveSettings(profile=INDOOR.profile("thesis")).limits().wheels.max_radps == 5.0
 
 
-def test_a_profile_asked_for_by_its_own_name_is_kept():
-    assert OUTDOOR.profile("outdoor") == "outdoor"
-    assert INDOOR.profile("thesis") == "thesis"
-    assert INDOOR.profile(None) is None
+def test_how_a_robot_decides_is_the_same_everywhere():
+    assert OUTDOOR.profile("default") == INDOOR.profile("default") == "default"
+    assert OUTDOOR.profile(None) is INDOOR.profile(None) is None
+    assert OUTDOOR.profile("photo") == "photo"

@@ -4,14 +4,16 @@ import math
 
 import pytest
 
-from services.planner.mapping.departure import Departure, NewNode
+from services.planner.mapping.departure import UNSURE_FRAMES, Departure, NewNode
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
-from shared.messages.maps import Node
+from shared.mapgraph.local.view_range import ROOM_HALF_M
+from shared.messages.maps import Edge, Node
 from shared.messages.sensors import Ranges
 from tests.unit.services.planner.travel.seen import Maps, by_node, features, match
+from tests.unit.shared.mapgraph.local.places import inliers_at
 
 STEP_M = (0.12, 0.0)
 ANGLES_RAD = tuple(math.radians(30 * n) for n in range(12))
@@ -23,11 +25,11 @@ class Matcher:
 
     def __init__(self):
         self.seen = match(0, 0.0, 0.0)
-        self.look_alike = None
+        self.look_alike = self.also = None
 
     def match(self, node_ids, best_k=0, targets=()):  # noqa: ARG002
         alike = [self.look_alike] if best_k and self.look_alike is not None else []
-        return by_node(self.seen, *alike)
+        return by_node(self.seen, *alike, *([self.also] if self.also is not None else []))
 
 
 @pytest.fixture
@@ -145,3 +147,41 @@ def test_a_new_node_closes_the_direction_it_lies_in(matcher, aside_m, explored):
 def unlike(away_m):
     sight = match(0, -away_m, 0.0, DEFAULT.mapping.s_node_max - 20)
     return sight.model_copy(update={"confidence": 0.9})
+
+
+def test_a_view_without_a_sure_direction_is_driven_on_from_and_given_up_in_the_end(departure, matcher):
+    """Along a corrugated wall nodes are recognised, but from where is not to be told."""
+    vague = [unlike(0.12 * step).model_copy(update={"confidence": 0.4}) for step in range(1, 30)]
+    found = []
+    while not departure.done:
+        found.append(drive(departure, matcher, vague[len(found)]))
+    on = [one for one in found if one.method == "frontier"]
+    assert len(on) > UNSURE_FRAMES
+    assert found[-1].method == "reverse"
+
+
+def test_a_node_is_made_at_the_end_of_a_long_way_though_one_far_off_is_still_like_it(matcher):
+    """Between containers the view of the node before the last one came back."""
+    behind_0 = Edge(
+        a=0, b=7, inliers=150, heading_ab_rad=math.pi, heading_ba_rad=0.0, yaw_ab_rad=0.0, length_m=0.3
+    )
+    maps = Maps(MapGraph([Node(node_id=node, open=(True,) * 12) for node in (0, 7)], [behind_0]))
+    departure = Departure(DEFAULT, maps, matcher, 0, 0.0, Displacement(0))
+    step = 0
+    found = None
+    while not departure.done and not isinstance(found, NewNode):
+        step += 1
+        matcher.also = match(7, -0.3 - 0.12 * step, 0.0, 95)
+        found = drive(departure, matcher, match(0, -0.12 * step, 0.0, inliers_at(0.12 * step, ROOM_HALF_M)))
+    assert isinstance(found, NewNode), found.why
+    assert 0.12 * step == pytest.approx(DEFAULT.mapping.departure_m, abs=0.2)
+
+
+def test_a_way_past_nodes_that_stay_near_is_closed(departure, matcher):
+    still = Observation(features(), RANGES, (0.12, 0.0))
+    matcher.seen = match(0, -0.3, 0.0, 150)
+    departure.here = Displacement(0, x_m=-1.3)
+    while not departure.done:
+        departure.here = Displacement(0, x_m=0.3)
+        decision = departure.step(still)
+    assert decision.why == "nothing new on the way"

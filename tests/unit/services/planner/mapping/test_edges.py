@@ -1,7 +1,6 @@
 """Which matches become edges of a new place."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +8,7 @@ import pytest
 from services.planner.mapping.edges import judge_edges, stands_alone
 from services.planner.mapping.nodes import add_node
 from services.planner.ports import Observation
-from services.planner.profiles import DEFAULT, OUTDOOR, PHOTO, THESIS
+from services.planner.profiles import DEFAULT, PHOTO, THESIS
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
 from shared.messages.features import Features
@@ -60,59 +59,36 @@ def edges_of(profile, *matches, driven_from=None):
     return maps.graph.neighbours(node)
 
 
-@pytest.mark.parametrize(("raw", "expected"), [(60, [0]), (80, [])])
-def test_outdoors_most_of_a_weak_edges_matches_must_agree(raw, expected):
-    assert edges_of(OUTDOOR, match(0, 35, raw)) == expected
-    assert edges_of(DEFAULT, match(0, 35, raw)) == [0]
-
-
-def test_a_strong_edge_needs_no_share():
-    assert edges_of(OUTDOOR, match(0, 60, 150)) == [0]
-
-
-def test_outdoors_a_place_behind_an_obstacle_must_agree_in_most():
+def test_a_node_out_of_sight_of_free_ground_is_an_edge_and_said_to_be_none_that_is_clear():
     blocked = Observation(
         observation().features, observation().ranges.model_copy(update={"distances_m": (0.5,) * 12})
     )
     graph = Memory().graph
-    assert set(judge_edges(graph, blocked, {0: match(0, 71, 120)}, OUTDOOR, None).admitted) == {0}
-    assert judge_edges(graph, blocked, {0: match(0, 71, 160)}, OUTDOOR, None).admitted == {}
+    for seen, clear in ((observation(), {0}), (blocked, set())):
+        edges = judge_edges(graph, seen, {0: match(0, 71, 120)}, DEFAULT, None)
+        assert set(edges.admitted) == {0}
+        assert edges.clear == clear
 
 
-def test_the_edge_the_robot_drove_is_kept():
-    assert edges_of(OUTDOOR, match(0, 35, 80), match(1, 30, 90), driven_from=0) == [0]
-
-
-def test_outdoors_a_weak_edge_needs_ground_seen_free_as_far_as_the_place_may_be():
-    """35 matches agree at 8 m, and at 14 m as well, beyond a hedge."""
-    matches = {0: match(0, 35, 60)}
-    seen = Observation(observation().features, observation().ranges.model_copy(update={"max_range_m": 10.0}))
-    near, far = (
-        replace(seen, ranges=seen.ranges.model_copy(update={"distances_m": (m,) * 12, "max_range_m": 25.0}))
-        for m in (16.0, 24.0)
-    )
-    graph = Memory().graph
-    assert judge_edges(graph, near, matches, OUTDOOR, None).admitted == {}
-    assert set(judge_edges(graph, far, matches, OUTDOOR, None).admitted) == {0}
-
-
-def test_a_place_too_uncertain_for_an_edge_leaves_nothing_unexplored_that_way():
+def test_a_node_too_uncertain_for_an_edge_leaves_nothing_unexplored_that_way():
+    """Few matches that hardly move may be far away; its neighbour supports it."""
     maps = Memory()
     maps.commit(
         [PutEdge(edge=Edge(a=0, b=1, heading_ab_rad=0.3, heading_ba_rad=0.3 - math.pi, yaw_ab_rad=0.0))]
     )
-    weak = match(1, 35, 80)
-    edges = judge_edges(maps.graph, observation(), {0: match(0, 90, 120), 1: weak}, OUTDOOR, HERE)
+    sure = {"noise_rad": math.radians(0.3), "moved": 60}
+    weak = match(1, 45, 80).model_copy(update={**sure, "disparity_rad": 0.11})
+    strong = match(0, 90, 120).model_copy(update=sure)
+    edges = judge_edges(maps.graph, observation(), {0: strong, 1: weak}, PHOTO, HERE)
     assert set(edges.admitted) == {0}
-    assert set(edges.covered) == {1}, "its neighbour supports it"
-    node, _ = add_node(maps, observation(), edges, OUTDOOR, HERE)
+    assert set(edges.covered) == {1}
+    node, _ = add_node(maps, observation(), edges, PHOTO, HERE)
     assert maps.graph.neighbours(node) == [0]
 
 
 def test_a_match_that_stands_alone_is_an_edge_without_free_ground():
     assert stands_alone(match(0, 35, 80), DEFAULT)
     assert not stands_alone(match(0, 25, 80), DEFAULT)
-    assert not stands_alone(match(0, 35, 80), OUTDOOR)  # driven there it would be one
     assert not stands_alone(match(0, 35, 80).model_copy(update={"confidence": 0.4}), DEFAULT)
 
 

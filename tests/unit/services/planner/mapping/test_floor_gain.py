@@ -2,7 +2,7 @@
 
 import pytest
 
-from services.planner.mapping.floor_gain import without_poor_directions
+from services.planner.mapping.floor_gain import best_sector, without_poor_directions
 from services.planner.profiles import DEFAULT
 from shared.mapgraph.frontiers import frontier_sectors
 from shared.mapgraph.graph import MapGraph
@@ -66,3 +66,19 @@ def test_profiles_that_ask_for_no_gain_explore_everything(changes):
 def test_an_empty_neighbourhood_is_all_new():
     lonely = MapGraph([Node(node_id=0, open=ALL, free_m=(3.0,) * 12)], [])
     assert left(lonely, 0)[0] == set(range(12))
+
+
+def test_a_node_is_left_where_most_is_new_and_straight_on_where_as_much_is():
+    assert best_sector(grid(), BORDER, preferred_rad=0.0, profile=DEFAULT) == 9
+    alone = MapGraph([Node(node_id=0, open=ALL, free_m=(3.0,) * 12)], [])
+    assert [best_sector(alone, 0, heading, DEFAULT) for heading in (0.0, 1.6, -0.5)] == [0, 3, 11]
+
+
+def test_where_every_direction_is_to_be_explored_the_one_ahead_comes_first():
+    every = DEFAULT.replaced(covers_m=0.0)
+    assert best_sector(grid(), BORDER, preferred_rad=1.6, profile=every) == 3
+
+
+def test_a_node_with_nothing_unexplored_has_no_best_direction():
+    done = MapGraph([Node(node_id=0, open=ALL, explored=ALL)], [])
+    assert best_sector(done, 0, 0.0, DEFAULT) is None

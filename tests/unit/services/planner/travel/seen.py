@@ -1,20 +1,27 @@
 """Matches with the nodes of a grid map, and the ports that a tracker or a goal needs."""
 
+import math
+
 import numpy as np
 
 from shared.mapgraph.routing import GOAL
 from shared.messages.features import Features
 from shared.messages.matching import NodeMatch
-from tests.unit.shared.mapgraph.local.grid import claim
+from tests.unit.shared.mapgraph.local.grid import GRID_HALF_M, claim
+from tests.unit.shared.mapgraph.local.places import inliers_at
 
 
-def match(node, x_m, y_m, inliers=90):
-    """A node seen so far ahead and to the left, from a camera that looks along x."""
+def match(node, x_m, y_m, inliers=None):
+    """A node seen so far ahead and to the left, from a camera that looks along x.
+
+    Without a number of its own it has as many matches as nodes so far apart have in the grid.
+    """
+    inliers = inliers_at(math.hypot(x_m, y_m), GRID_HALF_M) if inliers is None else inliers
     sight = claim(x_m, y_m, inliers)
     return NodeMatch(
         node_id=node, raw_matches=inliers + 20, inliers=inliers,
         status="ok" if sight.heading_rad is not None else "no_baseline", confidence=0.9,
-        heading_rad=sight.heading_rad, heading_std_rad=0.01, yaw_rad=0.0, disparity_rad=sight.disparity_rad,
+        heading_rad=sight.heading_rad, heading_std_rad=0.01, yaw_rad=0.0, disparity_rad=0.15 * sight.length_m,
     )  # fmt: skip
 
 

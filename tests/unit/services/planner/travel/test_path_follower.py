@@ -20,8 +20,8 @@ from tests.unit.services.planner.travel.seen import Maps, by_node, features, mat
 from tests.unit.shared.mapgraph.local.grid import edge
 
 ANGLES_RAD = tuple(math.radians(30.0 * sector) for sector in range(SECTORS))
-AT_THE_WAYPOINT = by_node(match(0, 0.0, 0.0, 120), match(1, 2.0, 0.0, 60))
-"""The next node lies 2 m ahead, by disparity."""
+AT_THE_WAYPOINT = by_node(match(0, 0.0, 0.0, 120), match(1, 2.0, 0.0, 37))
+"""The next node lies 2 m ahead, by its matches in a room."""
 
 
 class Seen:

@@ -87,7 +87,7 @@ def test_one_that_maps_wants_to_be_certain(matcher):
 def test_what_the_frame_shows_takes_over_from_what_was_driven(tracker):
     drive(tracker, (1.9, 0.0))
     spread_m = tracker.here.spread_m
-    tracker.confirm(by_node(match(2, 0.2, 0.0, 450)))
+    tracker.confirm(by_node(match(2, 0.2, 0.0)))
     assert tracker.here.node_id == 2
     assert tracker.here.spread_m < spread_m
     np.testing.assert_allclose((tracker.here.x_m, tracker.here.y_m), (-0.2, 0.0), atol=0.02)
@@ -166,3 +166,12 @@ def test_another_map_tells_nothing_of_where_the_robot_is():
     at = Whereabouts("flat", here=Displacement(0))
     assert at.of("flat") is at
     assert at.of("loft").here is None
+
+
+def test_a_robot_is_not_at_a_node_that_lies_metres_away_however_alike_it_looks(tracker):
+    assert not tracker.is_beyond(0)
+    assert tracker.is_beyond(3)
+    tracker.stand_at(Displacement(0, spread_m=1.5))
+    assert not tracker.is_beyond(3), "who does not know where it is may be anywhere"
+    tracker.stand_at(None)
+    assert not tracker.is_beyond(3)

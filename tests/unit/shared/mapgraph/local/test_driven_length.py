@@ -6,14 +6,14 @@ import pytest
 
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.driven_length import driven_length
-from tests.unit.shared.mapgraph.local.grid import RAD_PER_M, grid
+from tests.unit.shared.mapgraph.local.grid import grid
 
 GRAPH = grid(6, 1)
 HERE = Displacement(3, x_m=0.5, y_m=0.3, spread_m=0.1)
 
 
 def length(neighbours, here=HERE):
-    return driven_length(GRAPH, here, neighbours, RAD_PER_M, 200)
+    return driven_length(GRAPH, here, neighbours, 200)
 
 
 def test_it_is_the_way_from_the_node_it_came_from():

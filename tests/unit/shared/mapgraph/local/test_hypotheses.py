@@ -2,13 +2,13 @@
 
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.hypotheses import hypotheses, is_plain, likely, typical_similarity
-from tests.unit.shared.mapgraph.local.grid import RAD_PER_M, claim, grid
+from tests.unit.shared.mapgraph.local.grid import claim, grid
 
 GRAPH = grid(12, 2)
 
 
 def places_of(claims):
-    return hypotheses(GRAPH, claims, RAD_PER_M)
+    return hypotheses(GRAPH, claims)
 
 
 ROUND_NODE_1 = {0: claim(-1.0, 0.0, 80), 1: claim(0.0, 0.0, 150), 13: claim(0.0, 1.0, 70)}

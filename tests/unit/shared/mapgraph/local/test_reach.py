@@ -4,7 +4,7 @@ import math
 
 from shared.mapgraph.local.displacement import Displacement, seen_from
 from shared.mapgraph.local.reach import out_of_reach
-from tests.unit.shared.mapgraph.local.grid import RAD_PER_M, claim, grid
+from tests.unit.shared.mapgraph.local.grid import claim, grid
 
 GRAPH = grid(8, 3)
 HERE = Displacement(0, x_m=0.5, y_m=0.0, spread_m=0.1)
@@ -12,7 +12,7 @@ HERE = Displacement(0, x_m=0.5, y_m=0.0, spread_m=0.1)
 
 
 def refused(claims, here=HERE):
-    return set(out_of_reach(GRAPH, claims, here, RAD_PER_M))
+    return set(out_of_reach(GRAPH, claims, here))
 
 
 def test_a_node_where_it_is_seen_is_in_reach():
@@ -26,8 +26,8 @@ def test_a_node_a_period_further_is_out_of_reach():
 def test_what_surely_lies_too_far_away_is_refused():
     seen = {1: claim(0.5, 0.0), 6: claim(5.5, 0.0)}
     assert refused(seen) == set()
-    assert set(out_of_reach(GRAPH, seen, HERE, RAD_PER_M, longest_m=3.0)) == {6}
-    assert not out_of_reach(GRAPH, {4: claim(3.5, 0.0)}, HERE, RAD_PER_M, longest_m=3.4), "not surely"
+    assert set(out_of_reach(GRAPH, seen, HERE, longest_m=3.0)) == {6}
+    assert not out_of_reach(GRAPH, {4: claim(3.5, 0.0)}, HERE, longest_m=3.4), "not surely"
 
 
 def test_what_is_seen_on_the_wrong_side_is_out_of_reach():
@@ -35,7 +35,7 @@ def test_what_is_seen_on_the_wrong_side_is_out_of_reach():
 
 
 def test_yaws_round_a_loop_must_close():
-    reasons = out_of_reach(GRAPH, {1: claim(0.5, 0.0, yaw_rad=math.radians(90))}, HERE, RAD_PER_M)
+    reasons = out_of_reach(GRAPH, {1: claim(0.5, 0.0, yaw_rad=math.radians(90))}, HERE)
     assert "turned by 90 degrees" in reasons[1]
     assert refused({1: claim(0.5, 0.0, yaw_rad=math.radians(4))}) == set()
 

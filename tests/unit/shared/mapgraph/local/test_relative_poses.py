@@ -10,11 +10,9 @@ from shared.mapgraph.local.relative_poses import relative_poses
 from shared.messages.maps import Edge, Node
 from tests.unit.shared.mapgraph.local.grid import at, edge, grid
 
-SCALE = 1.0 / math.radians(9.0)
-
 
 def poses_of(graph, root, most=200):
-    return relative_poses(graph, root, list(graph.nodes), SCALE, most)
+    return relative_poses(graph, root, list(graph.nodes), most)
 
 
 def test_a_grid_is_where_it_is():

@@ -10,7 +10,7 @@ from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.resection import resected
 from shared.messages.maps import Node
-from tests.unit.shared.mapgraph.local.grid import RAD_PER_M, at, claim, edge, grid
+from tests.unit.shared.mapgraph.local.grid import at, claim, edge, grid
 
 SQUARE, CORRIDOR = grid(5, 5), grid(12, 1)
 
@@ -21,24 +21,24 @@ def seen(columns, nodes, x_m, y_m):
 
 
 def place(graph, claims, root=0, reckoned=None):
-    return resected(graph, claims, root, RAD_PER_M, 60, reckoned)
+    return resected(graph, claims, root, 60, reckoned)
 
 
 def off_m(found, x_m, y_m):
     return math.dist((found.x_m, found.y_m), (x_m, y_m))
 
 
-def test_bearings_cross_whatever_disparities_say():
+def test_bearings_cross_whatever_matches_say():
     claims = seen(5, (0, 1, 5, 6, 12), 1.4, 0.7)
-    near = {n: replace(c, disparity_rad=0.5 * c.disparity_rad) for n, c in claims.items()}
+    near = {n: replace(c, length_m=0.5 * c.length_m) for n, c in claims.items()}
     assert off_m(place(SQUARE, claims), 1.4, 0.7) < 0.02
     assert off_m(place(SQUARE, near), 1.4, 0.7) < 0.15
 
 
-def test_along_a_corridor_nodes_before_and_behind_say_how_far_disparities_reach():
-    """Everything is far away there: disparities are half of what they are in the rest of the map."""
+def test_along_a_corridor_nodes_before_and_behind_say_how_far_views_carry():
+    """Here they carry further than around: distances by matches are two thirds of what they are."""
     claims = seen(12, (3, 4, 5, 6, 7), 4.7, 0.0)
-    far = {n: replace(c, disparity_rad=0.5 * c.disparity_rad) for n, c in claims.items()}
+    far = {n: replace(c, length_m=0.67 * c.length_m) for n, c in claims.items()}
     found = place(CORRIDOR, far, root=5)
     assert off_m(found, -0.3, 0.0) < 0.1
     crossing = place(SQUARE, seen(5, (0, 1, 5, 6, 12), 1.4, 0.7))
@@ -53,7 +53,7 @@ def test_bearings_that_cross_beyond_what_is_ahead_say_nothing():
 
 
 def test_a_robot_that_has_not_moved_yet_is_where_it_was():
-    claims = {0: replace(claim(1.0, 0.0), heading_rad=None, disparity_rad=0.0)}
+    claims = {0: replace(claim(1.0, 0.0), heading_rad=None, length_m=0.0)}
     found = place(SQUARE, claims, reckoned=Displacement(0))
     assert off_m(found, 0.0, 0.0) < 0.01
     assert found.spread_m < 0.1
@@ -91,7 +91,7 @@ def test_its_spread_is_what_it_misses_by():
             n: replace(
                 c,
                 heading_rad=None if c.heading_rad is None else c.heading_rad + rng.normal(0.0, 0.025),
-                disparity_rad=c.disparity_rad * rng.lognormal(0.0, 0.35),
+                length_m=c.length_m * rng.lognormal(0.0, 0.35),
             )
             for n, c in seen(5, rng.choice(25, 4, replace=False).tolist(), x_m, y_m).items()
         }
