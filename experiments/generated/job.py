@@ -5,10 +5,11 @@ from pathlib import Path
 from typing import Any
 
 from experiments.generated.plan import WorldPlan
-from experiments.generated.row import world_row
+from experiments.generated.row import curves_of, world_row
 from experiments.hide_and_seek.jobs import FIGURES, MapFiles, map_or_part, play_run
 from experiments.hide_and_seek.plan import MAP_SEED, RunPlan
 from services.launcher.client.failure import ExperimentError
+from services.launcher.drawing.curves import draw_coverage
 from services.launcher.processes.wait import LaunchError
 from services.launcher.terminal.output import write_json
 from simulator.generation.generate import generate
@@ -18,7 +19,9 @@ from simulator.generation.world_text import write_world
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
 
-ROW = "row.json"
+ROW, CURVES = "row.json", "coverage.png"
+SHOWN = 1.5
+"""Of what exploring drove, the metres drawn: a random walk goes on for long."""
 
 
 def play_world(plan: WorldPlan, folder: str) -> dict[str, Any]:
@@ -44,7 +47,10 @@ def play_world(plan: WorldPlan, folder: str) -> dict[str, Any]:
     explored = json.loads(files[FIGURES])
     rounds, moved = _rounds(plan, world, files, own), _rounds(plan, later, files, own)
     drawn = load_world(str(world))
-    row = world_row(plan, drawn, free_space(drawn), explored, rounds, moved)
+    space = free_space(drawn)
+    curves = curves_of(plan, drawn, space, explored)
+    row = world_row(plan, space, explored, curves, rounds, moved)
+    draw_coverage(own / CURVES, plan.name, curves, SHOWN * max(explored["driven_m"], 1.0))
     write_json(own / ROW, row)
     return row
 

@@ -1,4 +1,4 @@
-"""How far two peers drive for the same coverage: nearest frontier on a metric grid, and a random walk. Pure.
+"""What two peers cover over driven metres: nearest frontier on a metric grid, and a random walk. Pure.
 
 Both know their pose exactly, and cover floor as a map of pictures does: within a radius of where they were.
 """
@@ -11,6 +11,7 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
+from services.launcher.evaluation.coverage_curve import Curve
 from simulator.world.freespace import FreeSpace, Point
 
 CELL_M = 0.1
@@ -27,10 +28,8 @@ Grid = npt.NDArray[np.bool_]
 KING = tuple((dy, dx) for dy in (-1, 0, 1) for dx in (-1, 0, 1) if dy or dx)
 
 
-def frontier_m(
-    space: FreeSpace, start: Point, covered_m: float, sight_m: float, share: float
-) -> float | None:
-    """Metres that a robot with a perfect scanner and perfect poses drives for a share of the floor.
+def frontier_curve(space: FreeSpace, start: Point, covered_m: float, sight_m: float, share: float) -> Curve:
+    """What a robot with a perfect scanner and perfect poses has covered, by driven metres.
 
     It drives to the nearest floor that it has seen and not covered, else to the nearest frontier between seen
     and unseen floor (Yamauchi 1997), and plans again every AGAIN_M.
@@ -40,48 +39,47 @@ def frontier_m(
         start: where it begins, metres.
         covered_m: radius that it covers, metres.
         sight_m: range of its scanner, metres.
-        share: of the floor to cover, 0 to 1.
-
-    Returns:
-        Metres; None if the floor cannot be covered that far.
+        share: of the floor, 0 to 1, at which it ends; earlier where the floor cannot be covered that far.
     """
     floor = _Floor.of(space, start)
     seen = np.zeros_like(floor.free)
     driven_m = 0.0
+    curve: Curve = []
     while True:
         floor.cover(covered_m)
+        curve.append((driven_m, floor.covered_share))
         if floor.covered_share >= share:
-            return driven_m
+            return curve
         seen |= _visible(floor, sight_m)
         way = _way_to_nearest(floor, floor.free & seen & ~floor.covered, seen)
         way = way or _way_to_nearest(floor, _frontier(floor.free, seen), seen)
         if not way:
-            return None
+            return curve
         for cell in way[: max(1, round(AGAIN_M / floor.cell_m))]:
             driven_m += math.dist(floor.at, cell) * floor.cell_m
             floor.at = cell
             floor.cover(covered_m)
 
 
-def walk_m(space: FreeSpace, start: Point, covered_m: float, share: float, seed: int) -> float | None:
-    """Metres of a random walk: straight on, and in a direction drawn anew at every obstacle.
+def walk_curve(space: FreeSpace, start: Point, covered_m: float, share: float, seed: int) -> Curve:
+    """What a random walk covers: straight on, and in a direction drawn anew at every obstacle.
 
     Args:
         space: the free floor.
         start: where it begins, metres.
         covered_m: radius that it covers, metres.
-        share: of the floor to cover, 0 to 1.
+        share: of the floor, 0 to 1, at which it ends; or after WALK_MAX_M.
         seed: draws directions.
-
-    Returns:
-        Metres; None if it takes more than WALK_MAX_M.
     """
     rng, floor = np.random.default_rng(seed), _Floor.of(space, start)
     x, y, heading_rad, driven_m = *start, float(rng.uniform(-math.pi, math.pi)), 0.0
+    curve: Curve = []
     while driven_m < WALK_MAX_M:
         floor.cover(covered_m)
+        if not curve or floor.covered_share > curve[-1][1]:
+            curve.append((driven_m, floor.covered_share))
         if floor.covered_share >= share:
-            return driven_m
+            break
         there = x + WALK_STEP_M * math.cos(heading_rad), y + WALK_STEP_M * math.sin(heading_rad)
         if space.is_free(there):
             x, y = there
@@ -89,7 +87,7 @@ def walk_m(space: FreeSpace, start: Point, covered_m: float, share: float, seed:
             floor.at = floor.cell_of(there)
         else:
             heading_rad = float(rng.uniform(-math.pi, math.pi))
-    return None
+    return curve
 
 
 @dataclass

@@ -61,7 +61,7 @@ def explore(
     if drawing is not None:
         plans.draw_map(drawing, file, result.truth.poses, result.graph.edges)
     if curve is not None:
-        curves.draw_coverage(curve, f"exploring {world}", exploration.curve(result, space))
+        curves.draw_coverage(curve, f"exploring {world}", {"topnav": exploration.curve(result, space)})
     output.print_figures(f"map {map_name}", report)
     if not result.run.succeeded:
         status = result.run.status

@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from experiments.generated.peers import frontier_m, walk_m
+from experiments.generated.peers import frontier_curve, walk_curve
+from services.launcher.evaluation.coverage_curve import metres_to
 from simulator.world.freespace import free_space
 from simulator.world.world_file import WorldFile, load_world
 
@@ -17,6 +18,14 @@ def corridor(length_m, start_x_m=0.5):
     contents = {"format": "topnav-world/1", "name": "corridor", "rooms": [room]}
     world = WorldFile.model_validate({**contents, "start": {"x_m": start_x_m, "y_m": 1.0}})
     return free_space(world), (start_x_m, 1.0)
+
+
+def frontier_m(space, start, *, covered_m, sight_m, share):
+    return metres_to(frontier_curve(space, start, covered_m, sight_m, share), share)
+
+
+def walk_m(space, start, *, covered_m, share, seed):
+    return metres_to(walk_curve(space, start, covered_m, share, seed), share)
 
 
 def test_a_corridor_is_driven_along_once():
@@ -44,3 +53,12 @@ def test_a_robot_that_sees_further_goes_round_furniture_to_what_is_behind_it():
     driven_m = frontier_m(space, (world.start.x_m, world.start.y_m), covered_m=1.0, sight_m=4.0, share=0.97)
     assert driven_m is not None
     assert driven_m > math.sqrt(space.free.sum() * space.resolution_m**2)
+
+
+def test_a_curve_rises_to_the_share_wished_for_and_ends_there():
+    space, start = corridor(20.0)
+    for curve in (frontier_curve(space, start, 1.5, 4.0, 0.97), walk_curve(space, start, 1.5, 0.97, seed=1)):
+        metres, shares = zip(*curve, strict=True)
+        assert list(metres) == sorted(metres)
+        assert list(shares) == sorted(shares)
+        assert shares[-2] < 0.97 <= shares[-1]

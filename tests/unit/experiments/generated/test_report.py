@@ -4,10 +4,12 @@ import pytest
 
 from experiments.generated.plan import WorldPlan
 from experiments.generated.report import failures, page, summary
-from experiments.generated.row import world_row
+from experiments.generated.row import curves_of, world_row
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
 
+WORLD = load_world("apartment")
+SPACE = free_space(WORLD)
 ROUND = {
     "success": True, "final_distance_m": 0.05, "spl": 0.9, "reason": "arrived at the goal", "failure": "",
     "steps": 60, "collisions": 0, "shortest_m": 3.0,
@@ -32,9 +34,9 @@ def explored(**changes):
 
 
 def row(rounds=(ROUND, LOST), moved=(ROUND,), **changes):
-    world = load_world("apartment")
-    plan = WorldPlan("flat", 0, "small", 2, 100)
-    return world_row(plan, world, free_space(world), explored(**changes), rounds, moved)
+    plan, figures = WorldPlan("flat", 0, "small", 2, 100), explored(**changes)
+    curves = curves_of(plan, WORLD, SPACE, figures)
+    return world_row(plan, SPACE, figures, curves, rounds, moved)
 
 
 def test_a_row_has_what_others_read_from_it():

@@ -51,8 +51,9 @@ def test_metres_to_a_share_are_those_of_the_first_node_that_reaches_it():
 
 
 def test_the_curve_is_drawn(tmp_path):
-    draw_coverage(tmp_path / "curve.png", "exploring nothing", [(0.0, 0.2), (3.0, 0.5)])
-    draw_coverage(tmp_path / "empty.png", "exploring nothing", [])
+    curves = {"topnav": [(0.0, 0.2), (3.0, 0.5)], "peer": [(0.0, 0.3)]}
+    draw_coverage(tmp_path / "curve.png", "exploring nothing", curves, most_m=5.0)
+    draw_coverage(tmp_path / "empty.png", "exploring nothing", {"topnav": []})
     assert (tmp_path / "curve.png").read_bytes().startswith(b"\x89PNG")
 
 
