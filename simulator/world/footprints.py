@@ -42,6 +42,20 @@ class Footprints:
             self.polygons_m,
         )
 
+    def within(self, origin_m: FloatArray, reach_m: float) -> "Footprints":
+        """Those that something within reach of a point (2,) may belong to."""
+        far_m = np.hypot(*(self.centres_m - origin_m).T) - np.hypot(*self.halves_m.T)
+        disc_far_m = np.hypot(*(self.disc_centres_m - origin_m).T) - self.disc_radii_m
+        near, near_discs = far_m < reach_m, disc_far_m < reach_m
+        return Footprints(
+            self.centres_m[near],
+            self.halves_m[near],
+            self.yaws_rad[near],
+            self.disc_centres_m[near_discs],
+            self.disc_radii_m[near_discs],
+            _within(self.polygons_m, origin_m, reach_m),
+        )
+
 
 def footprints(parts: tuple[Part, ...], low_m: float, high_m: float) -> Footprints:
     """Outlines of all solid parts that reach into the heights low_m..high_m."""
@@ -119,6 +133,7 @@ def cast_rays(origin_m: FloatArray, angles_rad: FloatArray, shapes: Footprints, 
     Slab test for rectangles, quadratic for discs; a ray that starts inside an outline gives 0.
     """
     best = np.full(len(angles_rad), max_m)
+    shapes = shapes.within(origin_m, max_m)
     if len(shapes.yaws_rad):
         start = _into(origin_m - shapes.centres_m, shapes.yaws_rad)
         relative = angles_rad[:, None] - shapes.yaws_rad[None, :]
@@ -137,9 +152,8 @@ def cast_rays(origin_m: FloatArray, angles_rad: FloatArray, shapes: Footprints, 
         half = np.sqrt(np.maximum(shapes.disc_radii_m**2 - gap2, 0.0))
         hit = (gap2 <= shapes.disc_radii_m**2) & (along + half >= 0.0)
         best = np.minimum(best, np.where(hit, np.maximum(along - half, 0.0), np.inf).min(axis=1))
-    near = _within(shapes.polygons_m, origin_m, max_m)
-    if len(near):
-        best = np.minimum(best, _cast_at_polygons(origin_m, angles_rad, near).min(axis=1))
+    if len(shapes.polygons_m):
+        best = np.minimum(best, _cast_at_polygons(origin_m, angles_rad, shapes.polygons_m).min(axis=1))
     return best
 
 
