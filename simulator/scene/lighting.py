@@ -105,8 +105,16 @@ def _direct(
     strength = cosine / (SOFT_M2 + squared)
     lit = np.flatnonzero(strength > CLEAR_SHARE)
     visible = np.zeros(len(start), np.float32)
-    visible[lit] = ~grid.hit(start[lit] + START_M * normals[lit], point)
+    begin = start[lit] + START_M * normals[lit]
+    visible[lit] = ~grid.hit(begin, _before(begin, point, light.clear_m))
     return np.asarray((strength * visible)[:, None] * np.array(light.power, np.float32), np.float32)
+
+
+def _before(start: FloatArray, point: FloatArray, clear_m: float) -> FloatArray:
+    """Where rays from (n, 3) points end that need not come nearer to a point than `clear_m`."""
+    delta = point - start
+    length = np.maximum(np.linalg.norm(delta, axis=1, keepdims=True), 1e-6)
+    return np.asarray(start + delta * np.maximum(1.0 - clear_m / length, 0.0), np.float32)
 
 
 def _openness(start: FloatArray, normals: FloatArray, grid: "_FilledGrid") -> FloatArray:

@@ -1,7 +1,7 @@
 """Free floor of a world: where a robot fits, shortest ways, lines of sight, random poses. Pure."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import cv2
@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simulator.scene.parts import Part, rotation_of
+from simulator.world.brought_floor import floor_grid
 from simulator.world.contents import expand
 from simulator.world.footprints import clearance_grid_m, footprints
 from simulator.world.grid_search import shortest_cells
@@ -131,6 +132,14 @@ def free_space(
         robot_radius_m: of the disc.
         resolution_m: side of a cell; None takes a finer one for small worlds.
     """
+    whole = ground_clearance(world, robot_radius_m, resolution_m)
+    return replace(whole, free=_flood(whole.free, whole.cell((world.start.x_m, world.start.y_m))))
+
+
+def ground_clearance(
+    world: WorldFile, robot_radius_m: float = 0.26, resolution_m: float | None = None
+) -> FreeSpace:
+    """The same with all floor where the disc fits, whether one gets there from the start or not."""
     parts, _ = expand(world)
     rects = world.rectangles()
     x0, y0 = min(r[0][0] for r in rects), min(r[1][0] for r in rects)
@@ -139,14 +148,10 @@ def free_space(
         resolution_m = FINE_M if max(x1 - x0, y1 - y0) <= SMALL_WORLD_M else COARSE_M
     xs = np.arange(x0, x1 + resolution_m / 2, resolution_m)
     ys = np.arange(y0, y1 + resolution_m / 2, resolution_m)
-    inside = np.zeros((len(ys), len(xs)), bool)
-    for rx, ry in rects:
-        inside |= ((xs >= rx[0]) & (xs <= rx[1]))[None, :] & ((ys >= ry[0]) & (ys <= ry[1]))[:, None]
+    inside = floor_grid(world, parts, xs, ys)
     clearance = np.where(inside, clearance_grid_m(xs, ys, footprints(parts, *BODY_BAND_M), FAR_M), 0.0)
     origin = (float(x0), float(y0))
-    whole = FreeSpace(clearance >= robot_radius_m, clearance, origin, resolution_m, robot_radius_m, parts)
-    reached = _flood(whole.free, whole.cell((world.start.x_m, world.start.y_m)))
-    return FreeSpace(reached, clearance, origin, resolution_m, robot_radius_m, parts)
+    return FreeSpace(clearance >= robot_radius_m, clearance, origin, resolution_m, robot_radius_m, parts)
 
 
 def _flood(free: npt.NDArray[np.bool_], start: tuple[int, int]) -> npt.NDArray[np.bool_]:

@@ -33,7 +33,7 @@ def up(
         bool, typer.Option("--detach/--foreground", help="Return once all is healthy.")
     ] = False,
     data_dir: options.StackDir = options.DATA_DIR,
-    timeout_s: Annotated[float, typer.Option(help="How long the start may take.")] = 120.0,
+    timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
     file: Annotated[
         Path | None,
         typer.Option("--file", "-f", help="Which processes there are.", show_default="docker-compose.yml"),

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
 from shared.messages.missions import MissionStatus
@@ -28,6 +29,39 @@ def mission_progress(console: Console, title: str) -> Iterator[Watch]:
         yield lambda status: progress.update(task, description=f"{title}: {describe(status, start_s)}")
 
 
+@contextmanager
+def stage_progress(console: Console, title: str) -> Iterator[Callable[[str, int, int], None]]:
+    """The same for work in stages: told the stage, how much of it is done and how much there is, or 0."""
+    if not console.is_terminal:
+        start_s, last_s = time.monotonic(), [time.monotonic()]
+
+        def line(stage: str, done: int, count: int) -> None:
+            now_s = time.monotonic()
+            if now_s - last_s[0] >= LINE_PERIOD_S:
+                last_s[0] = now_s
+                text = _stage(title, stage, done, count)
+                console.print(f"{text}, {now_s - start_s:.0f} s", highlight=False, markup=False)
+
+        yield line
+        return
+    columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    with Progress(*columns, console=console, transient=True) as progress:
+        task = progress.add_task(title)
+
+        def show(stage: str, done: int, count: int) -> None:
+            progress.update(task, description=escape(_stage(title, stage, done, count)))
+
+        yield show
+
+
+@contextmanager
+def start_progress() -> Iterator[Callable[[str], None]]:
+    """What a stack that starts is waiting for, on standard error; nothing where it is up at once."""
+    console = Console(stderr=True, soft_wrap=True)
+    with stage_progress(console, "starting") as progress:
+        yield lambda text: progress(text, 0, 0)
+
+
 def _plain_lines(console: Console, title: str, start_s: float) -> Watch:
     last_s = [start_s]
 
@@ -38,6 +72,10 @@ def _plain_lines(console: Console, title: str, start_s: float) -> Watch:
             console.print(f"{title}: {describe(status, start_s)}", highlight=False)
 
     return watch
+
+
+def _stage(title: str, stage: str, done: int, count: int) -> str:
+    return f"{title}: {stage}" + (f" {done}/{count}" if count > 1 else "")
 
 
 def describe(status: MissionStatus, start_s: float) -> str:
