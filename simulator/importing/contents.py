@@ -49,7 +49,7 @@ def world_contents(name: str, scene: Scene, floor: Floor, things: Sequence[Thing
     """
     ground: Contents = {"name": "floor", "x_m": _span(floor.x_m), "y_m": _span(floor.y_m)}
     if floor.endless:
-        ground |= {"floor": PLANE, "border": "fence"}
+        ground |= {"floor": PLANE} | ({"border": "fence"} if floor.fenced else {})
     contents: Contents = {"format": "topnav-world/1", "name": name}
     if scene.background is not None:
         even = [round(255 * channel) for channel in scene.background]

@@ -24,12 +24,14 @@ class Floor:
         height_m: in the frame of the imported file.
         x_m, y_m: a rectangle round it.
         endless: whether it is a plane and not a mesh.
+        fenced: whether one can get to its end; of an endless floor only.
     """
 
     height_m: float
     x_m: Span
     y_m: Span
     endless: bool
+    fenced: bool = True
 
 
 def find_floor(

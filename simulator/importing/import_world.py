@@ -1,7 +1,7 @@
 """Other people's worlds -> a folder with a world file and its models."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from simulator.generation.world_text import as_yaml
@@ -18,6 +18,7 @@ from simulator.world.world_file import WorldFile, load_world
 
 SDF, GLTF = {".world", ".sdf"}, {".glb", ".gltf"}
 MOST_NAMED = 5  # of missing files, in one message
+WALL_M = 0.6  # floor beyond what the robot reaches; chosen: its radius and a wall
 Progress = Callable[[str, int, int], None]
 """What is being done, how much of it is done, and how much there is."""
 
@@ -110,12 +111,18 @@ def _written(
     """The world file, written and read back."""
     middle = (sum(floor.x_m) / 2, sum(floor.y_m) / 2, 0.0)
     world = _load(path, world_contents(source.stem, scene, floor, things, start or middle))
-    if start is not None:
-        return world
-    found = find_start(world)
-    if found is None:
-        raise WorldImportError(f"{source}: nowhere on its floor is room for the robot")
-    return _load(path, world_contents(source.stem, scene, floor, things, found))
+    place = find_start(world, start)
+    if place is None:
+        where = "nowhere on its floor" if start is None else f"not at ({start[0]:g}, {start[1]:g})"
+        raise WorldImportError(f"{source}: {where} is room for the robot; choose another --start X Y YAW")
+    if floor.endless and not place.to_the_edge:  # closed in: what lies outside is nobody's floor
+        floor = replace(floor, x_m=_grown(place.x_m), y_m=_grown(place.y_m), fenced=False)
+    contents = world_contents(source.stem, scene, floor, things, place.pose)
+    return _load(path, {**contents, "environment": "outdoor"} if place.wide else contents)
+
+
+def _grown(span: tuple[float, float]) -> tuple[float, float]:
+    return span[0] - WALL_M, span[1] + WALL_M
 
 
 def _load(path: Path, contents: Contents) -> WorldFile:

@@ -14,6 +14,7 @@ from simulator.importing.meshes.entity_surfaces import EntitySurfaces
 from simulator.importing.meshes.glb import glb_of
 from simulator.importing.meshes.surfaces import GLASS, Look, Surface, triangles_of
 from simulator.scene.meshes import Mesh
+from simulator.world.fields import MOST_M
 
 FOLDER = "models"
 """Beside the world file."""
@@ -48,6 +49,10 @@ class ModelFiles:
         Raises:
             WorldImportError: a mesh file cannot be used.
         """
+        far_m = float(np.abs(entity.pose[:3, 3]).max())
+        if far_m > MOST_M:
+            self.left_out.append(f"model {entity.name!r:.60} lies {far_m:.0f} m away: left out")
+            return []
         found = []
         for body in self._things(entity):
             seen, felt = self._read(body.seen), [_plain(surface) for surface in self._read(body.felt)]

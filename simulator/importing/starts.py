@@ -1,27 +1,71 @@
-"""Where the robot starts in a world that does not say: in the widest part of the largest free floor. Pure."""
+"""Where the robot starts in a world that does not say, and what floor it reaches from there. Pure."""
+
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
+import numpy.typing as npt
 
 from simulator.importing.entities import Vec3
-from simulator.world.freespace import ground_clearance
+from simulator.world.freespace import FreeSpace, ground_clearance
 from simulator.world.world_check import ROBOT_RADIUS_M
 from simulator.world.world_file import WorldFile
 
 ROOM_M = 0.6  # more room than this round the start is of no use; chosen: it can leave in any direction
+WIDE_M = 2.0  # half the floor so far from everything is no indoor place; chosen: rooms have less
+EDGE_M = 0.3  # this near the end of the ground the robot reaches it; chosen: more than its radius
+Grid = npt.NDArray[np.bool_]
 
 
-def find_start(world: WorldFile) -> Vec3 | None:
-    """x, y (metres) and heading (degrees); None if the robot fits nowhere."""
-    grid = ground_clearance(world)
-    free = grid.clearance_m >= ROBOT_RADIUS_M
+@dataclass(frozen=True)
+class StartPlace:
+    """A start and the floor round it.
+
+    Attributes:
+        pose: x, y (metres) and heading (degrees).
+        x_m, y_m: a rectangle round the floor that is reached from there.
+        to_the_edge: whether that goes as far as the world's ground.
+        wide: whether most of it is far from everything, as outdoors.
+    """
+
+    pose: Vec3
+    x_m: tuple[float, float]
+    y_m: tuple[float, float]
+    to_the_edge: bool
+    wide: bool
+
+
+def find_start(world: WorldFile, given: Vec3 | None) -> StartPlace | None:
+    """The start that is given, else the widest place of the largest free floor; None without free floor."""
+    space = ground_clearance(world)
+    free = space.clearance_m >= ROBOT_RADIUS_M
     count, labels, stats, centres = cv2.connectedComponentsWithStats(free.astype(np.uint8), connectivity=4)
-    if count < 2:
+    if given is not None:
+        row, column = space.cell(given[:2])
+        inside = 0 <= row < free.shape[0] and 0 <= column < free.shape[1]
+        chosen = int(labels[row, column]) if inside else 0
+    else:
+        chosen = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA])) if count > 1 else 0
+    if not chosen:
         return None
-    largest = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
-    wide = np.where(labels == largest, np.minimum(grid.clearance_m, ROOM_M), -1.0)
-    rows, columns = np.nonzero(wide >= wide.max())
-    middle = centres[largest]  # column, row
+    reached = np.asarray(labels == chosen)
+    pose = given or _widest(space, reached, (float(centres[chosen][0]), float(centres[chosen][1])))
+    rows, columns = np.nonzero(reached)
+    (x0, y0), (x1, y1) = (
+        space.point((int(rows.min()), int(columns.min()))),
+        space.point((int(rows.max()), int(columns.max()))),
+    )
+    far_row, far_column = free.shape[0] - 1, free.shape[1] - 1
+    reach = round((EDGE_M + ROBOT_RADIUS_M) / space.resolution_m)
+    to_the_edge = min(rows.min(), columns.min(), far_row - rows.max(), far_column - columns.max()) <= reach
+    wide = float(np.median(space.clearance_m[reached])) >= WIDE_M
+    return StartPlace(pose, (x0, x1), (y0, y1), bool(to_the_edge), wide)
+
+
+def _widest(space: FreeSpace, reached: Grid, middle: tuple[float, float]) -> Vec3:
+    """The place with most room, of equals that nearest to the middle, a (column, row)."""
+    room = np.where(reached, np.minimum(space.clearance_m, ROOM_M), -1.0)
+    rows, columns = np.nonzero(room >= room.max())
     k = int(np.argmin((columns - middle[0]) ** 2 + (rows - middle[1]) ** 2))
-    x, y = grid.point((int(rows[k]), int(columns[k])))
+    x, y = space.point((int(rows[k]), int(columns[k])))
     return round(x, 3), round(y, 3), 0.0

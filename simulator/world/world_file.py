@@ -241,14 +241,14 @@ def read_contents(path: Path) -> dict[str, Any]:
     return data
 
 
-def world_of(path: Path, contents: dict[str, Any]) -> WorldFile:
-    """The world of a file's contents; models and pictures are read from its folder.
+def world_of(path: Path, contents: dict[str, Any], assets: AssetFolder | None = None) -> WorldFile:
+    """The world of a file's contents; models and pictures are read from its folder, or were by `assets`.
 
     Raises:
         WorldFileError: values that do not fit, all of them.
     """
     try:
-        return WorldFile.model_validate(contents, context=AssetFolder(path.parent, user_cache()))
+        return WorldFile.model_validate(contents, context=assets or AssetFolder(path.parent, user_cache()))
     except ValidationError as error:
         faults = "; ".join(
             f"{'.'.join(str(part) for part in e['loc']) or 'world'}: {e['msg']}" for e in error.errors()

@@ -182,7 +182,7 @@ def _show(report: "WorldReport") -> None:
     table = Table(title=f"world {report.name}", show_header=False)
     figures = {
         "size": f"{report.size_m[0]:g} x {report.size_m[1]:g} m",
-        "floor": f"{report.floor_m2:g} m2 in {report.rooms} rooms",
+        "floor": f"{report.floor_m2:g} m2" + (f" in {report.rooms} rooms" if report.rooms else ""),
         "free for the robot": f"{report.free_m2:g} m2, and {report.cut_off_m2:g} m2 that it cannot reach",
         "parts": f"{report.parts}, of which {report.solids} solid",
         "lamps, materials": f"{report.lights}, {report.looks}",

@@ -66,6 +66,7 @@ class Models:
         Raises:
             WorldImportError: a part of it cannot be used.
         """
+        self._count_one(path)
         if depth > MOST_DEPTH:
             raise WorldImportError(
                 f"{path}: models must lie at most {MOST_DEPTH} deep; does one include itself?"
@@ -109,9 +110,7 @@ class Models:
         return [replace(shape, pose=pose @ shape.pose) for shape in self._shapes(part, where, path)]
 
     def _shapes(self, part: ElementTree.Element, where: str, path: Path) -> list[Shape]:
-        self._count += 1
-        if self._count > MOST_SHAPES:
-            raise WorldImportError(f"{path}: a world must have at most {MOST_SHAPES} visuals and collisions")
+        self._count_one(path)
         try:
             shapes, missing = shapes_of(part, where, path.parent, self._resources)
         except MissingFileError as error:
@@ -119,6 +118,11 @@ class Models:
             return []
         self.left_out += missing
         return shapes
+
+    def _count_one(self, path: Path) -> None:
+        self._count += 1
+        if self._count > MOST_SHAPES:
+            raise WorldImportError(f"{path}: a world must have at most {MOST_SHAPES} models and shapes")
 
     def _included(self, element: ElementTree.Element, path: Path, depth: int) -> ModelShapes:
         uri = text_of(element, "uri")
@@ -128,22 +132,28 @@ class Models:
         if kind.lower() in BUILT_IN:
             return self._brought(kind.lower(), element)
         try:
-            file = self._resources.model_file(uri, path.parent)
-        except MissingFileError as error:
+            inner = self._inner(self._resources.model_file(uri, path.parent), depth)
+        except WorldImportError as error:  # the rest of the world may do without it
             self.missing.append(f"{path}: <include>: {error}")
             return ModelShapes(kind, kind)
+        if element.find("pose") is not None:  # it takes the place of the model's, by the specification
+            inner.pose = None
+        inner.name, inner.kind = text_of(element, "name") or inner.name, kind
+        return inner
+
+    def _inner(self, file: Path, depth: int) -> ModelShapes:
+        """The model of a file of its own."""
         if file not in self._files:
             self._files[file] = read_xml(file)
         root = self._files[file]
-        inner = root.find("model")
-        if inner is None:
+        model = root.find("model")
+        if model is None and root.find("light") is not None:  # as those that bring the sun
+            self.built_in |= {"sun" for light in root.iterfind("light") if light.get("type") == "directional"}
+            return ModelShapes("light", pose=np.eye(4))
+        if model is None:
             raise WorldImportError(f"{file} must hold a <model>, got none")
-        found = self.read(inner, file, depth + 1)
-        own = element.find("pose")
-        if own is None:  # else it takes the place of the model's, by the specification
-            found.pose = Frames(root, str(file)).pose(inner, f"{file}: model {found.name!r:.60}")
-        found.name = text_of(element, "name") or found.name
-        found.kind = kind
+        found = self.read(model, file, depth + 1)
+        found.pose = Frames(root, str(file)).pose(model, f"{file}: model {found.name!r:.60}")
         return found
 
     def _brought(self, kind: str, element: ElementTree.Element) -> ModelShapes:
