@@ -21,6 +21,8 @@ CELL_M = 0.04  # chosen: a sixth of the robot's radius; what is felt is so much 
 MOST_CELLS = 4000  # along a side: larger meshes get larger cells
 STRAIGHT_CELLS = 0.5  # how far a sheet may be from the outline
 CAVITY_M2 = 0.15  # smaller ones are closed: no robot gets in; chosen
+LEVEL_SLICE_M = 0.05  # of what lies level: a carpet is not to be as high as the seat of a chair
+EDGE_M = 0.02
 LEVEL_COS = 0.95  # what lies level is a layer of its own: a floor does not fill the slice it lies in
 SLICE_M = 0.25  # chosen: the robot's body is as high, and above it there is only its mast
 SLICED_M = 1.0  # above the mesh's lowest point one slice holds the rest: nothing there reaches the robot
@@ -42,21 +44,27 @@ def shell_of(vertices: FloatArray, triangles: IntArray) -> list[Prism]:
     span = flat.max(axis=0) + 2 * CELL_M - origin
     cell = max(CELL_M, float(span.max()) / MOST_CELLS)
     columns, rows = (np.ceil(span / cell).astype(int) + 1).tolist()
-    normals = np.cross(
-        vertices[triangles[:, 1]] - vertices[triangles[:, 0]],
-        vertices[triangles[:, 2]] - vertices[triangles[:, 0]],
-    )
-    level = np.abs(normals[:, 2]) > LEVEL_COS * np.maximum(np.linalg.norm(normals, axis=1), 1e-12)
+    level = _is_level(vertices, triangles)
     layers: list[_Layer] = []
-    for kind in (triangles[~level], triangles[level]):
-        drawn = [_layer(vertices, kind, z, origin, cell, (rows, columns)) for z in _slices(vertices)]
+    for kind, slice_m in ((triangles[~level], SLICE_M), (triangles[level], LEVEL_SLICE_M)):
+        slices = _slices(vertices, slice_m)
+        drawn = [_layer(vertices, kind, z, origin, cell, (rows, columns)) for z in slices]
         layers += _merged([layer for layer in drawn if layer is not None])
     return [prism for layer in layers for prism in _sheets(layer, origin, cell)]
 
 
-def _slices(vertices: FloatArray) -> list[tuple[float, float]]:
+def _is_level(vertices: FloatArray, triangles: IntArray) -> npt.NDArray[np.bool_]:
+    """Which triangles lie level, or are as low as the edge of a carpet, (n,)."""
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    normals = np.cross(b - a, c - a)
+    size = np.maximum(np.linalg.norm(normals, axis=1), 1e-12)
+    low = np.ptp(vertices[triangles, 2], axis=1) < EDGE_M
+    return np.asarray((np.abs(normals[:, 2]) > LEVEL_COS * size) | low)
+
+
+def _slices(vertices: FloatArray, slice_m: float) -> list[tuple[float, float]]:
     low, high = float(vertices[:, 2].min()), float(vertices[:, 2].max())
-    cuts = low + np.arange(0.0, SLICED_M + SLICE_M / 2, SLICE_M)
+    cuts = low + np.arange(0.0, SLICED_M + slice_m / 2, slice_m)
     cuts = np.append(cuts[(cuts < high - SKIN_M) | (cuts == low)], max(high, low + SKIN_M))
     return [(float(z0), float(z1)) for z0, z1 in pairwise(cuts)]
 

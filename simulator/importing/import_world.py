@@ -69,6 +69,8 @@ def import_world(
     for k, entity in enumerate(scene.entities):
         progress("models", k, len(scene.entities))
         things += files.write(entity)
+    if not len(files.triangles()):
+        raise WorldImportError(f"{source} must hold something besides floor and light, it holds nothing")
     floor = find_floor(files.triangles(), scene.plane_m, start[:2] if start else None)
     if floor is None:
         raise WorldImportError(f"{source} must have a level floor of at least 1 m2, it has none")
@@ -113,8 +115,11 @@ def _written(
     world = _load(path, world_contents(source.stem, scene, floor, things, start or middle))
     place = find_start(world, start)
     if place is None:
-        where = "nowhere on its floor" if start is None else f"not at ({start[0]:g}, {start[1]:g})"
-        raise WorldImportError(f"{source}: {where} is room for the robot; choose another --start X Y YAW")
+        where = "nowhere" if start is None else f"not at ({start[0]:g}, {start[1]:g})"
+        raise WorldImportError(
+            f"{source}: {where} on its floor, at height {floor.height_m:g} m, is room for the robot; choose "
+            "another --start X Y YAW"
+        )
     if floor.endless and not place.to_the_edge:  # closed in: what lies outside is nobody's floor
         floor = replace(floor, x_m=_grown(place.x_m), y_m=_grown(place.y_m), fenced=False)
     contents = world_contents(source.stem, scene, floor, things, place.pose)

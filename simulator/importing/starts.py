@@ -14,7 +14,10 @@ from simulator.world.world_file import WorldFile
 ROOM_M = 0.6  # more room than this round the start is of no use; chosen: it can leave in any direction
 WIDE_M = 2.0  # half the floor so far from everything is no indoor place; chosen: rooms have less
 EDGE_M = 0.3  # this near the end of the ground the robot reaches it; chosen: more than its radius
+LEAST_M2 = 1.0  # less free floor is no place to drive in; chosen
+CLOSED_SHARE = 0.25  # rooms are meant, not the land round them, if they have this share of it; chosen
 Grid = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.integer]
 
 
 @dataclass(frozen=True)
@@ -40,13 +43,14 @@ def find_start(world: WorldFile, given: Vec3 | None) -> StartPlace | None:
     space = ground_clearance(world)
     free = space.clearance_m >= ROBOT_RADIUS_M
     count, labels, stats, centres = cv2.connectedComponentsWithStats(free.astype(np.uint8), connectivity=4)
+    reach = round((EDGE_M + ROBOT_RADIUS_M) / space.resolution_m)
     if given is not None:
         row, column = space.cell(given[:2])
         inside = 0 <= row < free.shape[0] and 0 <= column < free.shape[1]
         chosen = int(labels[row, column]) if inside else 0
     else:
-        chosen = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA])) if count > 1 else 0
-    if not chosen:
+        chosen = _largest(stats[:count], free.shape, reach)
+    if not chosen or stats[chosen, cv2.CC_STAT_AREA] * space.resolution_m**2 < LEAST_M2:
         return None
     reached = np.asarray(labels == chosen)
     pose = given or _widest(space, reached, (float(centres[chosen][0]), float(centres[chosen][1])))
@@ -55,11 +59,24 @@ def find_start(world: WorldFile, given: Vec3 | None) -> StartPlace | None:
         space.point((int(rows.min()), int(columns.min()))),
         space.point((int(rows.max()), int(columns.max()))),
     )
-    far_row, far_column = free.shape[0] - 1, free.shape[1] - 1
-    reach = round((EDGE_M + ROBOT_RADIUS_M) / space.resolution_m)
-    to_the_edge = min(rows.min(), columns.min(), far_row - rows.max(), far_column - columns.max()) <= reach
+    to_the_edge = _at_the_edge(stats[chosen], free.shape, reach)
     wide = float(np.median(space.clearance_m[reached])) >= WIDE_M
-    return StartPlace(pose, (x0, x1), (y0, y1), bool(to_the_edge), wide)
+    return StartPlace(pose, (x0, x1), (y0, y1), to_the_edge, wide)
+
+
+def _largest(stats: IntArray, shape: tuple[int, ...], reach: int) -> int:
+    """Label of the largest piece of floor; of the largest that is closed in where that is large as well."""
+    areas = stats[:, cv2.CC_STAT_AREA].copy()
+    areas[0] = 0
+    closed = np.array([0 if _at_the_edge(one, shape, reach) else 1 for one in stats]) * areas
+    best = closed if closed.max(initial=0) >= CLOSED_SHARE * areas.max(initial=0) else areas
+    return int(np.argmax(best))
+
+
+def _at_the_edge(stats: IntArray, shape: tuple[int, ...], reach: int) -> bool:
+    """Whether a piece of floor comes so many cells near the end of the grid."""
+    left, top, width, height = (int(stats[k]) for k in range(4))  # as OpenCV orders them
+    return min(left, top, shape[1] - left - width, shape[0] - top - height) <= reach
 
 
 def _widest(space: FreeSpace, reached: Grid, middle: tuple[float, float]) -> Vec3:

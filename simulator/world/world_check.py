@@ -3,7 +3,9 @@
 import math
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
+import numpy.typing as npt
 
 from simulator.scene.parts import Part
 from simulator.world.brought_floor import CELL_M, brought
@@ -54,7 +56,6 @@ def examine(world: WorldFile, robot_radius_m: float = ROBOT_RADIUS_M) -> WorldRe
     if not lights and not any(part.material.glow for part in parts) and not getattr(world, "sun", None):
         doubts.append("no lamps: only the even light of `lighting` is there; add a ceiling_light")
     space = None if faults else free_space(world, robot_radius_m)
-    whole = _whole_free(space) if space else None
     cell = space.resolution_m**2 if space else 0.0
     lost = _unreachable(world, space) if space else ()
     doubts += [f"{name}: the robot cannot get there from the start" for name in lost]
@@ -73,9 +74,7 @@ def examine(world: WorldFile, robot_radius_m: float = ROBOT_RADIUS_M) -> WorldRe
         ),
         floor_m2=round(_floor_m2(world, parts), 2),
         free_m2=round(float(space.free.sum()) * cell, 2) if space else 0.0,
-        cut_off_m2=round(float((whole & ~space.free).sum()) * cell, 2)
-        if space and whole is not None
-        else 0.0,
+        cut_off_m2=round(float(cut_off(space).sum()) * cell, 2) if space else 0.0,
         rooms=len(world.rooms),
         parts=len(parts),
         solids=sum(part.solid for part in parts),
@@ -119,8 +118,16 @@ def start_faults(world: WorldFile, robot_radius_m: float = ROBOT_RADIUS_M) -> li
     ]
 
 
-def _whole_free(space: FreeSpace) -> np.ndarray:
-    return np.asarray(space.clearance_m >= space.robot_radius_m)
+def cut_off(space: FreeSpace) -> npt.NDArray[np.bool_]:
+    """Free floor that is not reached, without the land round a place that is closed in."""
+    lost = (space.clearance_m >= space.robot_radius_m) & ~space.free
+    border = np.ones(lost.shape, bool)
+    border[1:-1, 1:-1] = False
+    if (space.free & border).any():
+        return np.asarray(lost)
+    _, labels = cv2.connectedComponents(lost.astype(np.uint8), connectivity=4)
+    outside = np.unique(labels[border & lost])
+    return np.asarray(lost & ~np.isin(labels, outside))
 
 
 def _unreachable(world: WorldFile, space: FreeSpace) -> tuple[str, ...]:

@@ -105,7 +105,7 @@ class Models:
         """The shapes of a <visual> or <collision>, in the frame of its link."""
         where = f"{where} {part.get('name', '')!r:.60}"
         pose = np.linalg.inv(link) @ frames.pose(part, where, link)
-        if is_plane(part):
+        if is_plane(part, where):
             model.planes.append(float((link @ pose)[2, 3]))
         return [replace(shape, pose=pose @ shape.pose) for shape in self._shapes(part, where, path)]
 

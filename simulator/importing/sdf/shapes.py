@@ -10,17 +10,18 @@ from simulator.importing.sdf.materials import GREY, paint_of
 from simulator.importing.sdf.numbers import numbers, text_of
 from simulator.importing.sdf.resources import Resources
 
+LEVEL = 0.01  # a plane that rises less is level
 MOST_SIZE_M = 1000.0  # untrusted input
 SIZES = {"cylinder": ("radius", "length"), "sphere": ("radius",)}
 
 
-def is_plane(part: ElementTree.Element) -> bool:
+def is_plane(part: ElementTree.Element, where: str) -> bool:
     """Whether a <visual> or <collision> is an endless floor that lies level."""
     plane = part.find("geometry/plane")
     if plane is None:
         return False
-    normal = (text_of(plane, "normal") or "0 0 1").split()
-    return normal[:2] in (["0", "0"], ["0.0", "0.0"], ["-0", "0"])
+    x, y, z = numbers(text_of(plane, "normal") or "0 0 1", 3, f"{where}: normal must be x y z")
+    return z > 0.0 and abs(x) + abs(y) < LEVEL * z
 
 
 def shapes_of(
