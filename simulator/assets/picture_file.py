@@ -40,7 +40,7 @@ def picture_from_image(image: Any, name: str, cutoff: float | None = None) -> Pi
             f"got {width} x {height}; scale it down"
         )
     try:
-        pixels = np.ascontiguousarray(image.convert("RGB" if cutoff is None else "RGBA"), np.uint8)
+        pixels = np.array(image.convert("RGB" if cutoff is None else "RGBA"), np.uint8)
     except (OSError, ValueError, SyntaxError, MemoryError, EOFError) as error:
         raise AssetError(f"picture {name!r:.80} is broken: {error!s:.120}; export it again") from error
     if cutoff is None:

@@ -59,8 +59,11 @@ class NodeTree:
 
 
 def _things(tree: NodeTree) -> Iterator[tuple[str, list[Surface]]]:
-    """Name and surfaces of each thing."""
-    open_ = list(reversed(tree.roots))
+    """Name and surfaces of each thing; what all hangs on is none, however small."""
+    open_ = list(tree.roots)
+    while len(open_) == 1 and not tree.own(open_[0]) and tree.children(open_[0]):
+        open_ = tree.children(open_[0])
+    open_ = open_[::-1]
     while open_:
         node = open_.pop()
         every = tree.below(node)

@@ -12,7 +12,7 @@ from simulator.importing.contents import Thing
 from simulator.importing.entities import Body, Entity, FloatArray, Shape, WorldImportError
 from simulator.importing.meshes.entity_surfaces import EntitySurfaces
 from simulator.importing.meshes.glb import glb_of
-from simulator.importing.meshes.surfaces import GLASS, Look, Surface, triangles_of
+from simulator.importing.meshes.surfaces import Look, Surface, triangles_of
 from simulator.scene.meshes import Mesh
 from simulator.world.fields import MOST_M
 
@@ -56,14 +56,13 @@ class ModelFiles:
         found = []
         for body in self._things(entity):
             seen, felt = self._read(body.seen), [_plain(surface) for surface in self._read(body.felt)]
-            shown = [surface for surface in seen if surface.look.colour[3] >= GLASS]
-            if not shown and not felt:
+            if not seen and not felt:
                 continue
             pose = entity.pose @ body.pose
-            for surfaces in (shown, felt):
+            for surfaces in (seen, felt):
                 self._triangles.append(triangles_of(surfaces) @ pose[:3, :3].T + pose[:3, 3])
             stem = body.name if entity.model == "" else entity.model
-            files = self._pair(shown, felt, body, stem or "model")
+            files = self._pair(seen, felt, body, stem or "model")
             found.append(Thing(_unique(body.name or stem or "model", self._names), *files, pose))
         return found
 
@@ -102,11 +101,11 @@ class ModelFiles:
         return found
 
     def _pair(
-        self, shown: list[Surface], felt: list[Surface], body: Body, stem: str
+        self, seen: list[Surface], felt: list[Surface], body: Body, stem: str
     ) -> tuple[str, str | None, str]:
         """Files of what is seen and felt, and the outline that what is felt needs."""
         seen_key, felt_key = (tuple(s.key() for s in shapes) for shapes in (body.seen, body.felt))
-        file = self._file(shown or felt, ("seen", seen_key) if shown else ("felt", felt_key), stem)
+        file = self._file(seen or felt, ("seen", seen_key) if seen else ("felt", felt_key), stem)
         if not felt:
             return file, None, "none"
         felt_file = self._file(felt, ("felt", felt_key), f"{stem}-felt")
@@ -124,8 +123,8 @@ class ModelFiles:
 
 
 def _plain(surface: Surface) -> Surface:
-    """Without texture and colours: what is felt is not seen."""
-    return Surface(surface.node, surface.vertices, surface.triangles, Look((0.5, 0.5, 0.5, 1.0)))
+    """Without texture and colours: what is felt is not seen, not even where nothing else is there."""
+    return Surface(surface.node, surface.vertices, surface.triangles, Look((0.5, 0.5, 0.5, 0.0)))
 
 
 def _mesh(surface: Surface) -> Mesh:

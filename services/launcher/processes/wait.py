@@ -53,16 +53,17 @@ def require_healthy(
             states = ", ".join(f"{name} {now[name].state.value}" for name in waiting)
             failed = min(waiting, key=lambda n: (now[n].last_exit is None, now[n].state is State.WAITING))
             raise LaunchError(
-                f"not healthy after {timeout_s:.0f} s (--timeout-s): {states}; {hint(failed, logs)}"
+                f"not healthy after {timeout_s:.0f} s: {states}; {hint(failed, logs)}; "
+                "--timeout-s gives it longer"
             )
         if told is not None and time.monotonic() >= tell_s:
             tell_s = time.monotonic() + TELL_S
-            told(_waiting_for(waiting, now, logs))
+            told(waiting_for(waiting, now, logs))
         time.sleep(PERIOD_S)
 
 
-def _waiting_for(names: Sequence[str], now: Mapping[str, ServiceStatus], logs: Path) -> str:
-    """What is waited for, and what the first of those that have started said last."""
+def waiting_for(names: Sequence[str], now: Mapping[str, ServiceStatus], logs: Path) -> str:
+    """Return what is waited for, and what the first of those that have started said last."""
     started = [name for name in names if now[name].state is not State.WAITING]
     said = _said(logs / f"{started[0]}.jsonl") if started else ""
     return ", ".join(names) + (f" ({started[0]}: {said})" if said else "")

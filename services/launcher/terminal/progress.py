@@ -29,20 +29,27 @@ def mission_progress(console: Console, title: str) -> Iterator[Watch]:
         yield lambda status: progress.update(task, description=f"{title}: {describe(status, start_s)}")
 
 
+class LinesNowAndThen:
+    """Passes on a line every LINE_PERIOD_S: the first after as long."""
+
+    def __init__(self, say: Callable[[str], None]) -> None:
+        """Pass lines on to `say`."""
+        self._say, self._last_s = say, time.monotonic()
+
+    def __call__(self, text: str) -> None:
+        """Pass this one on if it is time."""
+        now_s = time.monotonic()
+        if now_s - self._last_s >= LINE_PERIOD_S:
+            self._last_s = now_s
+            self._say(text)
+
+
 @contextmanager
 def stage_progress(console: Console, title: str) -> Iterator[Callable[[str, int, int], None]]:
     """The same for work in stages: told the stage, how much of it is done and how much there is, or 0."""
     if not console.is_terminal:
-        start_s, last_s = time.monotonic(), [time.monotonic()]
-
-        def line(stage: str, done: int, count: int) -> None:
-            now_s = time.monotonic()
-            if now_s - last_s[0] >= LINE_PERIOD_S:
-                last_s[0] = now_s
-                text = _stage(title, stage, done, count)
-                console.print(f"{text}, {now_s - start_s:.0f} s", highlight=False, markup=False)
-
-        yield line
+        lines = LinesNowAndThen(lambda text: console.print(text, highlight=False, markup=False))
+        yield lambda stage, done, count: lines(_stage(title, stage, done, count))
         return
     columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True) as progress:
@@ -63,15 +70,8 @@ def start_progress() -> Iterator[Callable[[str], None]]:
 
 
 def _plain_lines(console: Console, title: str, start_s: float) -> Watch:
-    last_s = [start_s]
-
-    def watch(status: MissionStatus) -> None:
-        now_s = time.monotonic()
-        if now_s - last_s[0] >= LINE_PERIOD_S:
-            last_s[0] = now_s
-            console.print(f"{title}: {describe(status, start_s)}", highlight=False)
-
-    return watch
+    lines = LinesNowAndThen(lambda text: console.print(text, highlight=False))
+    return lambda status: lines(f"{title}: {describe(status, start_s)}")
 
 
 def _stage(title: str, stage: str, done: int, count: int) -> str:

@@ -34,8 +34,8 @@ def read_dae(data: bytes, path: Path, pictures: Pictures) -> list[Surface]:
         found = [
             surface
             for node in nodes
-            for name, bound in _geometries(node, scale, "", 0)
-            for surface in _surfaces(bound, name, path, pictures)
+            for name, instance, matrix in _geometries(node, scale, "", 0)
+            for surface in _surfaces(instance, matrix, name, path, pictures)
         ]
     except WorldImportError:
         raise
@@ -46,13 +46,14 @@ def read_dae(data: bytes, path: Path, pictures: Pictures) -> list[Surface]:
     return found
 
 
-def _geometries(node: Any, matrix: FloatArray, name: str, depth: int) -> Iterator[tuple[str, Any]]:
-    """Geometries below a node with the node's name; matrices are applied."""
+def _geometries(
+    node: Any, matrix: FloatArray, name: str, depth: int
+) -> Iterator[tuple[str, Any, FloatArray]]:
+    """Instances of geometries below a node, with the node's name and where they are, (4, 4)."""
     if depth > MOST_DEPTH:
         raise WorldImportError(f"nodes must lie at most {MOST_DEPTH} deep")
     if hasattr(node, "geometry"):
-        for bound in node.objects("geometry", matrix):
-            yield name or str(bound.original.id), bound
+        yield name or str(node.geometry.id), node, matrix
     elif hasattr(node, "node"):  # an instance of a node of the library
         yield from _geometries(node.node, matrix, name, depth + 1)
     elif hasattr(node, "children") and hasattr(node, "matrix"):
@@ -61,14 +62,17 @@ def _geometries(node: Any, matrix: FloatArray, name: str, depth: int) -> Iterato
             yield from _geometries(child, matrix @ np.asarray(node.matrix, float), own, depth + 1)
 
 
-def _surfaces(bound: Any, name: str, path: Path, pictures: Pictures) -> Iterator[Surface]:
-    for primitive in bound.primitives():
+def _surfaces(node: Any, matrix: FloatArray, name: str, path: Path, pictures: Pictures) -> Iterator[Surface]:
+    """Of one instance of a geometry."""
+    materials = {material.symbol: material for material in node.materials}
+    for primitive in node.geometry.primitives:
         triangles = primitive.triangleset() if hasattr(primitive, "triangleset") else primitive
         if not hasattr(triangles, "ntriangles") or not triangles.ntriangles or triangles.vertex is None:
             continue
         corners = np.asarray(triangles.vertex_index, np.int64).reshape(-1)
-        look, channel = _look(triangles, path, pictures)
-        uvs = _coordinates(triangles, channel)
+        material = materials.get(triangles.material)
+        look, channel = _look(material, path, pictures)
+        uvs = _coordinates(triangles, material, channel)
         rows = corners[:, None] if uvs is None else np.column_stack([corners, uvs[1]])
         unique, back = np.unique(rows, axis=0, return_inverse=True)
         yield Surface(
@@ -77,27 +81,27 @@ def _surfaces(bound: Any, name: str, path: Path, pictures: Pictures) -> Iterator
             back.reshape(-1, 3).astype(np.int64),
             look,
             None if uvs is None else uvs[0][unique[:, 1]],
-        )
+        ).moved(matrix)
 
 
-def _coordinates(triangles: Any, channel: str) -> tuple[FloatArray, IntArray] | None:
+def _coordinates(triangles: Any, material: Any, channel: str) -> tuple[FloatArray, IntArray] | None:
     """Texture coordinates of the channel that the picture uses, and their index at each corner."""
     sets = list(triangles.texcoordset or ())
     if not sets:
         return None
     chosen = 0
-    _, wanted = (triangles.inputmap or {}).get(channel, (None, None))
-    named = [str(entry[3]) for entry in triangles.original.sources.get("TEXCOORD", [])]
-    if wanted is not None and str(wanted) in named:
-        chosen = named.index(str(wanted))
+    named = [str(entry[3]) for entry in triangles.sources.get("TEXCOORD", [])]
+    for semantic, _, wanted in () if material is None else material.inputs:
+        if semantic == channel and str(wanted) in named:
+            chosen = named.index(str(wanted))
     chosen = min(chosen, len(sets) - 1)
     indices = np.asarray(triangles.texcoord_indexset[chosen], np.int64).reshape(-1)
     return np.asarray(sets[chosen], float)[:, :2], indices
 
 
-def _look(triangles: Any, path: Path, pictures: Pictures) -> tuple[Look, str]:
+def _look(material: Any, path: Path, pictures: Pictures) -> tuple[Look, str]:
     """The look of a primitive, and the channel of texture coordinates that its picture uses."""
-    effect = getattr(triangles.material, "effect", None)
+    effect = getattr(getattr(material, "target", None), "effect", None)
     if effect is None:
         return Look((*GREY, 1.0)), ""
     two_sided, opacity = bool(effect.double_sided), _opacity(effect)

@@ -56,7 +56,8 @@ class Models:
         self._files: dict[Path, ElementTree.Element] = {}
         self._count = 0
         self.left_out: list[str] = []
-        self.missing: list[str] = []
+        self.missing: dict[str, str] = {}
+        """What cannot be used, and the first who names it."""
         self.planes: list[float] = []
         self.built_in: set[str] = set()
 
@@ -114,7 +115,7 @@ class Models:
         try:
             shapes, missing = shapes_of(part, where, path.parent, self._resources)
         except MissingFileError as error:
-            self.missing.append(str(error))
+            self.missing.setdefault(str(error), where)
             return []
         self.left_out += missing
         return shapes
@@ -134,7 +135,7 @@ class Models:
         try:
             inner = self._inner(self._resources.model_file(uri, path.parent), depth)
         except WorldImportError as error:  # the rest of the world may do without it
-            self.missing.append(f"{path}: <include>: {error}")
+            self.missing.setdefault(str(error), f"{path}: <include>")
             return ModelShapes(kind, kind)
         if element.find("pose") is not None:  # it takes the place of the model's, by the specification
             inner.pose = None

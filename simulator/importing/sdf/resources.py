@@ -55,9 +55,7 @@ class Resources:
             except OSError:  # a name too long for the system
                 continue
         folders = ", ".join(dict.fromkeys(str(root) for root in (beside, *self._roots) if root.is_dir()))
-        raise MissingFileError(
-            f"{uri!r:.200} is not in {folders:.500}; give the folder it is in with --models"
-        )
+        raise MissingFileError(f"{uri!r:.200} is not in {folders:.500}")
 
     def model_file(self, uri: str, beside: Path) -> Path:
         """The SDF file of an included model, newest version first, by its model.config.

@@ -57,8 +57,8 @@ def _mesh(
         raise WorldImportError(f"{where}: <mesh> must have a <uri>, got none")
     try:
         file = resources.find(uri, folder)
-    except MissingFileError as error:
-        raise MissingFileError(f"{where}: {error}") from error
+    except MissingFileError:
+        raise  # whoever counts what is missing says who names it
     except WorldImportError as error:
         raise WorldImportError(f"{where}: {error}") from error
     x, y, z = numbers(text_of(shape, "scale") or "1 1 1", 3, f"{where}: scale must be x y z")

@@ -63,7 +63,7 @@ def read_sdf(path: Path, resources: Resources) -> tuple[Scene, list[str]]:
         else rgb_of(top, "scene/background", f"{path}: scene"),
         (*hidden, *dict.fromkeys(reader.left_out)),
     )
-    return scene, list(dict.fromkeys(reader.missing))
+    return scene, [f"{where}: {what}" for what, where in reader.missing.items()]
 
 
 def _states(top: ElementTree.Element) -> dict[str, FloatArray]:
