@@ -1,5 +1,6 @@
 """Other people's worlds -> a folder with a world file and its models."""
 
+import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,7 +11,7 @@ from simulator.importing.entities import Scene, Vec3, WorldImportError
 from simulator.importing.floor import Floor, find_floor
 from simulator.importing.gltf_scene import read_gltf
 from simulator.importing.meshes.entity_surfaces import EntitySurfaces
-from simulator.importing.model_files import ModelFiles
+from simulator.importing.model_files import FOLDER, ModelFiles
 from simulator.importing.sdf.resources import Resources
 from simulator.importing.sdf.world import read_sdf
 from simulator.importing.starts import find_start
@@ -64,22 +65,25 @@ def import_world(
     scene, missing = _scene(source, models, surfaces)
     if missing and not leave_out:
         raise WorldImportError(_missing(source, missing))
-    files = ModelFiles(into, surfaces, leave_out)
-    things: list[Thing] = []
-    for k, entity in enumerate(scene.entities):
-        progress("models", k, len(scene.entities))
-        things += files.write(entity)
-    if not len(files.triangles()):
-        raise WorldImportError(f"{source} must hold something besides floor and light, it holds nothing")
-    floor = find_floor(files.triangles(), scene.plane_m, start[:2] if start else None)
-    if floor is None:
-        raise WorldImportError(f"{source} must have a level floor of at least 1 m2, it has none")
-    progress("free floor", 0, 1)
-    world = _written(into / f"{into.resolve().name}.yaml", source, scene, floor, things, start)
-    pictures = surfaces.pictures.missing
-    return Imported(
-        into / f"{into.resolve().name}.yaml", world, (*missing, *files.left_out, *scene.left_out, *pictures)
-    )
+    into.parent.mkdir(parents=True, exist_ok=True)
+    name = f"{into.resolve().name}.yaml"
+    with tempfile.TemporaryDirectory(dir=into.parent, prefix=f".{into.name}-") as beside:
+        # What fails leaves what was imported before as it was.
+        files = ModelFiles(Path(beside), surfaces, leave_out)
+        things: list[Thing] = []
+        for k, entity in enumerate(scene.entities):
+            progress("models", k, len(scene.entities))
+            things += files.write(entity)
+        if not len(files.triangles()):
+            raise WorldImportError(f"{source} must hold something besides floor and light, it holds nothing")
+        floor = find_floor(files.triangles(), scene.plane_m, start[:2] if start else None)
+        if floor is None:
+            raise WorldImportError(f"{source} must have a level floor of at least 1 m2, it has none")
+        progress("free floor", 0, 1)
+        world = _written(Path(beside) / name, source, scene, floor, things, start)
+        _put_in_place(Path(beside), into, name)
+    notes = (*missing, *files.left_out, *scene.left_out, *surfaces.pictures.missing)
+    return Imported(into / name, world, notes)
 
 
 def _scene(source: Path, models: Sequence[Path], surfaces: EntitySurfaces) -> tuple[Scene, list[str]]:
@@ -97,6 +101,14 @@ def _scene(source: Path, models: Sequence[Path], surfaces: EntitySurfaces) -> tu
     raise WorldImportError(
         f"{source} must end in {', '.join(sorted(SDF | GLTF))}; other formats are converted with Blender"
     )
+
+
+def _put_in_place(beside: Path, into: Path, name: str) -> None:
+    """Move the models, then the world file that names them, into the folder."""
+    (into / FOLDER).mkdir(parents=True, exist_ok=True)
+    for model in (beside / FOLDER).iterdir():
+        model.replace(into / FOLDER / model.name)
+    (beside / name).replace(into / name)
 
 
 def _missing(source: Path, missing: list[str]) -> str:
@@ -131,6 +143,5 @@ def _grown(span: tuple[float, float]) -> tuple[float, float]:
 
 
 def _load(path: Path, contents: Contents) -> WorldFile:
-    path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(as_yaml(contents), encoding="utf-8")
     return load_world(str(path))

@@ -171,6 +171,16 @@ def test_start_in_a_wall_or_beside_the_floor_is_refused(tmp_path):
             import_world(tmp_path / "room.glb", tmp_path / "out", start=start)
 
 
+def test_import_that_fails_leaves_what_was_imported_before(bring, folder):
+    before = bring(world_text(model(SHEET, "sheet"))).path
+    text, models = before.read_text(encoding="utf-8"), sorted((folder / "out/models").iterdir())
+    with pytest.raises(WorldImportError):
+        bring(world_text(model(SHEET, "other"), model("<sphere><radius>x</radius></sphere>")))
+    assert before.read_text(encoding="utf-8") == text
+    assert sorted((folder / "out/models").iterdir()) == models
+    assert [path.name for path in folder.iterdir() if path.name.startswith(".")] == []
+
+
 def test_models_that_include_themselves_end(bring, folder):
     (folder / "models/self").mkdir()
     text = '<sdf version="1.6"><model name="self"><include><uri>model://self</uri></include></model></sdf>'
