@@ -15,7 +15,7 @@ from simulator.importing.model_files import FOLDER, ModelFiles
 from simulator.importing.sdf.resources import Resources
 from simulator.importing.sdf.world import read_sdf
 from simulator.importing.starts import find_start
-from simulator.world.world_file import WorldFile, load_world
+from simulator.world.world_file import WorldFile, WorldFileError, load_world
 
 SDF, GLTF = {".world", ".sdf"}, {".glb", ".gltf"}
 MOST_NAMED = 5  # of missing files, in one message
@@ -59,7 +59,6 @@ def import_world(
 
     Raises:
         WorldImportError: it cannot be imported; the message names file, what was expected and what came.
-        WorldFileError: what was written is no world.
     """
     surfaces = EntitySurfaces()
     scene, missing = _scene(source, models, surfaces)
@@ -80,7 +79,11 @@ def import_world(
         if floor is None:
             raise WorldImportError(f"{source} must have a level floor of at least 1 m2, it has none")
         progress("free floor", 0, 1)
-        world = _written(Path(beside) / name, source, scene, floor, things, start)
+        try:
+            world = _written(Path(beside) / name, source, scene, floor, things, start)
+        except WorldFileError as error:
+            told = str(error).replace(f"{beside}/", "")
+            raise WorldImportError(f"{source} becomes a world that cannot be used: {told}") from error
         _put_in_place(Path(beside), into, name)
     notes = (*missing, *files.left_out, *scene.left_out, *surfaces.pictures.missing)
     return Imported(into / name, world, notes)

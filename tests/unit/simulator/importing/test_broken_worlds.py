@@ -69,6 +69,8 @@ WORLDS = {
     "colour that is none": (
         world_text(model(BLOCK, material="<material><diffuse>red</diffuse></material>")), "diffuse must be"
     ),
+    "mesh of 200 m": (world_text(model(mesh("model://sheet/meshes/sheet.dae", "<scale>100 1 1</scale>"))),
+                      r"becomes a world that cannot be used: out.yaml: .*0\.005 to 100 m large, got 200"),
     "lamp of an endless strength": (
         world_text(rest='<light name="a" type="point"><diffuse>1 1 inf</diffuse></light>'), "'a': diffuse"
     ),
