@@ -87,12 +87,14 @@ class Body:
         name: within its entity.
         pose: in the frame of its entity, (4, 4), metres.
         seen, felt: what the camera sees of it, and what stops the robot; in its own frame.
+        lost: whether a part that would be seen is missing.
     """
 
     name: str
     pose: FloatArray
     seen: tuple[Shape, ...]
     felt: tuple[Shape, ...]
+    lost: bool = False
 
 
 @dataclass(frozen=True)

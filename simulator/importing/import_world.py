@@ -85,8 +85,8 @@ def import_world(
             told = str(error).replace(f"{beside}/", "")
             raise WorldImportError(f"{source} becomes a world that cannot be used: {told}") from error
         _put_in_place(Path(beside), into, name)
-    notes = (*missing, *files.left_out, *scene.left_out, *surfaces.pictures.missing)
-    return Imported(into / name, world, notes)
+    notes = [*missing, *files.left_out, *scene.left_out, *surfaces.pictures.missing]
+    return Imported(into / name, world, tuple(dict.fromkeys(notes)))
 
 
 def _scene(source: Path, models: Sequence[Path], surfaces: EntitySurfaces) -> tuple[Scene, list[str]]:

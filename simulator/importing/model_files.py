@@ -16,6 +16,7 @@ from simulator.importing.meshes.surfaces import Look, Surface, triangles_of
 from simulator.scene.meshes import Mesh
 from simulator.world.fields import MOST_M
 
+GREY = (0.7, 0.7, 0.7, 1.0)
 FOLDER = "models"
 """Beside the world file."""
 THING_M = 5.0
@@ -55,14 +56,18 @@ class ModelFiles:
             return []
         found = []
         for body in self._things(entity):
+            told = len(self.left_out)
             seen, felt = self._read(body.seen), [_plain(surface) for surface in self._read(body.felt)]
             if not seen and not felt:
                 continue
+            lost = not seen and (body.lost or len(self.left_out) > told)
+            if lost:  # better grey than unseen
+                seen = [replace(surface, look=Look(GREY)) for surface in felt]
             pose = entity.pose @ body.pose
             for surfaces in (seen, felt):
                 self._triangles.append(triangles_of(surfaces) @ pose[:3, :3].T + pose[:3, 3])
             stem = body.name if entity.model == "" else entity.model
-            files = self._pair(seen, felt, body, stem or "model")
+            files = self._pair(seen, felt, body, stem or "model", lost)
             found.append(Thing(_unique(body.name or stem or "model", self._names), *files, pose))
         return found
 
@@ -78,7 +83,8 @@ class ModelFiles:
             return [replace(body, name=f"{entity.name} {body.name}") for body in entity.bodies]
         seen = tuple(replace(s, pose=b.pose @ s.pose) for b in entity.bodies for s in b.seen)
         felt = tuple(replace(s, pose=b.pose @ s.pose) for b in entity.bodies for s in b.felt)
-        return [Body(entity.name, np.eye(4), seen, felt)]
+        lost = any(body.lost for body in entity.bodies)
+        return [Body(entity.name, np.eye(4), seen, felt, lost)]
 
     def _length_m(self, entity: Entity) -> float:
         corners = [
@@ -101,11 +107,12 @@ class ModelFiles:
         return found
 
     def _pair(
-        self, seen: list[Surface], felt: list[Surface], body: Body, stem: str
+        self, seen: list[Surface], felt: list[Surface], body: Body, stem: str, lost: bool
     ) -> tuple[str, str | None, str]:
         """Files of what is seen and felt, and the outline that what is felt needs."""
         seen_key, felt_key = (tuple(s.key() for s in shapes) for shapes in (body.seen, body.felt))
-        file = self._file(seen or felt, ("seen", seen_key) if seen else ("felt", felt_key), stem)
+        key = ("lost" if lost else "felt", felt_key) if lost or not seen else ("seen", seen_key)
+        file = self._file(seen or felt, key, stem)
         if not felt:
             return file, None, "none"
         felt_file = self._file(felt, ("felt", felt_key), f"{stem}-felt")

@@ -1,6 +1,7 @@
 """COLLADA files -> surfaces, read by pycollada. As Gazebo does: in metres by their unit, axes as they are."""
 
 import io
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from simulator.importing.entities import Rgba, WorldImportError
 from simulator.importing.meshes.pictures import Pictures
 from simulator.importing.meshes.surfaces import FloatArray, IntArray, Look, Surface
 
+COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 GREY = (0.7, 0.7, 0.7)
 MOST_DEPTH = 100  # nodes within nodes; untrusted input
 DARK = 0.02  # an ambient colour below is none
@@ -26,8 +28,9 @@ def read_dae(data: bytes, path: Path, pictures: Pictures) -> list[Surface]:
     from collada.common import DaeBrokenRefError, DaeIncompleteError, DaeUnsupportedError
 
     passed = [DaeBrokenRefError, DaeIncompleteError, DaeUnsupportedError]
+    plain = COMMENT.sub(b"", data)  # pycollada takes comments for elements where lxml is installed
     try:
-        document = collada.Collada(io.BytesIO(data), ignore=passed, aux_file_loader=lambda _: None)
+        document = collada.Collada(io.BytesIO(plain), ignore=passed, aux_file_loader=lambda _: None)
         nodes = [] if document.scene is None else document.scene.nodes
         unit = float(document.assetInfo.unitmeter or 1.0)
         scale = np.diag([unit, unit, unit, 1.0])

@@ -54,7 +54,7 @@ class Models:
         """Find files by `resources`."""
         self._resources = resources
         self._files: dict[Path, ElementTree.Element] = {}
-        self._count = 0
+        self._count = self._misses = 0
         self.left_out: list[str] = []
         self.missing: dict[str, str] = {}
         """What cannot be used, and the first who names it."""
@@ -82,11 +82,13 @@ class Models:
             own = link.get("name", "")
             at = frames.pose(link, f"{where} link {own!r:.60}")
             shapes: dict[str, list[Shape]] = {"visual": [], "collision": []}
+            misses = self._misses
             for part in link:
                 if part.tag in shapes:
                     shapes[part.tag] += self._placed(part, f"{where} {part.tag}", path, frames, at, model)
             if shapes["visual"] or shapes["collision"]:
-                model.bodies.append(Body(own, at, tuple(shapes["visual"]), tuple(shapes["collision"])))
+                seen, felt = tuple(shapes["visual"]), tuple(shapes["collision"])
+                model.bodies.append(Body(own, at, seen, felt, lost=self._misses > misses))
         for inner in element:
             if inner.tag in {"model", "include"}:
                 one = self.read(inner, path, depth + 1)
@@ -116,6 +118,7 @@ class Models:
             shapes, missing = shapes_of(part, where, path.parent, self._resources)
         except MissingFileError as error:
             self.missing.setdefault(str(error), where)
+            self._misses += 1
             return []
         self.left_out += missing
         return shapes

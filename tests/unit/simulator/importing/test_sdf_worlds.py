@@ -56,6 +56,12 @@ def test_units_and_node_transforms_of_dae_are_applied_and_its_axis_is_not(bring,
     np.testing.assert_allclose(points.max(axis=0), (1.02, 0.0, 0.01), atol=1e-5)
 
 
+def test_comments_within_a_mesh_are_passed_over(bring, folder):
+    text = dae().replace("<mesh>", "<!-- exported --><mesh><!-- as triangles -->")
+    (folder / "models/sheet/meshes/sheet.dae").write_text(text, encoding="utf-8")
+    assert named(bring(world_text(model(SHEET))).world, "thing")
+
+
 def test_scale_mirrors_and_stretches(bring):
     scaled = mesh("model://sheet/meshes/sheet.dae", "<scale>-1 1 2</scale>")
     patch = named(bring(world_text(model(scaled))).world, "thing").options["file"].patches[0]

@@ -21,6 +21,16 @@ def lit(clear_m, shade_m):
     return float(bake(points, normals, (plate,), (lamp,), (0.0, 0.0, 0.0), 0.0, rng)[0, 0])
 
 
+def test_lamp_above_everything_shines_down():
+    plate = box((-0.5, 0.5), (-0.5, 0.5), (0.5, 0.6), Material("plaster"))
+    lamp = Light((0.0, 0.0, 9.0), (0.1, 0.1, 0.1), (90.0, 90.0, 90.0))
+    points = np.array([(0, 0, 0), (1.5, 0, 0), (-2, -2, 0), (2, 2, 1)], np.float32)
+    light = bake(
+        points, np.repeat(UP, 4, axis=0), (plate,), (lamp,), (0.0,) * 3, 0.0, np.random.default_rng(0)
+    )
+    assert light[1, 0] > 0.5 > light[0, 0]
+
+
 @pytest.mark.parametrize(
     ("clear_m", "shade_m", "bright"), [(0.0, 1.6, False), (0.6, 1.6, True), (0.6, 1.0, False)]
 )
