@@ -166,11 +166,17 @@ def _cutoff(material: Any) -> float | None:
     return GLASS if mode == "BLEND" else None
 
 
-def check_arrays(vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64], name: str) -> None:
+def check_arrays(
+    vertices: npt.NDArray[np.float64],
+    triangles: npt.NDArray[np.int64],
+    name: str,
+    most_triangles: int = MOST_TRIANGLES,
+    most_vertices: int = MOST_VERTICES,
+) -> None:
     """Raise AssetError unless triangles name vertices that are there, finite and not too many."""
-    if len(triangles) > MOST_TRIANGLES or len(vertices) > MOST_VERTICES:
+    if len(triangles) > most_triangles or len(vertices) > most_vertices:
         raise AssetError(
-            f"{name} must have at most {MOST_TRIANGLES} triangles and {MOST_VERTICES} vertices, "
+            f"{name} must have at most {most_triangles} triangles and {most_vertices} vertices, "
             f"got {len(triangles)} and {len(vertices)}; reduce the mesh"
         )
     if triangles.ndim != 2 or triangles.shape[1] != 3 or vertices.ndim != 2 or vertices.shape[1] != 3:

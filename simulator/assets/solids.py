@@ -10,7 +10,7 @@ from simulator.assets.shell import shell_of
 from simulator.scene.meshes import Mesh, joined
 from simulator.scene.prisms import MOST_PRISMS, SKIN_M, Prism, hull_outline, prisms_of
 
-Outline = Literal["convex", "concave", "box", "none"]
+Outline = Literal["convex", "concave", "sheets", "box", "none"]
 MOST_SHEETS = 20_000  # chosen: a floor of offices has 8000
 
 
@@ -19,8 +19,9 @@ def prisms(shapes: Sequence[Mesh], outline: Outline) -> list[Prism]:
 
     Args:
         shapes: its nodes; what touches in different nodes stays apart.
-        outline: convex hulls of what hangs together in a slice; concave: the same, but thin sheets along the
-            faces of nodes whose hulls would fill floor between them; one box round everything; or none.
+        outline: convex hulls of what hangs together in a slice; sheets along all faces; concave: sheets of
+            the nodes whose hulls would fill floor between their faces, hulls of the others; one box
+            round everything; or none.
 
     Raises:
         ValueError: it falls into too many pieces.
@@ -29,8 +30,8 @@ def prisms(shapes: Sequence[Mesh], outline: Outline) -> list[Prism]:
         return []
     if outline == "convex":
         return _hulls(shapes)
-    if outline == "concave":
-        return _sheets(shapes)
+    if outline in ("concave", "sheets"):
+        return _sheets(shapes, always=outline == "sheets")
     points = joined(list(shapes)).vertices.astype(float)
     low, high = points.min(axis=0), points.max(axis=0)
     corners = hull_outline(np.array([(x, y) for x in (low[0], high[0]) for y in (low[1], high[1])]))
@@ -55,11 +56,11 @@ def _hulls(shapes: Sequence[Mesh]) -> list[Prism]:
     return prisms_of(whole.vertices.astype(float), whole.triangles)
 
 
-def _sheets(shapes: Sequence[Mesh]) -> list[Prism]:
+def _sheets(shapes: Sequence[Mesh], always: bool) -> list[Prism]:
     low_m = min(float(shape.vertices[:, 2].min()) for shape in shapes)
     found: list[Prism] = []
     for shape in {_place(shape): shape for shape in shapes}.values():
-        cut = shell_of if is_hollow(shape, low_m) else prisms_of
+        cut = shell_of if always or is_hollow(shape, low_m) else prisms_of
         found += cut(shape.vertices.astype(float), shape.triangles)
     if len(found) > MOST_SHEETS:
         raise ValueError(

@@ -61,8 +61,8 @@ def mesh(
         pitch_deg: positive lowers the front.
         centred: false keeps the origin of the file.
         solid: whether it stops the robot.
-        collision: convex outline of each connected piece, concave for walls with rooms between them, one box
-            round everything, or none; or {file: F, outline: O} for a simpler model in the same place.
+        collision: convex outline of each connected piece, concave for walls with rooms between them, sheets
+            along all faces, one box, or none; or {file: F, outline: O} for a simpler model in the same place.
         texture: picture file in place of the file's own looks; needs texture coordinates.
         two_sided: shows the backs of open surfaces too.
         glow: above 0 it shines evenly and needs no light.

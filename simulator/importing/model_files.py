@@ -1,8 +1,9 @@
 """Entities -> model files in a folder, equal ones once, and the pieces of furniture that show them."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import zip_longest
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from simulator.assets.solids import needs_sheets
 from simulator.importing.contents import Thing
 from simulator.importing.entities import Body, Entity, FloatArray, Shape, WorldImportError
+from simulator.importing.meshes.cutting import heaps
 from simulator.importing.meshes.entity_surfaces import EntitySurfaces
 from simulator.importing.meshes.glb import glb_of
 from simulator.importing.meshes.surfaces import Look, Surface, triangles_of
@@ -67,8 +69,8 @@ class ModelFiles:
             for surfaces in (seen, felt):
                 self._triangles.append(triangles_of(surfaces) @ pose[:3, :3].T + pose[:3, 3])
             stem = body.name if entity.model == "" else entity.model
-            files = self._pair(seen, felt, body, stem or "model", lost)
-            found.append(Thing(_unique(body.name or stem or "model", self._names), *files, pose))
+            for files in self._pairs(seen, felt, body, stem or "model", lost):
+                found.append(Thing(_unique(body.name or stem or "model", self._names), *files, pose))
         return found
 
     def triangles(self) -> FloatArray:
@@ -106,20 +108,21 @@ class ModelFiles:
                 self.left_out.append(str(error))
         return found
 
-    def _pair(
+    def _pairs(
         self, seen: list[Surface], felt: list[Surface], body: Body, stem: str, lost: bool
-    ) -> tuple[str, str | None, str]:
-        """Files of what is seen and felt, and the outline that what is felt needs."""
+    ) -> Iterator[tuple[str, str | None, str]]:
+        """Files of what is seen and felt, and the outline this needs; one of each but for the largest."""
         seen_key, felt_key = (tuple(s.key() for s in shapes) for shapes in (body.seen, body.felt))
-        key = ("lost" if lost else "felt", felt_key) if lost or not seen else ("seen", seen_key)
-        file = self._file(seen or felt, key, stem)
-        if not felt:
-            return file, None, "none"
-        felt_file = self._file(felt, ("felt", felt_key), f"{stem}-felt")
-        if felt_file not in self._outlines:
-            hollow = needs_sheets([_mesh(surface) for surface in felt])
-            self._outlines[felt_file] = "concave" if hollow else "convex"
-        return file, felt_file, self._outlines[felt_file]
+        key = ("lost", felt_key) if lost else ("seen", seen_key)
+        shown_heaps, felt_heaps = heaps(seen), heaps(felt)
+        hollow = "concave" if len(felt_heaps) == 1 else "sheets"  # a piece of a room is no room by itself
+        for k, (shown, stops) in enumerate(zip_longest(shown_heaps, felt_heaps)):
+            felt_file = None if stops is None else self._file(stops, ("felt", k, felt_key), f"{stem}-felt")
+            file = felt_file if shown is None else self._file(shown, (*key, k), stem)
+            if felt_file not in self._outlines:
+                needed = needs_sheets([_mesh(surface) for surface in felt])
+                self._outlines[felt_file] = hollow if needed else "convex"
+            yield str(file), felt_file, self._outlines[felt_file]
 
     def _file(self, surfaces: list[Surface], key: object, stem: str) -> str:
         if key not in self._files:

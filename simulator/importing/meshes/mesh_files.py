@@ -15,6 +15,9 @@ from simulator.importing.meshes.surfaces import Look, Pixels, Surface
 from simulator.importing.sdf.resources import read_bytes
 
 SUFFIXES = (".dae", ".glb", ".gltf", ".obj", ".stl")
+MOST_TRIANGLES, MOST_VERTICES = 2_000_000, 6_000_000
+"""Of a mesh; chosen: a scanned house. It becomes several models."""
+MOST_BYTES = 512_000_000  # untrusted input: of a scene with its pictures
 HOLE = 0.5  # alphaCutoff where glTF does not say
 OPAQUE = 250
 """A picture whose bytes of opacity are all above this has no holes; chosen: what antialiasing leaves."""
@@ -44,13 +47,13 @@ class MeshFiles:
         suffix = path.suffix.lower()
         if suffix not in SUFFIXES:
             raise WorldImportError(f"{path} must end in {', '.join(SUFFIXES)}; convert it to one of these")
-        data = read_bytes(path)
+        data = read_bytes(path, MOST_BYTES)
         if data.startswith(LFS):
             raise WorldImportError(f"{path} is a pointer of Git LFS; fetch the file with 'git lfs pull'")
         try:
             found = read_dae(data, path, self._pictures) if suffix == ".dae" else self._by_trimesh(data, path)
             for surface in found:
-                check_arrays(surface.vertices, surface.triangles, str(path))
+                check_arrays(surface.vertices, surface.triangles, str(path), MOST_TRIANGLES, MOST_VERTICES)
         except AssetError as error:
             raise WorldImportError(str(error).replace(path.name, str(path), 1)) from error
         found = [surface for surface in found if len(surface.triangles)]
@@ -61,7 +64,7 @@ class MeshFiles:
     def _by_trimesh(self, data: bytes, path: Path) -> list[Surface]:
         suffix = path.suffix.lower().lstrip(".")
         if suffix in {"glb", "gltf"}:
-            check_header(header_of(data, path.name), path.name)
+            check_header(header_of(data, path.name), path.name, MOST_VERTICES)
         scene = parsed(data, suffix, path.name, Neighbours(path, self._pictures))
         self.parents[path] = {str(a): str(b) for a, b in scene.graph.transforms.parents.items()}
         found = []
@@ -85,7 +88,7 @@ class Neighbours:
         path = self._path.parent / name.replace("\\", "/")
         if path.suffix.lower() in {".mtl", ".bin"}:
             try:
-                return read_bytes(path)
+                return read_bytes(path, MOST_BYTES)
             except WorldImportError as error:
                 if path.suffix.lower() == ".bin":
                     self.faults.append(str(error))

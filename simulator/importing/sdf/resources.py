@@ -109,14 +109,12 @@ def read_text(path: Path) -> str:
     return read_bytes(path).decode("utf-8", errors="replace")
 
 
-def read_bytes(path: Path) -> bytes:
+def read_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
     """Content of a file; WorldImportError if it is too large or cannot be read."""
     try:
         size = path.stat().st_size
-        if size > MOST_BYTES:
-            raise WorldImportError(
-                f"{path} must be at most {MOST_BYTES // 1_000_000} MB, got {size / 1e6:.1f}"
-            )
+        if size > most:
+            raise WorldImportError(f"{path} must be at most {most // 1_000_000} MB, got {size / 1e6:.1f}")
         return path.read_bytes()
     except OSError as error:
         raise WorldImportError(f"{path} cannot be read: {error.strerror or error}") from error

@@ -58,9 +58,11 @@ def test_doorway_is_as_wide_as_in_the_mesh_and_its_lintel_is_above_it():
     assert gaps(found, (2.45, 0.05), band=(2.2, 2.4))[0] < 0.05
 
 
-def test_carpet_in_a_mesh_of_walls_stops_nobody_and_a_table_in_it_does():
+@pytest.mark.parametrize("low_m", [0.0, -0.013, -0.04])
+def test_carpet_in_a_mesh_of_walls_stops_nobody_and_a_table_in_it_does(low_m):
     carpet, table = ((1, 1, 0), (3, 3, 0.01)), ((4, 4, 0), (5, 5, 0.7))
-    whole = mesh_of(*[((0, 0, 0), (6, WALL, 2)), ((0, 5.8, 0), (6, 6, 2)), carpet, table])
+    sill = ((0, 0.5, low_m), (0.1, 0.6, 0.04))
+    whole = mesh_of(*[((0, 0, low_m), (6, WALL, 2)), ((0, 5.8, 0), (6, 6, 2)), carpet, table, sill])
     on_edge, at_table = gaps(shell_of(whole.vertices.astype(float), whole.triangles), (1, 2), (4, 4.5))
     assert on_edge > 0.5
     assert at_table < 0.05

@@ -6,6 +6,7 @@ import trimesh
 from PIL import Image
 
 from simulator.importing.import_world import import_world
+from simulator.importing.meshes import cutting
 from simulator.world.freespace import free_space
 from tests.unit.simulator.importing.conftest import named, write_scene, y_up_box
 
@@ -56,6 +57,26 @@ def test_without_lamps_there_is_more_even_light(room):
 
 def test_glass_is_not_seen(room):
     assert [patch.seen for patch in named(room.world, "pane").options["file"].patches] == [False]
+
+
+def test_scan_of_one_mesh_becomes_several_models_and_the_same_floor(tmp_path, monkeypatch):
+    monkeypatch.setattr(cutting, "MOST_TRIANGLES", 700)
+    slab, blocks = y_up_box((0, 0, -0.1), (6, 5, 0)), [y_up_box((2, 2, 0), (3, 3, 1))]
+    blocks += [y_up_box((-0.1, -0.1, 0), (6.1, 0, 2)), y_up_box((-0.1, 5, 0), (6.1, 5.1, 2))]
+    scan = trimesh.util.concatenate([one.subdivide().subdivide().subdivide() for one in (slab, *blocks)])
+    scan.visual = trimesh.visual.ColorVisuals(
+        scan, vertex_colors=np.full((len(scan.vertices), 4), 180, np.uint8)
+    )
+    write_scene(tmp_path / "scan.glb", ("scan", scan))
+    world = import_world(tmp_path / "scan.glb", tmp_path / "out").world
+    files = [item.options["file"] for item in world.furniture]
+    counts = [sum(len(patch.mesh.triangles) for patch in file.patches) for file in files]
+    assert len(counts) > 3
+    assert max(counts) <= 700
+    assert sum(counts) == len(scan.faces)
+    space = free_space(world)
+    assert space.free.sum() * space.resolution_m**2 == pytest.approx(5.48 * 4.48 - 1.52**2, abs=1.2)
+    assert not space.is_free((2.5, 2.5))
 
 
 def test_holes_of_a_picture_are_kept(tmp_path):
