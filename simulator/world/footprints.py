@@ -10,6 +10,7 @@ from shared.geometry.perspective import rotation_z
 from simulator.scene.parts import Part, solids_between
 
 FloatArray = npt.NDArray[np.float64]
+ROUNDING_M = 1e-9
 
 
 def _no_polygons() -> FloatArray:
@@ -96,16 +97,20 @@ def clearance_m(points_m: FloatArray, shapes: Footprints) -> FloatArray:
 def clearance_grid_m(xs_m: FloatArray, ys_m: FloatArray, shapes: Footprints, far_m: float) -> FloatArray:
     """Distance from each point of a grid to the nearest outline, at most far_m; (len(ys), len(xs)) metres.
 
-    Each outline is compared with the points near it only, so that large worlds take seconds.
+    Each outline is compared only with the points that are nearer to a box round it than to what came before,
+    so that large worlds, and worlds of many outlines, take seconds.
     """
     best = np.full((len(ys_m), len(xs_m)), far_m)
     for low, high, one in _each(shapes):
         columns = slice(*np.searchsorted(xs_m, (low[0] - far_m, high[0] + far_m)))
         rows = slice(*np.searchsorted(ys_m, (low[1] - far_m, high[1] + far_m)))
-        window = best[rows, columns]
-        if window.size:
-            points = np.stack(np.meshgrid(xs_m[columns], ys_m[rows]), axis=-1).reshape(-1, 2)
-            np.minimum(window, clearance_m(points, one).reshape(window.shape), out=window)
+        window, xs, ys = best[rows, columns], xs_m[columns], ys_m[rows]
+        dx = np.maximum(np.maximum(low[0] - xs, xs - high[0]), 0.0)
+        dy = np.maximum(np.maximum(low[1] - ys, ys - high[1]), 0.0)
+        row, column = np.nonzero(dx[None] ** 2 + dy[:, None] ** 2 <= (window + ROUNDING_M) ** 2)
+        if len(row):
+            found = clearance_m(np.stack([xs[column], ys[row]], axis=-1), one)
+            window[row, column] = np.minimum(window[row, column], found)
     return best
 
 
