@@ -10,7 +10,7 @@ from services.planner.ports import Decision
 from services.planner.profiles import Profile
 from shared.geometry.clearance import Obstacles
 from shared.mapgraph.graph import MapGraph
-from shared.mapgraph.local.view_range import half_m, keypoints_of, match_length_m, openness
+from shared.mapgraph.local.view_range import length_to_m, openness
 from shared.messages.base import SECTORS
 from shared.messages.maps import Node
 from shared.messages.matching import NodeMatch
@@ -73,10 +73,7 @@ def _knows(node: Node, heading_rad: float) -> bool:
 
 def length_m(match: NodeMatch, graph: MapGraph) -> float:
     """Rough length of the way to a node or goal picture, by how much the frame has in common with it."""
-    if match.status == "no_baseline":
-        return 0.0
-    node_id = match.node_id
-    return match_length_m(match.inliers, keypoints_of(graph, node_id), half_m(graph, node_id))
+    return 0.0 if match.status == "no_baseline" else length_to_m(graph, match.node_id, match.inliers)
 
 
 def is_clear(match: NodeMatch, graph: MapGraph, ranges: Ranges, profile: Profile) -> bool:

@@ -91,6 +91,12 @@ class MapGraph:
         """Nodes at most so many edges from `start`, suspended ones excluded; `start` is one of them."""
         return set(nx.single_source_shortest_path_length(self._links(), start, cutoff=hops))
 
+    def edges_among(self, nodes: Iterable[int]) -> list[Edge]:
+        """The edges that join two of these nodes, suspended ones excluded, by their numbers."""
+        inside = set(nodes)
+        pairs = sorted((a, b) for a in inside for b in self.neighbours(a) if a < b and b in inside)
+        return [self.edges[pair] for pair in pairs]
+
     def within_cost(self, start: int, most: float, cost: Callable[[Edge], float | None]) -> set[int]:
         """Nodes to which a path costs at most so much; `start` is one of them.
 

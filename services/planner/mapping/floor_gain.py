@@ -46,7 +46,7 @@ def without_poor_directions(graph: MapGraph, root: int, profile: Profile) -> lis
     covers_m = _covered_m(graph, root, profile)
     if not covers_m:
         return []
-    poses = relative_poses(graph, root, graph.nearest(root, NEAR_NODES), NEAR_NODES)
+    poses = _poses_around(graph, root)
     near = [n for n, pose in poses.items() if np.linalg.norm(pose.position_m) < 3.0 * covers_m]
     changed = []
     for node in (graph.nodes[node_id] for node_id in near):
@@ -81,8 +81,7 @@ def best_sector(graph: MapGraph, node_id: int, preferred_rad: float, profile: Pr
     node, covers_m = graph.nodes[node_id], _covered_m(graph, node_id, profile)
     gains = dict.fromkeys(frontier_sectors(node), 1.0)
     if covers_m:
-        poses = relative_poses(graph, node_id, graph.nearest(node_id, NEAR_NODES), NEAR_NODES)
-        gains = _gains(graph, poses, node, covers_m)
+        gains = _gains(graph, _poses_around(graph, node_id), node, covers_m)
     return max(gains, key=worth, default=None)
 
 
@@ -98,11 +97,13 @@ def gain_here(graph: MapGraph, here: Displacement, free_m: Sequence[float], prof
     covers_m = _covered_m(graph, here.node_id, profile)
     if not covers_m:
         return 0.0
-    poses = relative_poses(graph, here.node_id, graph.nearest(here.node_id, NEAR_NODES), NEAR_NODES)
+    known_m = _known_m(graph, _poses_around(graph, here.node_id), here.node_id, covers_m)
     spot = np.array([here.x_m, here.y_m])
-    return _new_share(
-        _known_m(graph, poses, here.node_id, covers_m), spot, spot, here.yaw_rad, free_m, covers_m
-    )
+    return _new_share(known_m, spot, spot, here.yaw_rad, free_m, covers_m)
+
+
+def _poses_around(graph: MapGraph, node_id: int) -> dict[int, RelativePose]:
+    return relative_poses(graph, node_id, graph.nearest(node_id, NEAR_NODES), NEAR_NODES)
 
 
 def _gains(

@@ -22,7 +22,7 @@ from shared.mapgraph.local.hypotheses import (
     likely,
     typical_similarity,
 )
-from shared.mapgraph.local.view_range import half_m, keypoints_of, match_length_m
+from shared.mapgraph.local.view_range import length_to_m
 from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
 
@@ -163,8 +163,7 @@ class GoalPlaces:
     def _is_beyond(self, here: Displacement) -> bool:
         """Whether a robot is further from the place than matches with it allow, as far as is known."""
         graph, place = self._maps.graph, self._places[0]
-        node_id = place.nodes[0]
-        apart_m = match_length_m(place.similarity, keypoints_of(graph, node_id), half_m(graph, node_id))
+        apart_m = length_to_m(graph, place.nodes[0], place.similarity)
         return not self._is_within(SPOT_M + BEYOND_FACTOR * apart_m, here)
 
     def _is_within(self, far_m: float, here: Displacement) -> bool:

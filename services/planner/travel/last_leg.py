@@ -6,8 +6,6 @@ the robot sees there need not be enough to head for it.
 
 import math
 
-import numpy as np
-
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import NEAR_NODES
@@ -30,9 +28,9 @@ def reckoned_rad(graph: MapGraph, here: Displacement | None, goal: Displacement 
     pose = relative_poses(graph, here.node_id, [goal.node_id], NEAR_NODES).get(goal.node_id)
     if pose is None:
         return None
-    cos, sin = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
-    spot = pose.position_m + np.array([[cos, -sin], [sin, cos]]) @ np.array([goal.x_m, goal.y_m])
-    x_m, y_m = float(spot[0]) - here.x_m, float(spot[1]) - here.y_m
+    node_x_m, node_y_m = (float(metres) for metres in pose.position_m)
+    spot = Displacement(here.node_id, node_x_m, node_y_m, pose.yaw_rad).moved((goal.x_m, goal.y_m))
+    x_m, y_m = spot.x_m - here.x_m, spot.y_m - here.y_m
     if math.hypot(x_m, y_m) < REACHED_M:
         return None
     return math.remainder(math.atan2(y_m, x_m) - here.yaw_rad, math.tau)

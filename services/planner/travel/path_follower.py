@@ -128,17 +128,16 @@ class PathFollower:
 
     def _is_at(self, match: NodeMatch | None) -> bool:
         """Whether the robot stands at the present waypoint."""
-        at = is_at(match, self._maps.graph, self._profile)
-        return at and (self._strict or not self._tracker.is_beyond(self.path[self.index]))
+        return is_at(match, self._maps.graph, self._profile) and not self._is_beyond()
 
     def _has_arrived(self, match: NodeMatch | None) -> bool:
-        if (
-            match is None
-            or not self._at_end()
-            or (not self._strict and self._tracker.is_beyond(self.path[-1]))
-        ):
+        if match is None or not self._at_end() or self._is_beyond():
             return False
         return has_arrived(match, self._maps.graph, self._profile, self._destination.arrival_rad)
+
+    def _is_beyond(self) -> bool:
+        """Whether what the robot did says that it is not at the present waypoint; the thesis does not ask."""
+        return not self._strict and self._tracker.is_beyond(self.path[self.index])
 
     def _at_end(self) -> bool:
         return self.index == len(self.path) - 1
@@ -178,12 +177,16 @@ class PathFollower:
             if there is None or not self._may_advance(here, there, later, ranges):
                 continue
             learnt = self._mark_driven(here)
-            self.index, self._best_rad, self._best_s, self._stale = later, math.inf, 0, 0
+            self._head_for(later)
             s_here = similarity(here, self._profile) if here is not None else 0
             s_there = similarity(there, self._profile)
             values = {"s_cv": s_here, "s_nv": s_there, "via": self.path[later]}
             return (*learnt, Note("via_advanced", f"next waypoint {_name(self.path[later])}", dict(values)))
         return ()
+
+    def _head_for(self, index: int) -> None:
+        """Make another waypoint the present one, of which no progress is known yet."""
+        self.index, self._best_rad, self._best_s, self._stale = index, math.inf, 0, 0
 
     def _may_advance(self, here: NodeMatch | None, there: NodeMatch, later: int, ranges: Ranges) -> bool:
         beside = later == self.index + 1 and self._is_at(here)
@@ -228,7 +231,7 @@ class PathFollower:
         """Whether the goal, which does not show from the last node, is headed for by where the map has it."""
         blind = self.path[self.index + 1] == GOAL and self._blind_rad() is not None
         if blind:
-            self.index, self._best_rad, self._best_s, self._stale = self.index + 1, math.inf, 0, 0
+            self._head_for(self.index + 1)
             self._waiting = 0
         return blind
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from shared.mapgraph.graph import MapGraph
-from shared.mapgraph.local.view_range import half_m, keypoints_of, match_length_m
+from shared.mapgraph.local.view_range import length_to_m
 from shared.messages.matching import NodeMatch
 
 CONFIDENCE_MIN = 0.5
@@ -51,7 +51,7 @@ def claim_of(
         return None
     if _at_the_spot(match):
         return Claim(match.inliers, None, 0.0, match.yaw_rad, 0.0)
-    length_m = match_length_m(match.inliers, keypoints_of(graph, node_id), half_m(graph, node_id))
+    length_m = length_to_m(graph, node_id, match.inliers)
     return Claim(match.inliers, match.heading_rad, match.heading_std_rad or 0.0, match.yaw_rad, length_m)
 
 

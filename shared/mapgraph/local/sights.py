@@ -57,9 +57,8 @@ def sights_among(graph: MapGraph, index: Mapping[int, int]) -> list[LocalSight]:
         graph: the map.
         index: number of each node within the part.
     """
-    pairs = sorted((a, b) for a in index for b in graph.neighbours(a) if a < b and b in index)
-    edges = (graph.edges[pair] for pair in pairs)
-    return [_sight(graph, edge, index) for edge in edges if edge.yaw_ab_rad is not None]
+    among = graph.edges_among(index)
+    return [_sight(graph, edge, index) for edge in among if edge.yaw_ab_rad is not None]
 
 
 def _sight(graph: MapGraph, edge: Edge, index: Mapping[int, int]) -> LocalSight:

@@ -65,6 +65,11 @@ def openness(graph: MapGraph, node_id: int | None = None) -> float:
     return max(1.0, half_m(graph, node_id) / ROOM_HALF_M)
 
 
+def length_to_m(graph: MapGraph, node_id: int, inliers: int) -> float:
+    """How far a picture is from a node with which it shares so many matches."""
+    return match_length_m(inliers, keypoints_of(graph, node_id), half_m(graph, node_id))
+
+
 def edge_length_m(graph: MapGraph, edge: Edge) -> float:
     """Length of an edge: as driven, else by its matches."""
     if edge.length_m is not None:
@@ -74,12 +79,7 @@ def edge_length_m(graph: MapGraph, edge: Edge) -> float:
 
 def _driven(graph: MapGraph, near: list[int] | None) -> list[Edge]:
     """Edges long enough to tell, that the robot drove and that may be used; between `near` nodes, or all."""
-    if near is None:
-        edges = list(graph.edges.values())
-    else:
-        inside = set(near)
-        pairs = {(min(a, b), max(a, b)) for a in near for b in graph.neighbours(a) if b in inside}
-        edges = [graph.edges[pair] for pair in sorted(pairs)]
+    edges = graph.edges.values() if near is None else graph.edges_among(near)
     return [edge for edge in edges if (edge.length_m or 0.0) >= SHORTEST_M and not edge.suspended]
 
 

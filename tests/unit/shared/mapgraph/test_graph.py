@@ -52,3 +52,16 @@ def test_a_neighbour_is_seen_from_either_end_where_the_yaw_is_known():
     assert graph.sight(1, 0) == Sight(-1.0, -0.25)
     assert graph.sight(1, 2) is None
     assert graph.sight(0, 2) is None
+
+
+def test_edges_among_nodes_are_those_that_may_be_used_and_join_two_of_them():
+    edges = [Edge(a=1, b=2), Edge(a=0, b=1), Edge(a=0, b=2, suspended=True), Edge(a=2, b=3)]
+    graph = MapGraph([Node(node_id=n) for n in range(4)], edges)
+    assert [(edge.a, edge.b) for edge in graph.edges_among({2, 1, 0})] == [(0, 1), (1, 2)]
+    assert graph.edges_among([1]) == []
+
+
+def test_nodes_within_a_cost_are_those_that_allowed_edges_lead_to():
+    graph = MapGraph([Node(node_id=n) for n in range(4)], [Edge(a=n, b=n + 1) for n in range(3)])
+    assert graph.within_cost(0, 2.0, lambda _: 1.0) == {0, 1, 2}
+    assert graph.within_cost(0, 9.0, lambda edge: None if edge.a == 1 else 1.0) == {0, 1}
