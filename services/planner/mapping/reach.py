@@ -11,7 +11,7 @@ from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.claims import CONFIDENCE_MIN, Claim, claim_of
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import NEAR_NODES
-from shared.mapgraph.local.reach import distances_m, out_of_reach
+from shared.mapgraph.local.reach import distances_m, hanging_apart, out_of_reach
 from shared.mapgraph.local.view_range import openness
 
 
@@ -28,8 +28,10 @@ def in_reach(graph: MapGraph, matches: Matches, here: Displacement, profile: Pro
     """Matches with nodes around that lie where they are seen; what claims nothing is not among them."""
     sights = claims(graph, matches, profile, HEADING_CONFIDENCE_MIN)
     near = set(graph.nearest(here.node_id, NEAR_NODES))
-    away = out_of_reach(graph, sights, here, NEAR_NODES)
-    return {node: match for node, match in matches.items() if node in sights and node in near - away.keys()}
+    away = out_of_reach(graph, sights, here, NEAR_NODES).keys() | hanging_apart(
+        graph, sights, here, NEAR_NODES
+    )
+    return {node: match for node, match in matches.items() if node in sights and node in near - away}
 
 
 def elsewhere(

@@ -199,8 +199,8 @@ class GoalDestination:
             return f"aliased: a node of the map resembles this view more than the goal does, S {s_map}"
         if another := self.places.shows_another(view, tracker.here):
             self.aliased = True
-            tracker.stand_at(None)
-            return f"aliased: {another}"
+            tracker.shown({node: view[node] for node in another.nodes})
+            return f"aliased: this is about node {another.nodes[0]}, its place about {self.places.names}"
         return self._settle(self.places.arrived(node, Visit(similarity, tracker.likeness(similarity))))
 
     def _settle(self, ruling: Ruling) -> str:

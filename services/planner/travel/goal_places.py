@@ -121,8 +121,8 @@ class GoalPlaces:
         seen = goal.model_copy(update={"yaw_rad": (goal.yaw_rad or 0.0) + self._yaw_rad[nearest]})
         return not elsewhere(self._maps.graph, {nearest: seen}, here, self._profile)
 
-    def shows_another(self, view: Matches, here: Displacement | None) -> str:
-        """Why a view is not of the place, where there is but one: a look-alike is a place of its own.
+    def shows_another(self, view: Matches, here: Displacement | None) -> Hypothesis | None:
+        """The place that a view is of, where the goal's is one alone and it is not that: a look-alike.
 
         Args:
             view: the frame against the nodes most like it.
@@ -130,12 +130,12 @@ class GoalPlaces:
         """
         found = likely(self._hypotheses(view))
         if not (self.plain and self._places and found):
-            return ""
+            return None
         same = [not set(place.nodes).isdisjoint(self._places[0].nodes) for place in found]
         may_be = same[0] or (any(same) and self.is_near(None if here is None else here.node_id))
         if may_be and (here is None or not self._is_beyond(here)):
-            return ""
-        return f"this is about node {found[0].nodes[0]}, its place about {self.names}"
+            return None
+        return found[0]
 
     def stood(self, node: int | None) -> Ruling:
         """The robot stood at the very spot, and the goal picture did not agree with the view."""

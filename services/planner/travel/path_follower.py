@@ -50,9 +50,9 @@ BLIND_FRAMES = 40
 """Frames in which a goal is headed for that does not show; chosen: 4.8 m in a room, further than any picture
 that is located in the map lies from its node."""
 
-BESIDE_GOAL = 3
-"""Nodes around the robot that are compared on the last leg, where the path has none; chosen: so that it is
-known where the robot is when it arrives."""
+BESIDE = 3
+"""Nodes around the robot that are compared beside those ahead; chosen: they alone tell a corridor whose doors
+repeat from itself one door further, for those ahead look the same there."""
 
 
 class PathFollower:
@@ -157,9 +157,9 @@ class PathFollower:
         return is_half_clear(there, self._maps.graph, ranges, self._profile)
 
     def _compare(self, matcher: Matcher) -> dict[int, NodeMatch]:
-        ahead = self.path[self.index : self.index + WINDOW]
+        ahead = [node for node in self.path[self.index : self.index + WINDOW] if node != GOAL]
         picture = self._destination.picture
-        nodes = [n for n in ahead if n != GOAL] or self._tracker.nearby()[:BESIDE_GOAL]
+        nodes = [*ahead, *(node for node in self._tracker.nearby()[:BESIDE] if node not in ahead)]
         seen = matcher.match(nodes, targets=() if picture is None else (picture,))
         goal = {GOAL: seen.pop(GOAL)} if GOAL in seen else {}
         possible = self._tracker.possible(seen)

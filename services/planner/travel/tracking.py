@@ -92,6 +92,15 @@ class Tracker:
         """It is known where the robot is, or not any more."""
         self.here, self._lost_frames = here, 0
 
+    def shown(self, place: Matches) -> None:
+        """A frame is of one place: who should not see it from where it believes to be knows no more.
+
+        Args:
+            place: the frame against the nodes of that place.
+        """
+        if self.here is not None and not in_reach(self._maps.graph, place, self.here, self._profile):
+            self.stand_at(None)
+
     def possible(self, matches: Matches) -> Matches:
         """The matches that can be what they claim: those within reach, or of the likeliest place."""
         graph = self._maps.graph

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from services.launcher.processes.free_ports import is_free
 from shared.bus import Bus, open_bus, wait_until
 
 START_S = 60.0
@@ -40,11 +41,13 @@ class Process:
             "MAP_STORE_PORT": str(port),
             "MAP_STORE_DATABASE_URL": database_url or f"sqlite:///{folder}/maps.sqlite3",
         }
+        self._port = port
         self.url = f"http://127.0.0.1:{port}"
         self.child: subprocess.Popen[bytes] | None = None
 
     def start(self) -> None:
-        """Start the process."""
+        """Start the process; its port must have been given back by the one before."""
+        assert wait_until(lambda: is_free(self._port), START_S), f"somebody else listens on port {self._port}"
         self.child = subprocess.Popen(self._command, cwd=self._repository, env=self._environment)
 
     def kill(self) -> None:

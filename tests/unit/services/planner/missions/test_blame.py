@@ -35,7 +35,7 @@ class Lost:
     def match(self, node_ids, best_k=0, targets=()):  # noqa: ARG002
         if best_k:
             return {self.here: match(self.here, 200, "no_baseline", 0.0)}
-        gone = list(node_ids) == [LEG[1]]
+        gone = list(node_ids[:1]) == [LEG[1]]
         places = {n: match(n, 5, "too_few") if gone else match(n, 60) for n in node_ids}
         return places | {GOAL: match(GOAL, 0, "too_few")}
 

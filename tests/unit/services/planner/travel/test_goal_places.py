@@ -53,21 +53,24 @@ def test_a_goal_seen_where_its_place_is_not_is_not_headed_for(seen_m, may):
 
 def test_a_view_of_a_look_alike_is_no_arrival():
     places = places_of(FIRST)
-    assert "this is about node 9" in places.shows_another(SECOND, Displacement(9))
-    assert places.shows_another(FIRST, Displacement(1)) == ""
+    another = places.shows_another(SECOND, Displacement(9))
+    assert another is not None
+    assert another.nodes[0] == 9
+    assert places.shows_another(FIRST, Displacement(1)) is None
 
 
 @pytest.mark.parametrize(("node", "another"), [(2, False), (10, True)])
 def test_a_view_that_may_be_of_either_is_believed_beside_the_place(node, another):
     rival = by_node(match(9, 0.0, 0.0, 160), match(10, 1.0, 0.0, 80))
-    assert bool(places_of(FIRST).shows_another(FIRST | rival, Displacement(node))) == another
+    found = places_of(FIRST).shows_another(FIRST | rival, Displacement(node))
+    assert (found is not None) == another
 
 
 def test_a_view_like_the_place_from_further_off_than_its_matches_allow_is_of_another():
     """As at the next of equal desks: the nodes between the two are seen from both."""
     places = places_of(FIRST)
-    assert places.shows_another(FIRST, None) == ""
-    assert places.shows_another(FIRST, Displacement(FAR)) != ""
+    assert places.shows_another(FIRST, None) is None
+    assert places.shows_another(FIRST, Displacement(FAR)) is not None
 
 
 def test_who_stood_at_the_very_spot_and_did_not_see_the_goal_excludes_it(two):

@@ -175,3 +175,10 @@ def test_a_robot_is_not_at_a_node_that_lies_metres_away_however_alike_it_looks(t
     assert not tracker.is_beyond(3), "who does not know where it is may be anywhere"
     tracker.stand_at(None)
     assert not tracker.is_beyond(3)
+
+
+@pytest.mark.parametrize(("place", "known"), [(HERE, True), (ELSEWHERE, False)])
+def test_a_view_of_a_place_makes_doubt_only_those_who_believe_to_be_elsewhere(tracker, place, known):
+    """A goal's look-alike beside the robot was arrived at: that says nothing against where it is."""
+    tracker.shown(place)
+    assert (tracker.here is not None) == known

@@ -2,9 +2,13 @@
 
 import math
 
+import pytest
+
+from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement, seen_from
-from shared.mapgraph.local.reach import out_of_reach
-from tests.unit.shared.mapgraph.local.grid import claim, grid
+from shared.mapgraph.local.reach import hanging_apart, out_of_reach
+from shared.messages.maps import Node
+from tests.unit.shared.mapgraph.local.grid import claim, edge, grid
 
 GRAPH = grid(8, 3)
 HERE = Displacement(0, x_m=0.5, y_m=0.0, spread_m=0.1)
@@ -51,6 +55,18 @@ def test_a_robot_that_drove_far_without_a_sight_may_be_further():
 
 def test_nothing_is_known_of_what_no_edge_joins_or_without_a_node_to_start_from():
     assert refused({1: claim(9.0, 0.0)}, Displacement(99)) == set()
+
+
+@pytest.mark.parametrize(("driven", "apart"), [(False, {4}), (True, set())])
+def test_a_node_on_an_edge_that_nobody_drove_is_where_its_matches_say(driven, apart):
+    """It lies 3.5 m ahead; what looks like it 0.9 m ahead is another."""
+    row, last = grid(4, 1), edge(3, 4, 8, driven=driven)
+    hanging = MapGraph([*row.nodes.values(), Node(node_id=4)], [*row.edges.values(), last])
+    seen = {2: claim(1.5, 0.0), 4: claim(0.9, 0.0)}
+    assert out_of_reach(hanging, seen, HERE).keys() == {4} - apart
+    assert hanging_apart(hanging, seen, HERE, 60) == apart
+    assert hanging_apart(hanging, {4: claim(2.0, 0.0)}, HERE, 60) == set()
+    assert hanging_apart(hanging, seen, Displacement(99), 60) == set()
 
 
 def test_driving_adds_up_in_the_frame_of_the_node_and_grows_uncertain():
