@@ -27,9 +27,12 @@ ROOM_COVERS_M = 1.0
 STRAIGHT_SHARE = 0.25
 """Share of its gain that a direction loses which turns the robot round; chosen: of two that are as good the
 one ahead comes first."""
-SIDE_FACTOR = 2.5
+AHEAD = (1.0, 2.0)
+"""Where new floor is looked for along a free direction, in radii that a node covers; chosen: through a door
+that is one away, floor begins behind the walls beside it."""
+SIDE_FACTOR = AHEAD[-1] + 1.5
 """So many times as far as a node covers, over free ground, lie the nodes whose floor is on the same side of
-every wall; chosen: beyond twice nothing is covered by both."""
+every wall; chosen: beyond one radius more than the farthest floor looked at, little is covered."""
 
 
 def without_poor_directions(graph: MapGraph, root: int, profile: Profile) -> list[Node]:
@@ -47,7 +50,7 @@ def without_poor_directions(graph: MapGraph, root: int, profile: Profile) -> lis
     if not covers_m:
         return []
     poses = _poses_around(graph, root)
-    near = [n for n, pose in poses.items() if np.linalg.norm(pose.position_m) < 3.0 * covers_m]
+    near = [n for n, pose in poses.items() if np.linalg.norm(pose.position_m) < (AHEAD[-1] + 2.0) * covers_m]
     changed = []
     for node in (graph.nodes[node_id] for node_id in near):
         gains = _gains(graph, poses, node, covers_m)
@@ -116,10 +119,29 @@ def _gains(
     free_m = node.free_m or (covers_m,) * SECTORS
     gains = {}
     for sector in sectors:
-        angle_rad, ahead_m = own.yaw_rad + sector * SECTOR_RAD, min(covers_m, free_m[sector])
-        spot = own.position_m + ahead_m * np.array([math.cos(angle_rad), math.sin(angle_rad)])
-        gains[sector] = _new_share(known_m, spot, own.position_m, own.yaw_rad, free_m, covers_m)
+        angle_rad = own.yaw_rad + sector * SECTOR_RAD
+        way = np.array([math.cos(angle_rad), math.sin(angle_rad)])
+        spots = [own.position_m + min(ahead * covers_m, free_m[sector]) * way for ahead in AHEAD]
+        spots[1:] = [spot for spot in spots[1:] if not _seen_nearer(graph, poses, node.node_id, spot)]
+        gains[sector] = max(
+            _new_share(known_m, spot, own.position_m, own.yaw_rad, free_m, covers_m) for spot in spots
+        )
     return gains
+
+
+def _seen_nearer(
+    graph: MapGraph, poses: Mapping[int, RelativePose], node_id: int, spot_m: FloatArray
+) -> bool:
+    """Whether another node is nearer to a spot and its sensors saw free floor up to there: its to explore."""
+    far_m = np.linalg.norm(spot_m - poses[node_id].position_m)
+    for other, pose in poses.items():
+        offset, free_m = spot_m - pose.position_m, graph.nodes[other].free_m
+        gap_m = np.linalg.norm(offset)
+        bearing_rad = math.atan2(offset[1], offset[0]) - pose.yaw_rad
+        sector = round(bearing_rad / SECTOR_RAD) % SECTORS
+        if other != node_id and gap_m < far_m and (not free_m or free_m[sector] >= gap_m):
+            return True
+    return False
 
 
 def _known_m(graph: MapGraph, poses: Mapping[int, RelativePose], node_id: int, covers_m: float) -> FloatArray:

@@ -40,6 +40,19 @@ def test_inside_the_map_nothing_is_worth_the_way_and_at_its_border_what_leads_ou
     assert not found[CORNER] & {1, 2}
 
 
+def test_floor_behind_a_door_is_explored_from_where_it_shows_though_a_nearer_node_sees_the_wall_beside_it():
+    graph, past_the_door, walled = grid(), [3.0] * 12, [3.0] * 12
+    walled[7:12] = [0.5] * 5
+    past_the_door[8] = past_the_door[10] = 0.5
+    nodes = [
+        n.model_copy(update={"free_m": tuple(past_the_door if n.node_id == INSIDE else walled)})
+        for n in graph.nodes.values()
+    ]
+    found = left(MapGraph(nodes, list(graph.edges.values())), INSIDE)
+    assert found[INSIDE] == {9}
+    assert found[BORDER] == set()
+
+
 def test_a_few_decimetres_before_a_wall_lead_nowhere():
     assert left(grid(free_m=(0.4,) * 12), INSIDE)[BORDER] == set()
 
