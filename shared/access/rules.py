@@ -88,7 +88,6 @@ STREAMS: dict[Topic[Any], Grant] = {
     topics.RANGES: _grant(BODIES, [Role.DRIVE, Role.PLANNER, *WATCHERS]),
     topics.FEATURES: _grant([Role.FEATURES], [Role.PLANNER, *WATCHERS]),
     topics.HEADING: _grant([Role.PLANNER], [Role.DRIVE, *WATCHERS]),
-    topics.COMMAND: _grant([Role.DRIVE], [*BODIES, Role.PLANNER, *WATCHERS]),
     topics.VELOCITY: _grant([Role.DRIVE], [*BODIES, Role.PLANNER, *WATCHERS]),
     topics.MANUAL: _grant(PEOPLE, [Role.DRIVE, Role.PLANNER, *WATCHERS]),
     topics.ODOMETRY: _grant(BODIES, [Role.DRIVE, Role.PLANNER, *WATCHERS]),

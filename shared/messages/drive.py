@@ -23,6 +23,8 @@ class Heading(Message):
         s_slow: similarity above which it slows down (thesis: 90).
         s_max: largest possible similarity (thesis: 150).
         speed_fraction: further limit on speed near the goal, 0 to 1.
+        distance_m: about how far what is headed for was from that frame, right to a factor of 1.5 or so; None
+            where nothing in particular is headed for.
         epoch: a planner with a higher epoch replaces one with a lower.
     """
 
@@ -38,21 +40,8 @@ class Heading(Message):
     s_slow: int = Field(default=0, ge=0)
     s_max: int = Field(default=1, ge=1)
     speed_fraction: float = Field(default=1.0, ge=0.0, le=1.0)
+    distance_m: float | None = Field(default=None, ge=0.0, le=1_000.0)
     method: str = Field(default="", max_length=32)
-    why: str = Field(default="", max_length=400)
-
-
-class Command(Message):
-    """Steer all wheels to one angle and turn them. `seq` is the frame it answers."""
-
-    SCHEMA: ClassVar[str] = "command.v1"
-
-    robot: Name
-    epoch: int = Field(default=0, ge=0)
-    ttl_ms: int = Field(default=500, ge=1, le=60_000)
-    steer_rad: Bearing = 0.0
-    wheel_speed_radps: float = Field(default=0.0, ge=-100.0, le=100.0)
-    avoiding: bool = False
     why: str = Field(default="", max_length=400)
 
 

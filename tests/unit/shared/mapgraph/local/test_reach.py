@@ -4,6 +4,7 @@ import math
 
 from shared.mapgraph.local.displacement import Displacement, seen_from
 from shared.mapgraph.local.reach import out_of_reach
+from shared.motion.motion import Motion
 from tests.unit.shared.mapgraph.local.grid import claim, grid
 
 GRAPH = grid(8, 3)
@@ -54,7 +55,7 @@ def test_nothing_is_known_of_what_no_edge_joins_or_without_a_node_to_start_from(
 
 
 def test_driving_adds_up_in_the_frame_of_the_node_and_grows_uncertain():
-    here = Displacement(3, yaw_rad=math.pi / 2).moved((1.0, 0.0)).moved((0.0, 1.0))
+    here = Displacement(3, yaw_rad=math.pi / 2).moved(Motion(1.0, 0.0)).moved(Motion(0.0, 1.0))
     assert math.dist((here.x_m, here.y_m), (-1.0, 1.0)) < 1e-9
     assert 0.2 < here.spread_m < 0.4
 
