@@ -1,10 +1,12 @@
 """Simulation state -> bus messages."""
 
+import math
 import time
 
 import cv2
 import numpy as np
 
+from shared.messages.body import Odometry
 from shared.messages.sensors import Frame, Ranges
 from shared.messages.simulation import Pose, Truth
 from simulator.scene.parts import Pose2
@@ -53,6 +55,15 @@ class MessageMaker:
             seq=seq, stamp_ns=stamp_ns, robot=self._settings.robot, lockstep=self._settings.lockstep,
             encoding=self._settings.encoding, width_px=width, height_px=height, data=data,
             gravity=gravity,
+        )  # fmt: skip
+
+    def odometry(self, seq: int, stamp_ns: int) -> Odometry:
+        """Where the wheels say that the robot has got to, and how they turn now."""
+        way, rate = self._simulation.odometry()
+        return Odometry(
+            seq=seq, stamp_ns=stamp_ns, robot=self._settings.robot,
+            x_m=way.x_m, y_m=way.y_m, yaw_rad=math.remainder(way.turn_rad, math.tau),
+            forward_mps=rate.x_m, left_mps=rate.y_m, turn_radps=rate.turn_rad,
         )  # fmt: skip
 
     def truth(self, seq: int, stamp_ns: int) -> Truth:

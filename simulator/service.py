@@ -1,18 +1,21 @@
-"""Simulator loop: in lockstep one frame per command, else the wall clock leads."""
+"""Simulator loop: in lockstep one frame per velocity, else the wall clock leads."""
 
 import logging
 import threading
 import time
 from collections import deque
 from pathlib import Path
+from typing import Any
 
-from shared.bus import Bus
+from shared.bus import Bus, Publisher
 from shared.estop.sides import RobotEStop
-from shared.messages.drive import Command
+from shared.messages.base import Message
+from shared.messages.body import Odometry
+from shared.messages.drive import Velocity
 from shared.messages.sensors import Frame, Ranges
 from shared.messages.simulation import Truth
 from shared.sole_robot import SoleRobot
-from shared.topics import COMMAND, FRAME, RANGES, SIMULATION, TRUTH
+from shared.topics import FRAME, ODOMETRY, RANGES, SIMULATION, TRUTH, VELOCITY
 from simulator.experimenter import Experimenter, RequestError
 from simulator.outbox import MessageMaker
 from simulator.service_settings import SimulatorSettings
@@ -26,12 +29,14 @@ REAL_TIME_STEP_S = 0.02
 CATCH_UP_S = 0.5
 """Time lost beyond this (a suspended process) is dropped, not driven through; chosen: a command's ttl."""
 MOST_AGE_S = 3.0
-"""A frame becomes a command within this: what drive allows for deciding, 2 s and a heading's life of 0.5 s,
+"""A frame becomes a velocity within this: what drive allows for deciding, 2 s and a heading's life of 0.5 s,
 and a little more. The answer to an older one was held up: the robot is elsewhere (decision 0019)."""
+CHANGE_NS = 1_000_000
+"""Time that passes in lockstep while the experimenter changes something: a later frame has a later stamp."""
 
 
-class CommandAge:
-    """How old a command is, counted in the robot's own frames: no clock of another machine has a say."""
+class RecentFrames:
+    """Which frames are recent, counted in the robot's own frames: no clock of another machine has a say."""
 
     def __init__(self) -> None:
         self._sent: deque[tuple[int, float]] = deque()
@@ -40,7 +45,7 @@ class CommandAge:
         """Note when one frame went out, monotonic seconds."""
         self._sent.append((seq, now_s))
 
-    def recent(self, seq: int, now_s: float) -> bool:
+    def has(self, seq: int, now_s: float) -> bool:
         """Whether frame `seq` went out lately. One that never went out is of a robot before a restart."""
         while len(self._sent) > 1 and now_s - self._sent[0][1] > MOST_AGE_S:
             self._sent.popleft()
@@ -51,27 +56,25 @@ class Ports:
     """Everything the loop sends and receives."""
 
     def __init__(self, bus: Bus, robot: str, state_dir: Path) -> None:
-        self._frames = bus.publisher(FRAME, robot=robot)
-        self._ranges = bus.publisher(RANGES, robot=robot)
-        self._truth = bus.publisher(TRUTH, robot=robot)
-        self._commands = bus.subscribe(COMMAND, robot=robot)
+        self._out: dict[type[Message], Publisher[Any]] = {
+            Frame: bus.publisher(FRAME, robot=robot),
+            Ranges: bus.publisher(RANGES, robot=robot),
+            Truth: bus.publisher(TRUTH, robot=robot),
+            Odometry: bus.publisher(ODOMETRY, robot=robot),
+        }
+        self._velocities = bus.subscribe(VELOCITY, robot=robot)
         self.requests = bus.requests(SIMULATION, robot=robot)
         self.stop = RobotEStop(bus, robot, state_dir)
 
-    def send(self, *messages: Frame | Ranges | Truth) -> None:
+    def send(self, *messages: Message) -> None:
         """Publish in the order given."""
         for message in messages:
-            if isinstance(message, Frame):
-                self._frames.put(message)
-            elif isinstance(message, Ranges):
-                self._ranges.put(message)
-            else:
-                self._truth.put(message)
+            self._out[type(message)].put(message)
 
-    def newest_command(self) -> Command | None:
-        """The newest command since the last call."""
-        commands = self._commands.take_all()
-        return commands[-1] if commands else None
+    def newest_velocity(self) -> Velocity | None:
+        """The newest velocity since the last call."""
+        velocities = self._velocities.take_all()
+        return velocities[-1] if velocities else None
 
 
 class Loop:
@@ -97,17 +100,18 @@ class Loop:
             changed = changed or moved
         return changed
 
-    def sense(self) -> tuple[Ranges, Truth, Frame]:
-        """Measure everything for the present sequence number."""
-        self.stamp_ns = time.time_ns()
-        frame = self.maker.frame(self.seq, self.stamp_ns)
-        return self.maker.ranges(self.seq, self.stamp_ns), self.maker.truth(self.seq, self.stamp_ns), frame
+    def sense_body(self) -> list[Message]:
+        """What the robot measures beside the picture: odometry if it has any, distances; and the truth."""
+        odometry = [self.maker.odometry(self.seq, self.stamp_ns)] if self.settings.odometry else []
+        ranges = self.maker.ranges(self.seq, self.stamp_ns)
+        return [*odometry, ranges, self.maker.truth(self.seq, self.stamp_ns)]
 
 
 class LockstepLoop(Loop):
-    """Frame k, command k, control_period_s of physics, frame k + 1. Without a command nothing moves.
+    """Frame k, velocity k, control_period_s of physics, frame k + 1. Without a velocity nothing moves.
 
-    While the emergency stop is engaged time goes on with wheels that stand, commanded or not.
+    While the emergency stop is engaged time goes on with a robot that stands, commanded or not. Stamps are of
+    the robot's own time, which begins at the wall clock's and goes on with the physics.
     """
 
     def start(self) -> None:
@@ -115,29 +119,32 @@ class LockstepLoop(Loop):
         self._send()
 
     def step(self, now_s: float) -> None:
-        """Advance if the awaited command came; send the frame again if none came for a while."""
-        command = self.ports.newest_command()
-        answered = command is not None and command.seq == self.seq
+        """Advance if the awaited velocity came; send the frame again if none came for a while."""
+        velocity = self.ports.newest_velocity()
+        answered = velocity is not None and velocity.seq == self.seq
         late = now_s - self._sent_s > self.settings.repeat_s
         if self.serve_requests():
             self.seq += 1
+            self.stamp_ns += CHANGE_NS
             self._send()
         elif self.ports.stop.engaged():
             if answered or late:
-                self._advance(0.0, 0.0)
-        elif command is not None and answered:
-            self._advance(command.steer_rad, command.wheel_speed_radps)
+                self._advance(0.0, 0.0, 0.0)
+        elif velocity is not None and answered:
+            self._advance(velocity.forward_mps, velocity.left_mps, velocity.turn_radps)
         elif late:
             self._repeat(now_s)
 
-    def _advance(self, steer_rad: float, wheel_speed_radps: float) -> None:
-        self.simulation.command(steer_rad, wheel_speed_radps, self.settings.control_period_s)
-        self.simulation.step(self.settings.control_period_s)
+    def _advance(self, forward_mps: float, left_mps: float, turn_radps: float) -> None:
+        period_s = self.settings.control_period_s
+        self.simulation.command(forward_mps, left_mps, turn_radps, period_s)
+        self.simulation.step(period_s)
         self.seq += 1
+        self.stamp_ns += round(1e9 * period_s)
         self._send()
 
     def _send(self) -> None:
-        self._pending = self.sense()
+        self._pending = [*self.sense_body(), self.maker.frame(self.seq, self.stamp_ns)]
         self._repeat(time.monotonic())
 
     def _repeat(self, now_s: float) -> None:
@@ -146,34 +153,36 @@ class LockstepLoop(Loop):
 
 
 class RealTimeLoop(Loop):
-    """Physics follows the wall clock; frames and ranges go out at their own rates; commands expire."""
+    """Physics follows the wall clock; frames and ranges go out at their own rates; velocities expire."""
 
     def start(self) -> None:
-        """Start the clocks; a command from before is too old to obey."""
-        self.ports.newest_command()
+        """Start the clocks; a velocity from before is too old to obey."""
+        self.ports.newest_velocity()
         self._physics_s = self._frame_s = self._ranges_s = time.monotonic()
-        self._age = CommandAge()
+        self._recent = RecentFrames()
 
     def step(self, now_s: float) -> None:
-        """Obey the newest command, let physics catch up, send what is due."""
+        """Obey the newest velocity, let physics catch up, send what is due."""
         self.serve_requests()
-        command = self.ports.newest_command()
+        velocity = self.ports.newest_velocity()
         if self.ports.stop.engaged():
             self.simulation.stop()
-        elif command is not None and self._age.recent(command.seq, now_s):
-            self.simulation.command(command.steer_rad, command.wheel_speed_radps, command.ttl_ms / 1000.0)
+        elif velocity is not None and self._recent.has(velocity.seq, now_s):
+            self.simulation.command(
+                velocity.forward_mps, velocity.left_mps, velocity.turn_radps, velocity.ttl_ms / 1000.0
+            )
         self._catch_up(now_s)
         if now_s >= self._ranges_s:
             self._ranges_s = max(self._ranges_s + 1.0 / self.settings.range_rate_hz, now_s)
-            stamp_ns = time.time_ns()
-            self.ports.send(self.maker.ranges(self.seq, stamp_ns), self.maker.truth(self.seq, stamp_ns))
+            self.stamp_ns = time.time_ns()
+            self.ports.send(*self.sense_body())
         if now_s >= self._frame_s:
             self._frame_s = max(self._frame_s + 1.0 / self.settings.frame_rate_hz, now_s)
             self.seq += 1
             self.stamp_ns = time.time_ns()
             true = self.maker.truth(self.seq, self.stamp_ns)  # drawing may take half a second
             self.ports.send(true, self.maker.frame(self.seq, self.stamp_ns))
-            self._age.sent(self.seq, now_s)
+            self._recent.sent(self.seq, now_s)
 
     def _catch_up(self, now_s: float) -> None:
         self._physics_s = max(self._physics_s, now_s - CATCH_UP_S)

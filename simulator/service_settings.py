@@ -9,7 +9,8 @@ from pydantic_settings import NoDecode, SettingsConfigDict
 from shared.settings import ServiceSettings
 from simulator.cache_folder import user_cache_dir
 from simulator.disturbances.levels import Disturbances
-from simulator.settings import CameraSettings, RangeSettings, SimulationSettings
+from simulator.robot.undercarriage import Base
+from simulator.settings import CameraSettings, RangeSettings, RobotSettings, SimulationSettings
 
 Folder = Annotated[Path | None, BeforeValidator(lambda value: value or None)]
 
@@ -19,9 +20,9 @@ class SimulatorSettings(ServiceSettings):
 
     Attributes:
         world: name of a world that comes with the simulator, or path of a .yaml file.
-        lockstep: send frame k, wait for command k, advance by control_period_s; else follow the wall clock.
+        lockstep: send frame k, wait for velocity k, advance by control_period_s; else follow the wall clock.
         seed: of the sensors' noise.
-        control_period_s: simulated time per command in lockstep.
+        control_period_s: simulated time per velocity in lockstep.
         repeat_s: wall time after which an unanswered frame is sent again in lockstep.
         frame_rate_hz: most frames a second in real time.
         range_rate_hz: distance readings a second in real time.
@@ -30,6 +31,8 @@ class SimulatorSettings(ServiceSettings):
         cache_limit_mb: size of that folder, see SimulationSettings.
         disturbance: levels from 0 to 1 of what disturbs camera and world, as "fog=0.5,noise=0.3".
         polite_people: see SimulationSettings.
+        base: what the robot rolls on.
+        odometry: the robot says where its wheels have got to, as encoders do.
         imu: frames say where down is (`gravity`), as of a camera with an IMU.
         state_dir: where the robot keeps an emergency stop across restarts.
     """
@@ -53,6 +56,8 @@ class SimulatorSettings(ServiceSettings):
     cache_limit_mb: PositiveInt = SimulationSettings().cache_limit_mb
     disturbance: Annotated[Disturbances, NoDecode] = Disturbances()
     polite_people: bool = True
+    base: Base = "holonomic"
+    odometry: bool = False
     imu: bool = False
     state_dir: Path = Path("data/robot-state")
 
@@ -66,5 +71,6 @@ class SimulatorSettings(ServiceSettings):
             cache_limit_mb=self.cache_limit_mb,
             disturbances=self.disturbance,
             polite_people=self.polite_people,
+            robot=RobotSettings(base=self.base),
             imu=self.imu,
         )

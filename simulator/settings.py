@@ -15,6 +15,7 @@ from pydantic import (
 )
 
 from simulator.disturbances.levels import Disturbances
+from simulator.robot.undercarriage import Base
 
 
 class _Frozen(BaseModel):
@@ -60,20 +61,21 @@ class RangeSettings(_Frozen):
 class RobotSettings(_Frozen):
     """Robot body and servos.
 
-    The thesis gives four legs that steer and drive (section 5.1), wheels from -30 to 60 degrees and more, and
-    10 rad/s; sizes are chosen: a body that passes doors with a hand's breadth on either side, a mast that
-    ends below the camera, servos that reach any angle in 0.2 s and any speed in half a second.
+    The thesis gives four legs that steer and drive (section 5.1) and 10 rad/s; sizes are chosen: a body that
+    passes doors with a hand's breadth on either side, a mast that ends below the camera, servos that reach
+    any angle in 0.2 s and any speed in half a second.
+
+    Attributes:
+        base: what it rolls on, see `simulator.robot.undercarriage`.
     """
 
-    wheel_radius_m: PositiveFloat = 0.08
-    wheel_offset_m: PositiveFloat = 0.12
+    base: Base = "holonomic"
     body_radius_m: PositiveFloat = 0.25
     body_low_m: PositiveFloat = 0.03
     body_top_m: PositiveFloat = 0.22
     mast_top_m: PositiveFloat = 0.75
     mast_radius_m: PositiveFloat = 0.02
     steer_rate_radps: PositiveFloat = 12.0
-    steer_limit_rad: PositiveFloat = 1.9
     wheel_limit_radps: PositiveFloat = 20.0
     wheel_accel_radps2: PositiveFloat = 40.0
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from shared.motion.motion import NO_MOTION, Motion
 from simulator.disturbances.camera import Moment
 from simulator.disturbances.leaning import CameraLean
 from simulator.disturbances.rearranging import rearranged
@@ -70,7 +71,8 @@ class Simulation:
     def place_robot(self, x_m: float, y_m: float, yaw_rad: float) -> None:
         """Put the robot elsewhere, at rest; time and the collision count go on."""
         self._camera.lift()
-        self._build((x_m, y_m, yaw_rad), self._physics.time_s, self._physics.collisions)
+        physics = self._physics
+        self._build((x_m, y_m, yaw_rad), physics.time_s, physics.collisions, physics.robot.odometry)
 
     def place_hider(self, x_m: float, y_m: float, yaw_rad: float) -> None:
         """Put the second robot somewhere; it is only seen, nothing bumps into it.
@@ -99,18 +101,21 @@ class Simulation:
         """
         self._change(with_obstacle(self._file, self._changes, name, kind, pose))
 
-    def command(self, steer_rad: float, wheel_speed_radps: float, ttl_s: float = math.inf) -> None:
-        """Roll towards a heading (robot frame) at a wheel speed for up to `ttl_s` of simulated time."""
-        if not (math.isfinite(steer_rad) and math.isfinite(wheel_speed_radps)) or ttl_s < 0:
+    def command(
+        self, forward_mps: float, left_mps: float = 0.0, turn_radps: float = 0.0, ttl_s: float = math.inf
+    ) -> None:
+        """Move like this in the robot's frame for up to `ttl_s` of simulated time."""
+        if not all(map(math.isfinite, (forward_mps, left_mps, turn_radps))) or ttl_s < 0:
             raise ValueError(
-                f"command must be finite with ttl_s >= 0, got {steer_rad}, {wheel_speed_radps}, {ttl_s}"
+                "command must be finite with ttl_s >= 0, "
+                f"got {forward_mps}, {left_mps}, {turn_radps}, {ttl_s}"
             )
-        self._physics.robot.command(steer_rad, wheel_speed_radps)
+        self._physics.robot.command(forward_mps, left_mps, turn_radps)
         self._expires_s = self._physics.time_s + ttl_s
 
     def stop(self) -> None:
         """Stop the wheels."""
-        self._physics.robot.command(0.0, 0.0)
+        self._physics.robot.command(0.0, 0.0, 0.0)
 
     def step(self, duration_s: float) -> None:
         """Advance physics by a whole number of timesteps, at least one."""
@@ -165,6 +170,10 @@ class Simulation:
         shapes = self._shapes.with_walkers(self._crowd.outlines()) if self._walkers else self._shapes
         return measure(*self._physics.robot.pose(), shapes, self.settings.ranges, rng)
 
+    def odometry(self) -> tuple[Motion, Motion]:
+        """What the encoders of the wheels say: the way so far, and how they turn now, as that of a second."""
+        return self._physics.robot.odometry, self._physics.robot.odometry_per_s
+
     def steer_angles_rad(self) -> list[float]:
         """Measured angles of the four steer servos."""
         return self._physics.robot.steer_angles_rad()
@@ -180,9 +189,10 @@ class Simulation:
             *physics.robot.pose(), self._hider, physics.time_s, physics.robot.speed_mps(), physics.collisions
         )
 
-    def _build(self, pose: Pose2, time_s: float, collisions: int) -> None:
+    def _build(self, pose: Pose2, time_s: float, collisions: int, odometry: Motion = NO_MOTION) -> None:
         self._physics = PhysicsScene(self._parts, self.settings.robot, self.settings.timestep_s, pose)
         self._physics.time_s, self._physics.collisions = time_s, collisions
+        self._physics.robot.odometry = odometry
         self._expires_s = math.inf
         self._crowd.make_room(pose[:2])
         self._walkers = [self._physics.add_walker(w.figure.solid) for w in self._crowd.walkers]
@@ -241,6 +251,7 @@ class Simulation:
             raise ChangeError(f"it would stand in the robot at ({pose[0]:.2f}, {pose[1]:.2f})")
         self._changes = changes
         self._crowd.block(self._shapes)
-        self._build(pose, self._physics.time_s, self._physics.collisions)
+        physics = self._physics
+        self._build(pose, physics.time_s, physics.collisions, physics.robot.odometry)
         if self._view is not None:
             self._view.change(self.world, (self._parts, self._lights))

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from services.drive.core import DriveLimits, compute_command
-from services.drive.passing import Passing
+from services.drive.core import Memory, Since, compute_velocity
+from services.drive.limits import DriveLimits
 from services.planner.ports import Decision, Mission, Observation
 from services.planner.profiles import DEFAULT
 from shared.mapgraph.graph import MapGraph
@@ -20,6 +20,7 @@ from shared.messages.features import Features
 from shared.messages.maps import AddNode, Operation
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
+from shared.motion.motion import NO_MOTION, Motion, driven
 from simulator.scene.parts import Material, Part
 from simulator.scene.shapes import post
 from simulator.world.footprints import Footprints, cast_rays, clearance_m, footprints
@@ -33,7 +34,6 @@ BEAM_RAYS = np.deg2rad(np.linspace(-15.0, 15.0, 7))
 KEYPOINTS = 300
 MAX_RANGE_M = 4.0
 STEP_S = 0.3
-WHEEL_RADIUS_M = 0.08
 BODY_RADIUS_M = 0.25
 Pose = tuple[float, float, float]
 
@@ -90,7 +90,7 @@ class PlaneWorld:
     seq: int = 0
     collisions: int = 0
     driven_m: float = 0.0
-    moved_m: tuple[float, float] = (0.0, 0.0)
+    moved: Motion = NO_MOTION
     walkers: list["Walker"] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -139,21 +139,20 @@ class PlaneWorld:
             distances_m=tuple(np.where(hits < MAX_RANGE_M, noisy, MAX_RANGE_M)),
             max_range_m=MAX_RANGE_M,
         )
-        return Observation(picture(self.pose, self.seq), ranges, self.moved_m)
+        return Observation(picture(self.pose, self.seq), ranges, self.moved)
 
-    def move(self, steer_rad: float, wheel_speed_radps: float) -> None:
+    def move(self, forward_mps: float, left_mps: float, turn_radps: float) -> None:
         """Drive one control step; an obstacle stops the robot and counts as a collision."""
-        length_m = wheel_speed_radps * WHEEL_RADIUS_M * STEP_S
-        heading = self.pose[2] + steer_rad
-        self.moved_m = (length_m * math.cos(steer_rad), length_m * math.sin(steer_rad))
+        self.moved = driven(forward_mps, left_mps, turn_radps, STEP_S)
+        part = driven(forward_mps, left_mps, turn_radps, STEP_S / 4)
         for _ in range(4):
-            x = self.pose[0] + math.cos(heading) * length_m / 4
-            y = self.pose[1] + math.sin(heading) * length_m / 4
+            there = Motion(*self.pose).then(part)
+            x, y = there.x_m, there.y_m
             if not self.space.is_free((x, y)) or any(walker.touches((x, y)) for walker in self.walkers):
                 self.collisions += 1
                 break
-            self.pose = (x, y, self.pose[2])
-            self.driven_m += length_m / 4
+            self.pose = (x, y, there.turn_rad)
+            self.driven_m += part.way_m
         for walker in self.walkers:
             walker.walk(self.pose)
         self.seq += 1
@@ -269,10 +268,10 @@ def run(
 
     Every `restart_steps` the drive service starts anew, if that is not 0.
     """
-    memory = Passing()
+    memory = Memory()
     for step in range(max_steps):
         if restart_steps and step % restart_steps == 0:
-            memory = Passing()
+            memory = Memory()
         observation = world.observe()
         decision = mission.decide(observation)
         if decision.outcome:
@@ -286,10 +285,12 @@ def run(
             s_slow=150,
             s_max=300,
             speed_fraction=DEFAULT.travel.room_speed * decision.speed_fraction,
+            distance_m=decision.distance_m,
             why=decision.why,
         )
-        command, memory = compute_command(heading, observation.ranges, memory, world.rng, limits)
-        world.move(command.steer_rad, command.wheel_speed_radps)
+        since = Since(step=world.moved)
+        velocity, memory = compute_velocity(heading, observation.ranges, since, memory, world.rng, limits)
+        world.move(velocity.forward_mps, velocity.left_mps, velocity.turn_radps)
         if path is not None:
             path.append(world.pose)
     return decision, max_steps

@@ -1,7 +1,7 @@
 """A drive controller that needs nothing of this project: the schemas in deploy/contracts, zenoh and msgpack.
 
 Run it instead of the drive service: python swap_drive.py tcp/127.0.0.1:7447 r1
-It answers each ranges.v1 with one command.v1; in lockstep once the heading.v1 of the same frame is there.
+It answers each ranges.v1 with one velocity.v1; in lockstep once the heading.v1 of the same frame is there.
 """
 
 import math
@@ -20,14 +20,15 @@ def blocked(ranges, way_rad):
     return any(0.0 < m * math.cos(turn) < 0.5 and abs(m * math.sin(turn)) < 0.31 for m, turn in seen)
 
 
-def command(heading, ranges, side):
+def velocity(heading, ranges, side):
     """Drive the wished way, else a free one beside it, first on the side (+1 is left) of the last detour."""
     detours = [0, *(math.radians(s * degrees) for s in (side, -side) for degrees in range(10, 180, 10))]
     detour = next((d for d in detours if not blocked(ranges, heading["heading_rad"] + d)), None)
-    speed = 4.0 * heading["speed_fraction"] if heading["action"] == "go" and detour is not None else 0.0
+    speed = 0.32 * heading["speed_fraction"] if heading["action"] == "go" and detour is not None else 0.0
     answer = {key: heading[key] for key in ("seq", "stamp_ns", "robot", "epoch")}
-    answer |= {"schema": "command.v1", "wheel_speed_radps": speed, "ttl_ms": 250}
-    answer["steer_rad"] = math.remainder(heading["heading_rad"] + (detour or 0), math.tau)
+    way_rad = heading["heading_rad"] + (detour or 0)
+    answer |= {"schema": "velocity.v1", "ttl_ms": 250, "at_ns": ranges["stamp_ns"]}
+    answer |= {"forward_mps": speed * math.cos(way_rad), "left_mps": speed * math.sin(way_rad)}
     return answer, math.copysign(1, detour) if detour else side
 
 
@@ -38,7 +39,7 @@ def main(endpoint, robot):
     with zenoh.open(config) as bus:
         for name in ("heading", "ranges"):
             bus.declare_subscriber(f"topnav/{robot}/{name}", arrived.put)
-        commands = bus.declare_publisher(f"topnav/{robot}/command")
+        velocities = bus.declare_publisher(f"topnav/{robot}/velocity")
         alive = bus.liveliness().declare_token(f"topnav/alive/drive/{bus.info.zid()}")
         while alive:
             message = msgpack.unpackb(arrived.get().payload.to_bytes())
@@ -48,8 +49,8 @@ def main(endpoint, robot):
                 paired = heading["stamp_ns"] == ranges["stamp_ns"]
                 fresh = time.monotonic() - heading["came_s"] < heading["ttl_ms"] / 1000
                 if paired if ranges["lockstep"] else fresh:
-                    answer, side = command(heading, ranges, side)
-                    commands.put(msgpack.packb(answer))
+                    answer, side = velocity(heading, ranges, side)
+                    velocities.put(msgpack.packb(answer))
                     del newest["ranges.v1"]
 
 

@@ -11,12 +11,12 @@ from services.launcher.client.address import Address
 from shared.bus import Bus
 from shared.messages.base import Message
 from shared.messages.sensors import Frame
-from shared.topics import COMMAND, EVENT, FEATURES, FRAME, HEADING, TRUTH
+from shared.topics import EVENT, FEATURES, FRAME, HEADING, TRUTH, VELOCITY
 
-LOOP = {"truth": TRUTH, "features": FEATURES, "heading": HEADING, "command": COMMAND, "event": EVENT}
+LOOP = {"truth": TRUTH, "features": FEATURES, "heading": HEADING, "command": VELOCITY, "event": EVENT}
 """What the stages of the control loop are told from."""
 
-ENDS = {"frame": FRAME, "command": COMMAND}
+ENDS = {"frame": FRAME, "command": VELOCITY}
 """What the latency is told from, by a listener of its own: decoding pictures would delay other stamps."""
 
 READY_S = 60.0

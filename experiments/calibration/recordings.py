@@ -1,7 +1,7 @@
 """Pairs of frames of a recording: the robot's own commands tell how they lie to each other.
 
 A robot that drove nearly straight from one frame to the next lies where its commands say, to 20 % and some
-degrees (`services.planner.odometry`); of a winding way nothing is known. No position is asked for.
+degrees (`shared.motion.reckoning`); of a winding way nothing is known. No position is asked for.
 """
 
 import math
@@ -19,13 +19,14 @@ from services.features.matching.verification import feature_set
 from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.pipeline import Pipeline
 from services.launcher.client.failure import ExperimentError
-from services.planner.odometry import CommandedMotion
-from services.planner.settings import PlannerSettings
 from services.recorder.channels import topic_of
 from services.recorder.reading import read
 from shared import topics
-from shared.messages.drive import Command
+from shared.messages.body import Odometry
+from shared.messages.drive import Velocity
 from shared.messages.sensors import Frame, Ranges
+from shared.motion.motion import NO_MOTION, Motion, rotated
+from shared.motion.reckoning import Reckoning
 from shared.topics import Topic
 from shared.wire import decode
 
@@ -40,13 +41,14 @@ class Stop:
 
     Attributes:
         number: of the frame in the recording.
-        position_m: (2,) in the frame of the first; the camera keeps its yaw.
+        position_m: (2,) and yaw_rad: in the frame of the first.
         driven_m: length of the way so far.
     """
 
     number: int
     position_m: tuple[float, float]
     driven_m: float
+    yaw_rad: float = 0.0
 
 
 def pairs_of_recording(
@@ -77,7 +79,8 @@ def pairs_of_recording(
     found = []
     for number, (here, there) in enumerate(chosen, start=1):
         tick(f"pair {number} of {len(chosen)}")
-        x_m, y_m = np.subtract(there.position_m, here.position_m)
+        away_x_m, away_y_m = np.subtract(there.position_m, here.position_m)
+        x_m, y_m = rotated(float(away_x_m), float(away_y_m), -here.yaw_rad)
         distance_m, bearing_rad = math.hypot(x_m, y_m), math.atan2(y_m, x_m)
         both = features[here.number], features[there.number]
         found.append(measured(*both, bearing_rad, distance_m, pipeline, seed + number))
@@ -85,18 +88,23 @@ def pairs_of_recording(
 
 
 def stops_of(path: Path) -> list[Stop]:
-    """Where every frame was taken, by commands."""
-    motion = CommandedMotion(PlannerSettings().wheel_radius_m)
-    step_s = None
+    """Where every frame was taken, by odometry or commands."""
+    reckoning, step_s = Reckoning(), None
+    stamp_ns = 0
     stops: list[Stop] = []
     for topic, payload in _of_one_robot(path):
         if topic is topics.FRAME:
             frame = decode(Frame, payload, topic.max_bytes)
-            stops.append(_next(stops, motion.until(frame.stamp_ns, step_s)))
+            moved = reckoning.between(stamp_ns, frame.stamp_ns) if stops else NO_MOTION
+            stops.append(_next(stops, moved))
+            stamp_ns = frame.stamp_ns
         elif topic is topics.RANGES:
             step_s = decode(Ranges, payload, topic.max_bytes).step_s
-        elif topic is topics.COMMAND:
-            motion.follow(decode(Command, payload, topic.max_bytes))
+        elif topic is topics.VELOCITY:
+            velocity = decode(Velocity, payload, topic.max_bytes)
+            reckoning.told(velocity, None if step_s is None else max(step_s, 1e-3 * velocity.ttl_ms))
+        elif topic is topics.ODOMETRY:
+            reckoning.measured(decode(Odometry, payload, topic.max_bytes))
     return stops
 
 
@@ -118,12 +126,12 @@ def straight_pairs(
     return [found[n] for n in np.sort(rng.choice(len(found), count, replace=False))]
 
 
-def _next(stops: list[Stop], moved_m: tuple[float, float]) -> Stop:
+def _next(stops: list[Stop], moved: Motion) -> Stop:
     if not stops:
         return Stop(0, (0.0, 0.0), 0.0)
-    (x_m, y_m), driven_m = stops[-1].position_m, stops[-1].driven_m
-    at_m = x_m + moved_m[0], y_m + moved_m[1]
-    return Stop(len(stops), at_m, driven_m + math.hypot(*moved_m))
+    last = stops[-1]
+    there = Motion(*last.position_m, last.yaw_rad).then(moved)
+    return Stop(len(stops), (there.x_m, there.y_m), last.driven_m + moved.way_m, there.turn_rad)
 
 
 def _features(path: Path, wanted: set[int], pipeline: Pipeline, tick: Tick) -> dict[int, FeatureSet]:

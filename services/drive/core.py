@@ -1,110 +1,132 @@
-"""Pure core of the drive service: heading and distances in, command out."""
+"""Pure core of the drive service: heading, distances and what the robot did since in, velocity out."""
 
-from typing import Literal
+import math
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, PositiveFloat, PositiveInt, model_validator
 
-from services.drive.passing import Passing, PassingLimits, Steering, obstacle_heading, steer_away, steer_past
+from services.drive.bases import ackermann, differential
+from services.drive.bases.course import Course, Manoeuvre, Twist
+from services.drive.limits import DriveLimits, SpeedLimits
+from services.drive.passing import Passing, Steering, obstacle_heading, steer_away, steer_past
 from shared.geometry.clearance import Obstacles
-from shared.messages.drive import Command, Heading
+from shared.messages.drive import Heading, Velocity
 from shared.messages.sensors import Ranges
+from shared.motion.motion import NO_MOTION, Motion
 
 SLOWEST = 0.25
 """Share of the speed that is left however near an obstacle is; chosen, see decision 0005."""
+NEARLY_THERE = 0.5
+"""Share of its distance within which the bearing of what is headed for is no longer corrected by the way made
+since it was seen: distances are told to a factor of 1.5 (decision 0037)."""
 
 
-class WheelLimits(BaseModel):
-    """Wheel speeds at full speed; section 6.2 of the thesis has 5 and 3 rad/s indoors, 10 and 6 outdoors."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    max_radps: PositiveFloat = 10.0
-    min_radps: PositiveFloat = 6.0
-
-    @model_validator(mode="after")
-    def _ordered(self) -> "WheelLimits":
-        if self.min_radps > self.max_radps:
-            raise ValueError(f"min_radps must be at most max_radps, got {self.min_radps} > {self.max_radps}")
-        return self
-
-
-class DriveLimits(BaseModel):
-    """How this robot drives.
+@dataclass(frozen=True)
+class Since:
+    """What the robot did, by odometry or commands.
 
     Attributes:
-        avoidance: "passing" remembers the side it passes; "momentary" is the thesis's rule.
-        obstacle_range_m: distance at which the momentary rule reacts (decision 0012, Q19: 0.5 m indoors).
-        full_speed_clearance_m: free way ahead that full speed needs, and half speed half of it; chosen: a
-            little more than the look-ahead, within which the way ahead changes.
-        command_ttl_ms: the robot stops so long after the last command; a new one comes with the distances,
-            every 100 ms: this bears the loss of one (tests/unit/services/drive/test_core.py).
+        step: since the velocity before.
+        frame: since the frame was taken that the heading was decided from.
+        delay_s: how long ago that was.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    avoidance: Literal["passing", "momentary"] = "passing"
-    wheels: WheelLimits = WheelLimits()
-    passing: PassingLimits = PassingLimits()
-    obstacle_range_m: PositiveFloat = 0.5
-    full_speed_clearance_m: PositiveFloat = 1.0
-    command_ttl_ms: PositiveInt = 250
+    step: Motion = NO_MOTION
+    frame: Motion = NO_MOTION
+    delay_s: float = 0.0
 
 
-def compute_command(
-    heading: Heading, ranges: Ranges, memory: Passing, rng: np.random.Generator, limits: DriveLimits
-) -> tuple[Command, Passing]:
+@dataclass(frozen=True)
+class Memory:
+    """Of the obstacle that is being passed and of the manoeuvre under way; a handful of numbers."""
+
+    passing: Passing = field(default_factory=Passing)
+    manoeuvre: Manoeuvre = field(default_factory=Manoeuvre)
+
+
+def compute_velocity(
+    heading: Heading,
+    ranges: Ranges,
+    since: Since,
+    memory: Memory,
+    rng: np.random.Generator,
+    limits: DriveLimits,
+) -> tuple[Velocity, Memory]:
     """Obstacles first, then the estimate, then the velocity law (figure 4.8, equations 6.5 and 6.6).
 
     Args:
         heading: what the planner wants.
         ranges: what the distance sensors see.
-        memory: of the obstacle that is being passed, result of the previous step.
+        since: how the robot moved meanwhile.
+        memory: result of the previous step.
         rng: draws the momentary rule's weight.
         limits: of this robot.
     """
+    memory = replace(memory, passing=memory.passing.turned(since.step))
     if heading.action == "hold":
-        return stop_command(heading, "hold: " + heading.why[:100], limits), memory
-    steering, memory = _steer(heading, ranges, memory, rng, limits)
+        return stop_velocity(heading, "hold: " + heading.why[:100], limits), memory
+    wished_rad, distance_m = now_at(heading, since.frame)
+    obstacles = Obstacles.from_ranges(ranges.angles_rad, ranges.distances_m, ranges.max_range_m)
+    steering, passing = _steer(wished_rad, heading, ranges, obstacles, memory.passing, rng, limits)
+    memory = replace(memory, passing=passing)
     if steering.blocked:
-        return stop_command(heading, steering.why, limits), memory
-    speed = wheel_speed(heading.s_cv, heading.s_slow, heading.s_max, heading.speed_fraction, limits.wheels)
+        return stop_velocity(heading, steering.why, limits), memory
+    contact_s = limits.contact_s + since.delay_s
+    speed_mps = speed(heading.s_cv, heading.s_slow, heading.s_max, heading.speed_fraction, limits.speeds)
     if limits.avoidance == "passing":
-        safe = limits.wheels.max_radps * steering.clearance_m / limits.full_speed_clearance_m
-        speed = min(speed, max(SLOWEST * speed, safe))
-    return _command(heading, steering.why, limits, steering.heading_rad, speed, steering.avoiding), memory
+        safe_mps = steering.clearance_m / contact_s
+        speed_mps = min(speed_mps, max(SLOWEST * speed_mps, safe_mps))
+    course = Course(
+        steering.heading_rad,
+        speed_mps,
+        obstacles,
+        limits.passing.disc_m(heading.speed_fraction),
+        contact_s,
+        math.inf if steering.avoiding else distance_m,
+    )
+    twist, manoeuvre = follow(course, memory.manoeuvre, limits)
+    velocity = stop_velocity(heading, steering.why, limits).model_copy(
+        update={**twist._asdict(), "avoiding": steering.avoiding}
+    )
+    return velocity, replace(memory, manoeuvre=manoeuvre)
 
 
-def stop_command(heading: Heading, why: str, limits: DriveLimits) -> Command:
-    """Wheels still, in answer to `heading`."""
-    return _command(heading, why, limits)
+def follow(course: Course, memory: Manoeuvre, limits: DriveLimits) -> tuple[Twist, Manoeuvre]:
+    """The velocity by which this base follows a course."""
+    if limits.base.name == "differential":
+        return differential.towards(course, limits.base), memory
+    if limits.base.name == "ackermann":
+        return ackermann.towards(course, limits.base, memory)
+    x, y = math.cos(course.heading_rad), math.sin(course.heading_rad)
+    return Twist(course.speed_mps * x, course.speed_mps * y), memory
 
 
-def _command(
-    heading: Heading,
-    why: str,
-    limits: DriveLimits,
-    steer_rad: float = 0.0,
-    wheel_speed_radps: float = 0.0,
-    avoiding: bool = False,
-) -> Command:
-    return Command(
+def stop_velocity(heading: Heading, why: str, limits: DriveLimits) -> Velocity:
+    """Standing still, in answer to `heading`."""
+    return Velocity(
         seq=heading.seq,
         stamp_ns=heading.stamp_ns,
         robot=heading.robot,
         epoch=heading.epoch,
         ttl_ms=limits.command_ttl_ms,
-        steer_rad=steer_rad,
-        wheel_speed_radps=wheel_speed_radps,
-        avoiding=avoiding,
         why=why,
     )
 
 
-def wheel_speed(s_cv: int, s_slow: int, s_max: int, speed_fraction: float, limits: WheelLimits) -> float:
-    """Wheel speed in rad/s, equation 6.6, then limited by the planner's `speed_fraction`."""
-    speed_radps = max(limits.min_radps, velocity_gain(s_cv, s_slow, s_max) * limits.max_radps)
-    return speed_radps * speed_fraction
+def now_at(heading: Heading, moved: Motion) -> tuple[float, float]:
+    """Bearing and distance of what is headed for, after the robot moved since it was seen; inf: not known."""
+    distance_m = heading.distance_m
+    if distance_m is None:
+        return moved.direction(heading.heading_rad), math.inf
+    left_m = max(0.0, distance_m - moved.way_m)
+    if moved.way_m > NEARLY_THERE * distance_m:
+        return moved.direction(heading.heading_rad), left_m
+    return moved.direction(heading.heading_rad, distance_m), left_m
+
+
+def speed(s_cv: int, s_slow: int, s_max: int, speed_fraction: float, limits: SpeedLimits) -> float:
+    """Speed in m/s, equation 6.6, then limited by the planner's `speed_fraction`."""
+    return max(limits.min_mps, velocity_gain(s_cv, s_slow, s_max) * limits.max_mps) * speed_fraction
 
 
 def velocity_gain(s_cv: int, s_slow: int, s_max: int) -> float:
@@ -118,10 +140,15 @@ def velocity_gain(s_cv: int, s_slow: int, s_max: int) -> float:
 
 
 def _steer(
-    heading: Heading, ranges: Ranges, memory: Passing, rng: np.random.Generator, limits: DriveLimits
+    wished_rad: float,
+    heading: Heading,
+    ranges: Ranges,
+    obstacles: Obstacles,
+    memory: Passing,
+    rng: np.random.Generator,
+    limits: DriveLimits,
 ) -> tuple[Steering, Passing]:
     if limits.avoidance == "momentary":
         near_rad = obstacle_heading(ranges.angles_rad, ranges.distances_m, limits.obstacle_range_m)
-        return steer_away(heading.heading_rad, near_rad, rng), memory
-    obstacles = Obstacles.from_ranges(ranges.angles_rad, ranges.distances_m, ranges.max_range_m)
-    return steer_past(heading.heading_rad, obstacles, memory, heading.speed_fraction, limits.passing)
+        return steer_away(wished_rad, near_rad, rng), memory
+    return steer_past(wished_rad, obstacles, memory, heading.speed_fraction, limits.passing)

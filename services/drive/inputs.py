@@ -127,7 +127,7 @@ class Inputs:
 
     def _take_ranges(self, ranges: Ranges, now_s: float, since_s: float) -> bool:
         last = self._last_ranges
-        if last is not None and _is_behind(ranges, last):
+        if last is not None and not ranges.lockstep and _is_behind(ranges, last):
             self._count("late", f"distances of frame {ranges.seq} after those of {last.seq}")
             return False
         self.ranges = self._last_ranges = ranges

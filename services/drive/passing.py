@@ -15,6 +15,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, PositiveFloat, PositiveInt
 
 from shared.geometry.clearance import FloatArray, Obstacles
+from shared.motion.motion import Motion
 
 STEP_RAD = math.radians(10.0)
 """Directions that are tried; chosen: finer than half the beam of a sensor (clearance.HALF_BEAM_RAD)."""
@@ -25,6 +26,9 @@ PREFERENCE_RAD = math.radians(50.0)
 JUMP_RAD = math.radians(60.0)
 """A wish that changes this much between two steps is for another destination (chosen, decision 0005)."""
 FULL_TURN_RAD = 2.0 * math.pi
+SPOT_M_PER_RAD = 0.1
+"""A robot that goes less than this for each radian that it turns, turns on the spot; chosen: a quarter of the
+tightest circle that it curves on."""
 
 
 class PassingLimits(BaseModel):
@@ -48,6 +52,10 @@ class PassingLimits(BaseModel):
     memory_steps: PositiveInt = 15
     patience_steps: PositiveInt = 14
     patience_growth: PositiveFloat = 2.0
+
+    def disc_m(self, speed_fraction: float) -> float:
+        """Radius of the disc that must fit at a share of full speed."""
+        return self.radius_slow_m + (self.radius_m - self.radius_slow_m) * speed_fraction
 
 
 class Steering(NamedTuple):
@@ -94,6 +102,17 @@ class Passing:
         turned_rad = max(0.0, self.deflection_rad - self.side * change_rad) if self.deflection_rad else 0.0
         return replace(self, deflection_rad=turned_rad, wished_rad=wished_rad)
 
+    def turned(self, step: Motion) -> "Passing":
+        """The memory after the robot moved: directions are kept in its frame.
+
+        A robot that turned on the spot is no step further along the border.
+        """
+        if self.wished_rad is None or step.turn_rad == 0.0:
+            return self
+        on_the_spot = step.way_m < SPOT_M_PER_RAD * abs(step.turn_rad)
+        steps = max(0, self.steps - 1) if on_the_spot and self.deflection_rad else self.steps
+        return replace(self, wished_rad=_wrap(self.wished_rad - step.turn_rad), steps=steps)
+
     def rested(self, limits: PassingLimits) -> "Passing":
         """The memory after a step without an obstacle: it fades, and is gone after a while."""
         idle = self.idle_steps + 1
@@ -117,7 +136,7 @@ def steer_past(
     memory = memory.towards(wished_rad)
     span_m = limits.lookahead_m - limits.lookahead_min_m
     lookahead_m = limits.lookahead_min_m + span_m * speed_fraction
-    radius_m = limits.radius_slow_m + (limits.radius_m - limits.radius_slow_m) * speed_fraction
+    radius_m = limits.disc_m(speed_fraction)
     if memory.steps > limits.patience_steps * limits.patience_growth**memory.turns_back:
         memory = Passing(side=-memory.side, turns_back=memory.turns_back + 1, wished_rad=wished_rad)
     side = memory.side

@@ -1,4 +1,4 @@
-"""Drive loop: one command for each frame in lockstep, a steady stream with a watchdog in real time."""
+"""Drive loop: one velocity for each frame in lockstep, a steady stream with a watchdog in real time."""
 
 import logging
 import threading
@@ -6,15 +6,15 @@ import time
 
 import numpy as np
 
-from services.drive.core import compute_command, stop_command
+from services.drive.core import Memory, compute_velocity, stop_velocity
 from services.drive.inputs import STEP_S, Inputs
-from services.drive.passing import Passing
+from services.drive.motion import OwnMotion
 from services.drive.settings import DriveSettings
 from shared.bus import Bus
 from shared.estop.sides import EStopServer
-from shared.messages.drive import Command, Heading
+from shared.messages.drive import Heading, Velocity
 from shared.messages.sensors import Ranges
-from shared.topics import COMMAND, HEADING, RANGES
+from shared.topics import HEADING, ODOMETRY, RANGES, VELOCITY
 
 log = logging.getLogger(__name__)
 
@@ -22,16 +22,17 @@ HEADINGS_NEED = ("planner", "features")
 
 
 class Drive:
-    """Answers headings and distances with commands."""
+    """Answers headings and distances with velocities."""
 
     def __init__(self, settings: DriveSettings, bus: Bus) -> None:
         self._settings, self._limits = settings, settings.limits()
         self._headings = bus.subscribe(HEADING, robot=settings.robot)
         self._ranges = bus.subscribe(RANGES, robot=settings.robot)
-        self._commands = bus.publisher(COMMAND, robot=settings.robot)
+        self._odometry = bus.subscribe(ODOMETRY, robot=settings.robot)
+        self._velocities = bus.publisher(VELOCITY, robot=settings.robot)
         self._inputs = Inputs(bus.counters.count)
-        self._passing = Passing()
-        self._answered: Command | None = None
+        self._motion, self._memory = OwnMotion(), Memory()
+        self._answered: Velocity | None = None
         self._moving = False
         self._estop = EStopServer(bus, settings.robot, settings.state_dir)
         self._source_lost, self._wake = threading.Event(), bus.wake
@@ -45,11 +46,14 @@ class Drive:
         if self._source_lost.is_set():
             self._source_lost.clear()
             inputs.expire_heading()
+        for odometry in self._odometry.take_all():
+            self._motion.measured(odometry)
         fresh = inputs.take(self._ranges.take(), self._headings.take(), now_s)
+        self._motion.at(inputs.ranges, now_s)
         if inputs.heading is None:
             return
         if before is not None and before.mission_id != inputs.heading.mission_id:
-            self._passing = Passing()
+            self._memory = Memory()
         if self._estop.state.engaged and self._moving:
             self._stop(inputs.heading, "emergency stop")
         if inputs.ranges is None:
@@ -75,29 +79,35 @@ class Drive:
         if self._estop.state.engaged or answered is None or (answered.seq, answered.stamp_ns) != frame:
             self._answer(heading, ranges)
         else:
-            self._commands.put(answered)
+            self._velocities.put(answered)
         self._inputs.ranges = None
 
     def _answer(self, heading: Heading, ranges: Ranges) -> None:
         if self._estop.state.engaged:
-            self._answered = stop_command(heading, "emergency stop", self._limits)
+            velocity = stop_velocity(heading, "emergency stop", self._limits)
         else:
             rng = np.random.default_rng((self._settings.seed, heading.seq))
-            self._answered, self._passing = compute_command(heading, ranges, self._passing, rng, self._limits)
-        self._moving = self._answered.wheel_speed_radps != 0.0
-        self._commands.put(self._answered)
+            since = self._motion.since(heading)
+            velocity, self._memory = compute_velocity(heading, ranges, since, self._memory, rng, self._limits)
+        self._answered = self._tell(velocity)
 
     def _stop(self, heading: Heading, why: str) -> None:
-        """Zero command, once; the robot's own time-out covers a lost one."""
+        """Stand, said once; the robot's own time-out covers a lost message."""
         if self._moving:
-            self._commands.put(stop_command(heading, why, self._limits))
+            self._tell(stop_velocity(heading, why, self._limits))
             log.warning("%s: wheels stopped", why)
-            self._moving = False
+
+    def _tell(self, velocity: Velocity) -> Velocity:
+        """Send a velocity with the robot's time, and remember that the robot moves like this now."""
+        timed = self._motion.told(velocity)
+        self._moving = not timed.stands
+        self._velocities.put(timed)
+        return timed
 
     def close(self) -> None:
-        """Leave the robot with a zero command."""
+        """Leave the robot standing."""
         if self._inputs.heading is not None and self._moving:
-            self._commands.put(stop_command(self._inputs.heading, "drive service stops", self._limits))
+            self._tell(stop_velocity(self._inputs.heading, "drive service stops", self._limits))
 
 
 def run(settings: DriveSettings, bus: Bus, stop: threading.Event) -> None:

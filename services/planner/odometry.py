@@ -1,47 +1,66 @@
-"""How far the robot went between two frames, by what it was commanded to do."""
+"""What the robot did between two frames and since the newest, and which distances belong to a frame. Pure.
 
-import math
+Frames are some tenths of a second old when they are decided about, distances hardly: all is told apart by the
+stamps of the robot's own clock. Where frames are stamped by another one, nothing is known of their age.
+"""
 
-from shared.messages.drive import Command
+from collections import deque
 
-LONGEST_S = 1.0
-"""Between frames further apart a command has run out (its ttl is a fraction of that)."""
+from services.planner.ports import Observation
+from shared.messages.body import Odometry
+from shared.messages.drive import Velocity
+from shared.messages.features import Features
+from shared.messages.sensors import Ranges
+from shared.motion.motion import NO_MOTION, Motion
+from shared.motion.reckoning import Reckoning
+
+KEPT = 64
+"""Distances remembered; chosen: 6 s of them at ten a second, older than any frame that is decided about."""
+OLDEST_NS = 3_000_000_000
+"""A frame further from the newest distances is of another clock, or of a robot before a restart."""
 
 
-class CommandedMotion:
-    """Reckons with the newest command; wheels slip, so it is good to some 20 %.
+class FrameMotion:
+    """Reckons by odometry, or by velocities told: wheels slip, so these are good to some 20 %."""
 
-    Args:
-        wheel_radius_m: of the robot's wheels.
-    """
-
-    def __init__(self, wheel_radius_m: float) -> None:
-        self._radius_m = wheel_radius_m
-        self._command: Command | None = None
+    def __init__(self) -> None:
+        self._reckoning = Reckoning()
+        self._ranges: deque[Ranges] = deque(maxlen=KEPT)
+        self._came_s = 0.0
         self._stamp_ns: int | None = None
-        self._moved_m = (0.0, 0.0)
+        self._moved = NO_MOTION
 
-    def follow(self, command: Command) -> None:
-        """The wheels do this now."""
-        self._command = command
+    def told(self, velocity: Velocity) -> None:
+        """The robot moves like this now; in lockstep until the next frame, however long its ttl."""
+        step_s = self._ranges[-1].step_s if self._ranges else None
+        self._reckoning.told(velocity, None if step_s is None else max(step_s, 1e-3 * velocity.ttl_ms))
 
-    def until(self, stamp_ns: int, step_s: float | None = None) -> tuple[float, float]:
-        """Displacement from the frame before to the one with this stamp, robot frame, metres.
+    def measured(self, odometry: Odometry) -> None:
+        """The robot says where it has got to."""
+        self._reckoning.measured(odometry)
 
-        The same frame asked for again gives the same answer.
+    def sensed(self, ranges: Ranges, now_s: float) -> None:
+        """New distances, which came at `now_s`, monotonic."""
+        if self._ranges and ranges.stamp_ns < self._ranges[-1].stamp_ns:
+            self._ranges.clear()
+        if not self._ranges or ranges.stamp_ns > self._ranges[-1].stamp_ns:
+            self._ranges.append(ranges)
+            self._came_s = now_s
 
-        Args:
-            stamp_ns: capture time of the frame.
-            step_s: time since the frame before where stamps do not tell it (lockstep).
+    def observe(self, features: Features, now_s: float) -> Observation:
+        """A frame with the distances of its moment and the motion since the frame before, and since it.
+
+        The same frame asked for again gives the same motion since the one before.
         """
-        if stamp_ns == self._stamp_ns:
-            return self._moved_m
-        before_ns, self._stamp_ns = self._stamp_ns, stamp_ns
-        command = self._command
-        if before_ns is None or command is None or stamp_ns < before_ns:
-            self._moved_m = (0.0, 0.0)
-            return self._moved_m
-        duration_s = step_s or min(1e-9 * (stamp_ns - before_ns), LONGEST_S)
-        length_m = command.wheel_speed_radps * self._radius_m * duration_s
-        self._moved_m = (length_m * math.cos(command.steer_rad), length_m * math.sin(command.steer_rad))
-        return self._moved_m
+        stamp_ns, newest = features.stamp_ns, self._ranges[-1]
+        if stamp_ns != self._stamp_ns:
+            before_ns, self._stamp_ns = self._stamp_ns, stamp_ns
+            self._moved = NO_MOTION if before_ns is None else self._reckoning.between(before_ns, stamp_ns)
+        if abs(newest.stamp_ns - stamp_ns) > OLDEST_NS:
+            return Observation(features, newest, self._moved)
+        beside = min(self._ranges, key=lambda ranges: abs(ranges.stamp_ns - stamp_ns))
+        return Observation(features, beside, self._moved, self._since(stamp_ns, newest, now_s))
+
+    def _since(self, stamp_ns: int, newest: Ranges, now_s: float) -> Motion:
+        waited_s = 0.0 if newest.lockstep else now_s - self._came_s
+        return self._reckoning.between(stamp_ns, newest.stamp_ns + round(1e9 * waited_s))

@@ -10,6 +10,14 @@ from shared.messages.maps import Operation
 from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
 from shared.messages.sensors import Ranges
+from shared.motion.motion import NO_MOTION, Motion
+
+SPOT_M_PER_RAD = 0.1
+"""A robot that goes less than this for each radian that it turns, turns on the spot; chosen: a quarter of the
+tightest circle that a base curves on."""
+SPOT_SHARE = 0.25
+"""What a frame of turning on the spot counts of one in which the robot gets on, where patience is counted in
+frames; chosen: half a turn at 1.5 rad/s takes seven of them, less than the least patience in all."""
 
 Matches = dict[int, NodeMatch]
 """How a picture relates to nodes, by node id; to a goal picture by routing.GOAL."""
@@ -20,12 +28,21 @@ class Observation:
     """One frame: what it looks like, the distances around, and what the robot did since the one before.
 
     Attributes:
-        moved_m: displacement since then by its own commands or odometry, robot frame.
+        ranges: of about the moment of the frame.
+        moved: since the frame before, by the robot's odometry or commands.
+        since: since this frame was taken, likewise: the picture is that old.
     """
 
     features: Features
     ranges: Ranges
-    moved_m: tuple[float, float] = (0.0, 0.0)
+    moved: Motion = NO_MOTION
+    since: Motion = NO_MOTION
+
+    @property
+    def frame_share(self) -> float:
+        """What this frame counts where patience is counted in frames: less when the robot only turned."""
+        on_the_spot = self.moved.way_m < SPOT_M_PER_RAD * abs(self.moved.turn_rad)
+        return SPOT_SHARE if on_the_spot else 1.0
 
 
 class Matcher(Protocol):
@@ -64,7 +81,8 @@ class Decision:
     """The outcome of one step.
 
     Attributes:
-        heading_rad: where to go, robot frame; ignored for "hold".
+        heading_rad: where to go, robot frame of the observation; ignored for "hold".
+        distance_m: about how far what is headed for is; None where it is nothing in particular.
         outcome: "" while the mission goes on.
     """
 
@@ -77,6 +95,7 @@ class Decision:
     notes: tuple[Note, ...] = ()
     outcome: Literal["", "succeeded", "failed"] = ""
     failure: FailureKind = ""
+    distance_m: float | None = None
 
 
 @dataclass(frozen=True)

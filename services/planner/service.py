@@ -6,7 +6,7 @@ import time
 
 from services.planner.control import MissionControl
 from services.planner.mission_kinds import MissionError, mission_kinds
-from services.planner.odometry import CommandedMotion
+from services.planner.odometry import FrameMotion
 from services.planner.ports import Decision, Observation
 from services.planner.profiles import Profile
 from services.planner.settings import PlannerSettings
@@ -18,7 +18,6 @@ from shared.messages.missions import Event, EventValue, MissionKinds, MissionReq
 from shared.messages.sensors import Ranges
 from shared.queries import QueryError, RefusedError, Request
 from shared.topics import (
-    COMMAND,
     ESTOP_STATE,
     EVENT,
     FEATURES,
@@ -26,8 +25,10 @@ from shared.topics import (
     MAP_DELTA,
     MISSION,
     MISSION_KINDS,
+    ODOMETRY,
     RANGES,
     STATUS,
+    VELOCITY,
 )
 from shared.wire import WireError
 
@@ -49,7 +50,8 @@ class Planner:
         robot = settings.robot
         self._features_in = bus.subscribe(FEATURES, robot=robot)
         self._ranges_in = bus.subscribe(RANGES, robot=robot)
-        self._commands = bus.subscribe(COMMAND, robot=robot)
+        self._velocities = bus.subscribe(VELOCITY, robot=robot)
+        self._odometry = bus.subscribe(ODOMETRY, robot=robot)
         self._deltas = bus.subscribe(MAP_DELTA, map="*")
         self._stops = bus.subscribe(ESTOP_STATE, robot=robot)
         self._planners = bus.subscribe(STATUS, robot=robot)
@@ -62,7 +64,7 @@ class Planner:
         self.control = MissionControl(settings, self._profile, self._kinds, bus)
         self._replaced = False
         self._stopped: EStopState | None = None
-        self._motion = CommandedMotion(settings.wheel_radius_m)
+        self._motion = FrameMotion()
         self._features: Features | None = None
         self._ranges: Ranges | None = None
         self._answered: Heading | None = None
@@ -84,19 +86,26 @@ class Planner:
             self._publish_status(now_s)
         for delta in self._deltas.take_all():
             self.control.follow_store(delta)
-        for command in self._commands.take_all():
-            self._motion.follow(command)
-        self._ranges = self._ranges_in.take() or self._ranges
+        self._follow_robot(now_s)
         self._features = self._features_in.take() or self._features
         if (
             self._features is not None
             and self._ranges is not None
             and self._ready(self._features, self._ranges)
         ):
-            moved_m = self._motion.until(self._features.stamp_ns, self._ranges.step_s)
-            self._answer(Observation(self._features, self._ranges, moved_m))
+            self._answer(self._motion.observe(self._features, now_s))
         if now_s - self._heartbeat_s > HEARTBEAT_S:
             self._publish_status(now_s)
+
+    def _follow_robot(self, now_s: float) -> None:
+        """How the robot moves and what is around it."""
+        for velocity in self._velocities.take_all():
+            self._motion.told(velocity)
+        for odometry in self._odometry.take_all():
+            self._motion.measured(odometry)
+        if (ranges := self._ranges_in.take()) is not None:
+            self._ranges = ranges
+            self._motion.sensed(ranges, now_s)
 
     def _is_replaced(self) -> bool:
         """Whether a planner with a later epoch speaks for this robot: then it alone decides, for good."""
@@ -152,6 +161,7 @@ class Planner:
             s_slow=self._profile.travel.s_slow,
             s_max=self._profile.travel.s_max,
             speed_fraction=decision.speed_fraction,
+            distance_m=decision.distance_m,
             method=decision.method,
             why=decision.why[:400],
         )

@@ -20,7 +20,6 @@ class PlannerSettings(ServiceSettings):
         heading_method: replaces the profile's: epipolar, histogram or 1 to 6.
         edge_window: replaces the profile's: how many of the newest nodes may get an edge to a new one.
         missions_folder: files with further kinds of mission, see `services.planner.mission_kinds`.
-        wheel_radius_m: of the robot: with the wheel speeds of its commands it tells how far it went.
         heading_ttl_ms: how long the drive service may follow one heading in real time.
         query_timeout_s: for a match; map_timeout_s: for a map transaction.
     """
@@ -32,7 +31,6 @@ class PlannerSettings(ServiceSettings):
     heading_method: MethodName | None = None
     edge_window: NonNegativeInt | None = None
     missions_folder: OptionalPath = None
-    wheel_radius_m: PositiveFloat = 0.08
     heading_ttl_ms: PositiveInt = 350
     query_timeout_s: PositiveFloat = 5.0
     map_timeout_s: PositiveFloat = 5.0

@@ -11,7 +11,8 @@ import numpy as np
 import sapien
 from sapien import physx
 
-from simulator.robot.robot import UPRIGHT, Robot, flat_pose
+from simulator.robot.articulation import UPRIGHT, flat_pose
+from simulator.robot.robot import Robot
 from simulator.scene.parts import Part, Pose2, solids_between
 from simulator.settings import RobotSettings
 from simulator.world.footprints import hull_corners_m
@@ -72,6 +73,7 @@ class PhysicsScene:
         """Advance by one timestep."""
         self.robot.control(self._timestep_s)
         self._scene.step()
+        self.robot.measure(self._timestep_s)
         self.time_s += self._timestep_s
         if self._touching():
             if self.time_s - self._last_touch_s > EPISODE_GAP_S:

@@ -6,6 +6,7 @@ of radius r reaches up to camera height - r tan(65 deg) at most.
 
 from dataclasses import replace
 
+from simulator.robot.undercarriage import undercarriage_of
 from simulator.scene.parts import Material, Part, Rgb
 from simulator.scene.shapes import box, post
 from simulator.settings import RobotSettings
@@ -35,18 +36,18 @@ def chassis_parts(robot: RobotSettings, colour: Rgb) -> tuple[Part, ...]:
     return tuple(parts)
 
 
-def leg_parts(robot: RobotSettings) -> tuple[Part, ...]:
+def leg_parts(robot: RobotSettings, wheel_m: float) -> tuple[Part, ...]:
     """A leg: fork from the steer servo down to the axle; origin at the axle, wheel rolls along x."""
     steel = Material("metal", (150, 152, 156), 33)
-    rise = robot.body_top_m - 0.06 - robot.wheel_radius_m
+    rise = robot.body_top_m - 0.06 - wheel_m
     arms = tuple(box((-0.012, 0.012), (s * 0.022, s * 0.03), (-0.01, rise), steel) for s in (-1, 1))
     return (*arms, box((-0.02, 0.02), (-0.03, 0.03), (rise, rise + 0.02), steel))
 
 
-def wheel_parts(robot: RobotSettings) -> tuple[Part, ...]:
+def wheel_parts(radius_m: float) -> tuple[Part, ...]:
     """A wheel with spokes, axle along y, origin at its centre."""
     tyre, hub = Material("lacquer", (34, 34, 36), 35), Material("metal", (196, 196, 200), 36)
-    r = robot.wheel_radius_m
+    r = radius_m
     return (
         Part("cylinder", (0.0, 0.0, 0.0), (2 * r, 2 * r, 0.034), tyre, roll_rad=1.5707963267948966),
         Part("cylinder", (0.0, 0.0, 0.0), (1.3 * r, 1.3 * r, 0.038), hub, roll_rad=1.5707963267948966),
@@ -55,17 +56,22 @@ def wheel_parts(robot: RobotSettings) -> tuple[Part, ...]:
     )
 
 
-def wheel_mounts(robot: RobotSettings) -> tuple[tuple[float, float], ...]:
-    """Positions of the four legs: front left, front right, rear left, rear right."""
-    o = robot.wheel_offset_m
-    return (o, o), (o, -o), (-o, o), (-o, -o)
+def link_parts(robot: RobotSettings, colour: Rgb) -> dict[str, tuple[Part, ...]]:
+    """Parts of each link of the articulation by its name; legs only where wheels steer."""
+    links = {"chassis": chassis_parts(robot, colour)}
+    for k, mount in enumerate(undercarriage_of(robot.base).mounts):
+        if mount.steered:
+            links[f"leg{k}"] = leg_parts(robot, mount.radius_m)
+        links[f"wheel{k}"] = wheel_parts(mount.radius_m)
+    return links
 
 
 def whole_robot(robot: RobotSettings, colour: Rgb) -> tuple[Part, ...]:
     """All parts in one rigid body, wheels straight: for the robot that only stands there."""
     parts = list(chassis_parts(robot, colour))
-    for x, y in wheel_mounts(robot):
-        for part in (*leg_parts(robot), *wheel_parts(robot)):
+    for mount in undercarriage_of(robot.base).mounts:
+        leg = leg_parts(robot, mount.radius_m) if mount.steered else ()
+        for part in (*leg, *wheel_parts(mount.radius_m)):
             cx, cy, cz = part.centre_m
-            parts.append(replace(part, centre_m=(cx + x, cy + y, cz + robot.wheel_radius_m)))
+            parts.append(replace(part, centre_m=(cx + mount.x_m, cy + mount.y_m, cz + mount.radius_m)))
     return tuple(parts)

@@ -1,13 +1,15 @@
-"""Low-level control of one leg, as its servo controllers would do it. Pure.
+"""Low-level control of one wheel, as its servo controllers would do it. Pure.
 
-A steer servo turns at a limited rate within +-limit. A wheel can run either way, so a heading is reached by
-the nearer of two servo angles, half a turn apart. Wheel speed is scaled by the cosine of the steering error
-and zero while that is large, so that wheels roll rather than scrub.
+A steer servo turns at a limited rate within its limits. A wheel can run either way, so a heading is reached
+by the nearer of two servo angles, half a turn apart. Wheel speed is scaled by the cosine of the steering
+error and zero while that is large, so that wheels roll rather than scrub.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from simulator.robot.undercarriage import Mount, Roll
 from simulator.settings import RobotSettings
 
 MOST_ERROR_RAD = 0.35
@@ -16,7 +18,7 @@ MOST_ERROR_RAD = 0.35
 
 @dataclass(frozen=True)
 class LegTarget:
-    """What the servos of a leg are asked for."""
+    """What the servos of a wheel are asked for."""
 
     steer_rad: float
     wheel_radps: float
@@ -43,30 +45,58 @@ def choose_angle(heading_rad: float, steer_rad: float, limit_rad: float) -> tupl
     return min(options, key=lambda option: (abs(option[0] - steer_rad), -option[1]))
 
 
-def next_target(
-    heading_rad: float,
-    wheel_radps: float,
-    steer_rad: float,
+def next_targets(
+    mounts: Sequence[Mount],
+    rolls: Sequence[Roll],
+    steers_rad: Sequence[float],
+    last: Sequence[LegTarget],
+    dt_s: float,
+    robot: RobotSettings,
+) -> list[LegTarget]:
+    """Targets for the next physics step, one for each wheel.
+
+    Args:
+        mounts: of the wheels.
+        rolls: what each is to do.
+        steers_rad: measured steer angles; 0 for wheels that do not steer.
+        last: targets of the step before.
+        dt_s: length of a step.
+        robot: limits of the servos.
+    """
+    wanted = [_servo(mount, roll, target) for mount, roll, target in zip(mounts, rolls, last, strict=True)]
+    errors_rad = [abs(angle - steer) for (angle, _), steer in zip(wanted, steers_rad, strict=True)]
+    worst_rad = max(errors_rad)  # wheels wait for one another
+    return [
+        _target(mount, servo, worst_rad, target, dt_s, robot)
+        for mount, servo, target in zip(mounts, wanted, last, strict=True)
+    ]
+
+
+def _servo(mount: Mount, roll: Roll, last: LegTarget) -> tuple[float, float]:
+    """Servo angle and speed over the floor that one wheel wants; a wheel at rest keeps where it points."""
+    if not mount.steered:
+        return 0.0, roll.speed_mps
+    if roll.speed_mps == 0.0:
+        return last.steer_rad, 0.0
+    if not mount.driven:
+        return max(-mount.limit_rad, min(mount.limit_rad, roll.heading_rad)), roll.speed_mps
+    angle, sign = choose_angle(roll.heading_rad, last.steer_rad, mount.limit_rad)
+    return angle, sign * roll.speed_mps
+
+
+def _target(
+    mount: Mount,
+    servo: tuple[float, float],
+    error_rad: float,
     last: LegTarget,
     dt_s: float,
     robot: RobotSettings,
 ) -> LegTarget:
-    """Targets for the next physics step.
-
-    Args:
-        heading_rad: wanted rolling direction, robot frame.
-        wheel_radps: wanted wheel speed in that direction; negative rolls backwards.
-        steer_rad: measured steer angle.
-        last: targets of the step before.
-        dt_s: length of a step.
-        robot: limits.
-    """
-    wanted, sign = choose_angle(heading_rad, last.steer_rad, robot.steer_limit_rad)
+    wanted_rad, speed_mps = servo
     most = robot.steer_rate_radps * dt_s
-    steer = last.steer_rad + max(-most, min(most, wanted - last.steer_rad))
-    aligned = max(0.0, math.cos(wanted - steer_rad))
-    if abs(wanted - steer_rad) > MOST_ERROR_RAD:
-        aligned = 0.0  # the other legs may point elsewhere: wait
-    speed = sign * max(-robot.wheel_limit_radps, min(robot.wheel_limit_radps, wheel_radps)) * aligned
+    steer_rad = last.steer_rad + max(-most, min(most, wanted_rad - last.steer_rad))
+    aligned = math.cos(error_rad) if error_rad <= MOST_ERROR_RAD else 0.0
+    limit = robot.wheel_limit_radps
+    wheel_radps = max(-limit, min(limit, speed_mps / mount.radius_m)) * aligned
     change = robot.wheel_accel_radps2 * dt_s
-    return LegTarget(steer, last.wheel_radps + max(-change, min(change, speed - last.wheel_radps)))
+    return LegTarget(steer_rad, last.wheel_radps + max(-change, min(change, wheel_radps - last.wheel_radps)))

@@ -10,7 +10,7 @@ import numpy.typing as npt
 import sapien
 from sapien import render
 
-from simulator.robot.robot import flat_pose
+from simulator.robot.articulation import flat_pose
 from simulator.scene.disk_cache import DiskCache
 from simulator.scene.mesh_shapes import mesh_of
 from simulator.scene.meshes import Mesh

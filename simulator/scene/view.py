@@ -8,7 +8,7 @@ from simulator.disturbances.fog import fog_of
 from simulator.disturbances.illumination import body_brightness, illuminated, view_brightness
 from simulator.disturbances.people import Figure
 from simulator.robot.physics_scene import Bodies
-from simulator.robot.robot_shape import HIDER, SEEKER, chassis_parts, leg_parts, wheel_parts, whole_robot
+from simulator.robot.robot_shape import HIDER, SEEKER, link_parts, whole_robot
 from simulator.scene.disk_cache import DiskCache
 from simulator.scene.painter import Painter
 from simulator.scene.parts import Contents, Pose2
@@ -41,10 +41,8 @@ class View:
         with Painter(self._cache) as painter:
             sky = view_brightness(level)
             self._scene = RenderScene(shown, lit, settings.camera, painter, self._cache, sky)
-            self._links = {"chassis": self._scene.add_body(chassis_parts(robot, SEEKER), shade)}
-            for k in range(4):
-                self._links[f"leg{k}"] = self._scene.add_body(leg_parts(robot), shade)
-                self._links[f"wheel{k}"] = self._scene.add_body(wheel_parts(robot), shade)
+            looks = link_parts(robot, SEEKER)
+            self._links = {name: self._scene.add_body(parts, shade) for name, parts in looks.items()}
             self._hider = self._scene.add_body(whole_robot(robot, HIDER), shade)
             self._walkers = [self._scene.add_body(figure.looks, shade) for figure in figures]
         fog = fog_of(self._levels.fog, self._levels.rain, level, world.environment)

@@ -208,7 +208,7 @@ def test_arrays_of_wrong_dtype_shape_or_size_are_refused(kind: type[Message], da
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize(
     "tag",
-    ["", "frame.v0", "x" * 100_000, None, 1, [], {"a": 1}, b"command.v1"],
+    ["", "frame.v0", "x" * 100_000, None, 1, [], {"a": 1}, b"velocity.v1"],
     ids=lambda tag: repr(tag)[:12],
 )
 def test_another_schema_is_refused(kind: type[Message], tag: Any):

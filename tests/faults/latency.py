@@ -9,9 +9,9 @@ from typing import Self
 import numpy as np
 
 from shared.bus import open_bus
-from shared.messages.drive import Command
+from shared.messages.drive import Velocity
 from shared.messages.sensors import Frame
-from shared.topics import COMMAND, FRAME
+from shared.topics import FRAME, VELOCITY
 from tests.integration.drive.conftest import Neighbours
 
 PERIOD_S = 0.05
@@ -32,7 +32,7 @@ class Stopwatch:
         self._bus = open_bus(self._endpoint)
         bus = self._bus.__enter__()
         self._planner = Neighbours(bus)
-        self._commands = bus.subscribe(COMMAND, robot="r1")
+        self._commands = bus.subscribe(VELOCITY, robot="r1")
         self._robot.start()
         return self
 
@@ -61,7 +61,7 @@ class Stopwatch:
 
     def _answer(self, sent_s: float) -> float:
         while (left_s := sent_s + LOST_S - time.monotonic()) > 0.0:
-            command: Command | None = self._commands.wait(left_s)
+            command: Velocity | None = self._commands.wait(left_s)
             if command is not None and command.seq == self._seq:
                 return time.monotonic() - sent_s
         return LOST_S

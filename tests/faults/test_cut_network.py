@@ -11,9 +11,9 @@ import pytest
 import zenoh
 
 from shared.bus import Bus, open_bus, wait_until
-from shared.messages.drive import Command
+from shared.messages.drive import Velocity
 from shared.messages.maps import MapRequest
-from shared.topics import COMMAND, MAP, MAP_DELTA
+from shared.topics import MAP, MAP_DELTA, VELOCITY
 from shared.transport.session_config import peer_config
 from shared.wire import decode
 from tests.faults.lived_maps import place
@@ -73,7 +73,7 @@ def test_what_was_said_while_the_network_was_cut_moves_nothing_when_it_heals(cut
         return act
 
     heard = []  # all of them: in the burst a newer one may come before anybody has looked
-    neighbours.bus.tap(COMMAND, lambda _, payload: heard.append(decode(Command, payload, COMMAND.max_bytes)))
+    neighbours.bus.tap(VELOCITY, lambda _, sent: heard.append(decode(Velocity, sent, VELOCITY.max_bytes)))
 
     def stale_over_a_cut():
         assert neighbours.drives(say(LEFT))
@@ -85,7 +85,7 @@ def test_what_was_said_while_the_network_was_cut_moves_nothing_when_it_heals(cut
         assert neighbours.drives(say(LEFT))
         record_property("driving_again_s", round(time.monotonic() - healed_s, 3))
         neighbours.commands(0.5, say(LEFT))
-        return [command for command in heard if command.wheel_speed_radps and command.steer_rad < 0.0]
+        return [command for command in heard if command.speed_mps and command.left_mps < 0.0]
 
     for _ in range(TRIES):
         stale = stale_over_a_cut()

@@ -80,7 +80,7 @@ def moving_until_s(neighbours, act, during_s):
     """How long after now a command with turning wheels still came; infinite when this process was held up."""
     began_s, last_s = time.monotonic(), 0.0
     while (now_s := time.monotonic() - began_s) < during_s:
-        if any(command.wheel_speed_radps for command in neighbours.commands(0.03, act)):
+        if any(command.speed_mps for command in neighbours.commands(0.03, act)):
             last_s = now_s
         if time.monotonic() - began_s - now_s > HELD_UP_S:
             return math.inf
@@ -141,8 +141,8 @@ def test_headings_in_the_wrong_order_are_refused(stream, neighbours):
         neighbours.wish(stream.seq - 2, stamp_ns=stamp_ns, heading_rad=RIGHT)
 
     commands = in_order(neighbours, stream, late)
-    assert any(command.steer_rad > 0.0 for command in commands)
-    assert not any(command.steer_rad < 0.0 for command in commands)
+    assert any(command.left_mps > 0.0 for command in commands)
+    assert not any(command.left_mps < 0.0 for command in commands)
 
 
 def test_distances_in_the_wrong_order_are_refused(stream, neighbours):
@@ -150,7 +150,7 @@ def test_distances_in_the_wrong_order_are_refused(stream, neighbours):
         neighbours.see(stream.seq - 3, stamp_ns=stream.stamp_ns - 10**10, near_m=0.05)  # a wall all around
 
     commands = in_order(neighbours, stream, late)
-    assert all(command.wheel_speed_radps for command in commands)
+    assert all(command.speed_mps for command in commands)
 
 
 def poisoned(message, field, value):
@@ -178,11 +178,11 @@ def test_what_is_no_number_never_becomes_a_command(stream, neighbours, value):
             raw[topic].put_bytes(poisoned(heading if topic is HEADING else ranges, field, value))
 
     def stands():
-        return not any(command.wheel_speed_radps for command in neighbours.commands(0.3, poison))
+        return not any(command.speed_mps for command in neighbours.commands(0.3, poison))
 
     commands = neighbours.commands(1.2, poison)
-    assert all(math.isfinite(c.steer_rad) and math.isfinite(c.wheel_speed_radps) for c in commands)
-    assert not any(command.steer_rad < 0.0 for command in commands)
+    assert all(math.isfinite(c.left_mps) and math.isfinite(c.forward_mps) for c in commands)
+    assert not any(command.left_mps < 0.0 for command in commands)
     assert wait_until(stands, SOON_S), "none is fresh"
     assert neighbours.drives(stream.both), "it lives and goes on"
 
@@ -191,7 +191,7 @@ def wrong_after_a_jump(neighbours, stream, before_h, after_h):
     """What drive did but drive on when the robot's clock jumped from one shift to another, in hours."""
     assert neighbours.drives(partial(stream.both_at, int(before_h * 3600e9)))
     commands = neighbours.commands(0.8, partial(stream.both_at, int(after_h * 3600e9)))
-    return [command.why for command in commands if not command.wheel_speed_radps] if commands else ["silent"]
+    return [command.why for command in commands if not command.speed_mps] if commands else ["silent"]
 
 
 def test_a_clock_that_jumps_an_hour_stops_nothing_and_outdates_nothing(stream, neighbours):

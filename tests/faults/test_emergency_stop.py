@@ -9,10 +9,10 @@ import pytest
 
 from services.launcher.client.stack import Stack, StackChoice, open_stack
 from shared.bus import wait_until
-from shared.messages.drive import Command
+from shared.messages.drive import Velocity
 from shared.messages.estop import EStopRequest
 from shared.queries import RefusedError
-from shared.topics import COMMAND, ESTOP, FRAME
+from shared.topics import ESTOP, FRAME, VELOCITY
 from tests.faults.watching import MOVES_S, STILL_MPS, TRIES, Watch, ask, ended, exploring, set_off
 
 pytestmark = [
@@ -64,14 +64,12 @@ def insist(stack, during_s=1.0):
     with stack.session() as own:
         frames, commands = (
             own.bus.subscribe(FRAME, robot=own.robot),
-            own.bus.publisher(COMMAND, robot=own.robot),
+            own.bus.publisher(VELOCITY, robot=own.robot),
         )
         frame, until_s = frames.wait(SOON_S), time.monotonic() + during_s
         while time.monotonic() < until_s:
             frame = frames.take() or frame
-            commands.put(
-                Command(seq=frame.seq, stamp_ns=frame.stamp_ns, robot=own.robot, wheel_speed_radps=5.0)
-            )
+            commands.put(Velocity(seq=frame.seq, stamp_ns=frame.stamp_ns, robot=own.robot, forward_mps=0.4))
             time.sleep(0.05)
 
 

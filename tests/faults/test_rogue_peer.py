@@ -20,7 +20,7 @@ from shared.messages.estop import EStopRequest
 from shared.messages.maps import MapDelta, MapRequest
 from shared.messages.sensors import Ranges
 from shared.queries import AbsentError, RefusedError
-from shared.topics import COMMAND, ESTOP, ESTOP_STATE, HEADING, MAP, MAP_DELTA, MAP_READ, RANGES
+from shared.topics import ESTOP, ESTOP_STATE, HEADING, MAP, MAP_DELTA, MAP_READ, RANGES, VELOCITY
 from shared.transport.session_config import client_config
 from shared.wire import encode
 from tests.faults.secured import SecuredBus
@@ -60,7 +60,7 @@ class Robot:
     def __init__(self, secured):
         body, planner = secured.bus("simulator"), secured.bus("planner")
         self._ranges = body.publisher(RANGES, robot="r1")
-        self.commands, self.stopped = (body.subscribe(t, robot="r1") for t in (COMMAND, ESTOP_STATE))
+        self.commands, self.stopped = (body.subscribe(t, robot="r1") for t in (VELOCITY, ESTOP_STATE))
         self._headings = planner.publisher(HEADING, robot="r1")
         self.seq, self.newest_radps = 0, 0.0
 
@@ -83,7 +83,7 @@ class Robot:
             self.see()
             act()
             time.sleep(0.03)
-            came += [command.wheel_speed_radps for command in self.commands.take_all()]
+            came += [command.speed_mps for command in self.commands.take_all()]
         self.newest_radps = came[-1] if came else self.newest_radps
         return came
 
@@ -111,7 +111,7 @@ def test_a_stolen_certificate_does_not_move_the_robot(thief, secured, robot):
     def attack():
         for key in (HEADING.key(robot="r1"), "topnav/*/heading", "topnav/**"):
             session.put(key, encode(heading(robot.seq, epoch=9)))
-        session.put(COMMAND.key(robot="r1"), b"\xff")
+        session.put(VELOCITY.key(robot="r1"), b"\xff")
 
     try:
         assert robot.drives(robot.wish), "the planner can"
@@ -125,7 +125,7 @@ def test_a_stolen_certificate_does_not_move_the_robot(thief, secured, robot):
 
 
 def test_a_planners_certificate_does_not_command_the_wheels(secured, robot):
-    publisher = secured.bus("planner").publisher(COMMAND, robot="r1")
+    publisher = secured.bus("planner").publisher(VELOCITY, robot="r1")
     assert robot.stands(lambda: None)
     publisher.put_bytes(b"\xff")
     settle(secured.bus("planner"))
@@ -169,7 +169,7 @@ def test_a_features_certificate_reads_maps_and_writes_none(secured):
 
 def test_a_viewer_follows_maps_and_the_robot(secured, robot):
     viewer = secured.bus("viewer")
-    deltas, commands = viewer.subscribe(MAP_DELTA, map=FLAT), viewer.subscribe(COMMAND, robot="r1")
+    deltas, commands = viewer.subscribe(MAP_DELTA, map=FLAT), viewer.subscribe(VELOCITY, robot="r1")
     assert wait_until(lambda: any(delta.revision == 1 for delta in deltas.take_all()), SOON_S)
     assert wait_until(lambda: robot.drives(robot.wish) and commands.take() is not None, SOON_S)
     assert robot.stands(lambda: None)

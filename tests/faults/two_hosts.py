@@ -19,7 +19,7 @@ from shared.bus import Bus
 from shared.messages.features import Features
 from shared.messages.missions import MissionRequest
 from shared.messages.simulation import Truth
-from shared.topics import COMMAND, FEATURES, STATUS, TRUTH
+from shared.topics import FEATURES, STATUS, TRUTH, VELOCITY
 from tests.faults.hosts import TwoHosts
 from tests.faults.slow_link import SlowLink
 from tests.faults.speedometer import speeds_in
@@ -59,7 +59,7 @@ def explore(bus: Bus, during_s: float, report: Report) -> Features:
     """Explore for a while; returns what the robot saw after a third of it."""
     client = MissionClient(bus, ROBOT)
     features = bus.subscribe(FEATURES, robot=ROBOT)
-    commands = bus.subscribe(COMMAND, robot=ROBOT)
+    commands = bus.subscribe(VELOCITY, robot=ROBOT)
     truths = bus.subscribe(TRUTH, robot=ROBOT)
     client.wait_for_frame(0)
     client.ask(MissionRequest(action="explore", map=MAP, seed=1))

@@ -10,12 +10,12 @@ from experiments.bench.listener import Background
 from services.launcher.client.experimenter import Experimenter
 from services.launcher.client.stack import Stack
 from shared.bus import Bus, open_bus, wait_until
-from shared.messages.drive import Command, Heading
+from shared.messages.drive import Heading, Velocity
 from shared.messages.missions import MissionRequest, MissionStatus
 from shared.queries import QueryError
-from shared.topics import COMMAND, FEATURES, HEADING, MISSION, TRUTH
+from shared.topics import FEATURES, HEADING, MISSION, TRUTH, VELOCITY
 
-TOPICS = {"truth": TRUTH, "features": FEATURES, "planner": HEADING, "drive": COMMAND}
+TOPICS = {"truth": TRUTH, "features": FEATURES, "planner": HEADING, "drive": VELOCITY}
 MOVING_MPS = 0.1
 STILL_MPS = 0.03
 ASK_S = 30.0
@@ -84,7 +84,7 @@ class Watch(Background):
         self.speeds: list[tuple[float, float]] = []
         self.frames: list[tuple[float, int]] = []
         self.arrivals: dict[str, list[float]] = {name: [] for name in TOPICS}
-        self.commands: list[tuple[float, Command]] = []
+        self.commands: list[tuple[float, Velocity]] = []
         self.headings: list[tuple[float, Heading]] = []
         self.held_up: list[tuple[float, float]] = []
         self._wall_ahead_s = wall_ahead_s()
@@ -124,7 +124,7 @@ class Watch(Background):
         ends, last = [], float("inf")
         for (time_s, command), (next_s, _) in pairwise([*self.commands, (last, None)]):
             moving_until_s = min(next_s, time_s + command.ttl_ms / 1000.0)
-            ends.append((time_s, time_s) if command.wheel_speed_radps == 0.0 else (time_s, moving_until_s))
+            ends.append((time_s, time_s) if command.stands else (time_s, moving_until_s))
         still_s = max((end_s for time_s, end_s in ends if time_s <= since_s), default=since_s)
         if still_s <= since_s:
             return since_s
@@ -142,7 +142,7 @@ class Watch(Background):
         came while the watcher was held up is not known, so the time begins anew when it goes on.
         """
         going = [time_s for time_s, heading in self.headings if heading.action == "go"]
-        answered = {command.seq for _, command in self.commands if command.wheel_speed_radps != 0.0}
+        answered = {command.seq for _, command in self.commands if not command.stands}
         unheard = answered - {heading.seq for _, heading in self.headings}
         deaf = [time_s for time_s, command in self.commands if command.seq in unheard]
         longest_s, place = 0.0, 0
@@ -166,7 +166,7 @@ class Watch(Background):
         heard_s: dict[int, float] = {}
         for time_s, seq in self.frames:
             heard_s.setdefault(seq, time_s)
-        moving = [(t, c.seq) for t, c in self.commands if c.wheel_speed_radps != 0.0 and t >= since_s]
+        moving = [(t, c.seq) for t, c in self.commands if not c.stands and t >= since_s]
         answered = [(time_s, heard_s[seq]) for time_s, seq in moving if seq in heard_s]
         return max(
             (time_s - from_s - self._held_up_s(from_s, time_s) for time_s, from_s in answered), default=0.0

@@ -99,7 +99,7 @@ function heard(type, data) {
   if (type === "frame") panorama.take(robot, data);
   else if (type === "ranges") polar.takeRanges(data);
   else if (type === "heading") { polar.takeHeading(data); panorama.mark(data); history.takeHeading(data); }
-  else if (type === "command") { polar.takeCommand(data); history.takeCommand(data); }
+  else if (type === "velocity") { polar.takeVelocity(data); history.takeVelocity(data); }
   else if (type === "estop") estop.take(data);
   else if (type === "event") events.take(data);
   else if (type === "services") {

@@ -13,7 +13,7 @@ from services.gateway.http.metrics import Metrics
 from services.gateway.live.outbox import Outbox
 from services.gateway.live.true_poses import TruePoses
 from shared.messages.base import Message
-from shared.messages.drive import Command, Heading
+from shared.messages.drive import Heading, Velocity
 from shared.messages.estop import EStopState
 from shared.messages.missions import Event, MissionStatus
 from shared.messages.sensors import Frame, Ranges
@@ -38,7 +38,7 @@ NEWEST: dict[type[Message], str] = {
     MissionStatus: "status",
     Heading: "heading",
     Ranges: "ranges",
-    Command: "command",
+    Velocity: "velocity",
     EStopState: "estop",
     Frame: "frame",
 }
@@ -54,7 +54,7 @@ class RobotView:
     frame_s: float = 0.0
     ranges: Ranges | None = None
     heading: Heading | None = None
-    command: Command | None = None
+    velocity: Velocity | None = None
     estop: EStopState | None = None
     status: MissionStatus | None = None
     truth: Truth | None = None

@@ -38,7 +38,7 @@ UNSURE_FRAMES = 6
 chosen: 0.7 m in a room."""
 
 TURN_RAD = math.radians(15.0)
-"""A robot turns less than that between two frames; chosen: half a radian a second."""
+"""A robot turns less than that between two frames beside what it knows; chosen: half a radian a second."""
 
 BESIDE_M = 0.2
 """Who is nearer to a node than this stands at it; chosen: two steps."""
@@ -63,7 +63,7 @@ class Departure:
 
     Attributes:
         done: whether the direction is closed.
-        heading_rad: where it leads, robot frame; held by the yaw towards the node left.
+        heading_rad: where it leads, robot frame; held by the yaw towards the node left, and by turns since.
         here: where the robot is, by what it did since.
         unseen: whether the last frame showed nothing of the map.
     """
@@ -80,7 +80,8 @@ class Departure:
         self._profile, self._maps, self._matcher = profile, maps, matcher
         self.node_id, self.sector, self.heading_rad = start.node_id, sector, heading_rad
         self.here = start
-        self._steps = self._unseen_frames = self._unsure_frames = 0
+        self._steps = self._unseen_frames = self._unsure_frames = 0.0
+        self._share = 1.0
         self._driven_m = 0.0
         self._carries = openness(maps.graph, start.node_id)
         self._retreating = False
@@ -91,10 +92,12 @@ class Departure:
 
     def step(self, observation: Observation) -> Decision | NewNode:
         """Go straight on, or end."""
-        self._steps += 1
-        self._driven_m += math.hypot(*observation.moved_m)
+        self._share = observation.frame_share
+        self._steps += self._share
+        self._driven_m += observation.moved.way_m
         rules = self._profile.mapping
-        self.here = self.here.moved(observation.moved_m)
+        self.here = self.here.moved(observation.moved)
+        self.heading_rad = observation.moved.direction(self.heading_rad)
         matches = self._seen()
         best = ranked(matches, self._profile)
         s_best = similarity(best[0][1], self._profile) if best else 0
@@ -152,7 +155,8 @@ class Departure:
         """Whether the node left is seen as if the robot had turned at once, be its bearing sure or not."""
         if origin.yaw_rad is None or not trusted(origin, self._profile):
             return False
-        return abs(math.remainder(origin.yaw_rad + self.here.yaw_rad, math.tau)) > TURN_RAD
+        miss_rad = abs(math.remainder(origin.yaw_rad + self.here.yaw_rad, math.tau))
+        return miss_rad > TURN_RAD + self.here.yaw_std_rad
 
     def _keep_course(self, origin: NodeMatch | None) -> None:
         """Straight on by the yaw of the node left; and where that and a sure bearing put the robot."""
@@ -188,7 +192,7 @@ class Departure:
 
     def _out_of_sight(self, s_best: int) -> Decision:
         """The view changed within a few steps, as at a corner: go back and make a node there."""
-        self._unseen_frames += 1
+        self._unseen_frames += self._share
         if self._unseen_frames > self._profile.mapping.saturation_steps:
             return self._close("out of sight of the map", lost=True)
         self._retreating = self._steps > CORNER_STEPS
@@ -208,7 +212,7 @@ class Departure:
         graph = self._maps.graph
         edges = judge_edges(graph, observation, matches, self._profile, self.here)
         if not edges.admitted:
-            self._unsure_frames += 1
+            self._unsure_frames += self._share
             if self._retreating or self._unsure_frames > UNSURE_FRAMES:
                 return self._close("no view back to be sure of", lost=True)
             return self._straight_on(

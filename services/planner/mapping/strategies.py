@@ -31,6 +31,7 @@ class ThesisExploration:
 
     def decide(self, observation: Observation) -> Decision:
         """One step of figure 4.5's mapping branch."""
+        self._previous_rad = observation.moved.direction(self._previous_rad)
         if not self._maps.graph.nodes:
             node, _ = add_node(self._maps, observation, NewEdges(), self._profile, None)
             return self._go(self._uniform(math.pi), "only node: random heading", (_added(node, 0),))

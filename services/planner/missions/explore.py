@@ -70,6 +70,7 @@ class FrontierExploration:
     def decide(self, observation: Observation) -> Decision:
         """One frame: map, depart, or travel to the next frontier."""
         graph = self._maps.graph
+        self._heading_rad = observation.moved.direction(self._heading_rad)
         if not graph.nodes:
             return self._first(observation)
         if self._departure is not None:
@@ -114,7 +115,7 @@ class FrontierExploration:
         return Decision("go", heading_rad, method="frontier", why=why, notes=notes)
 
     def _go_on(self, observation: Observation, departure: Departure) -> Decision:
-        self._travel.tracker.observe(observation)
+        self._travel.observe(observation)
         result = departure.step(observation)
         self.progress = departure.progress
         if departure.unseen and self._travel.tracker.was_carried():

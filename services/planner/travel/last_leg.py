@@ -10,6 +10,7 @@ from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import NEAR_NODES
 from shared.mapgraph.local.relative_poses import relative_poses
+from shared.motion.motion import Motion
 
 REACHED_M = 0.3
 """Who is nearer than this to where the map puts the picture sees it, or it is not there; chosen."""
@@ -29,7 +30,7 @@ def reckoned_rad(graph: MapGraph, here: Displacement | None, goal: Displacement 
     if pose is None:
         return None
     node_x_m, node_y_m = (float(metres) for metres in pose.position_m)
-    spot = Displacement(here.node_id, node_x_m, node_y_m, pose.yaw_rad).moved((goal.x_m, goal.y_m))
+    spot = Displacement(here.node_id, node_x_m, node_y_m, pose.yaw_rad).moved(Motion(goal.x_m, goal.y_m))
     x_m, y_m = spot.x_m - here.x_m, spot.y_m - here.y_m
     if math.hypot(x_m, y_m) < REACHED_M:
         return None

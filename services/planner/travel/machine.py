@@ -67,10 +67,17 @@ class Travel:
         self._search = None
         self.tracker.stand_at(here)
 
+    def observe(self, observation: Observation) -> None:
+        """A new frame: directions are kept in the robot's frame, which turned."""
+        self.tracker.observe(observation)
+        self.last_heading_rad = observation.moved.direction(self.last_heading_rad)
+        if self._search is not None:
+            self._search.turned(observation.moved.turn_rad)
+
     def step(self, observation: Observation) -> Decision:
         """One frame; the matcher has it already."""
         self._notes = []
-        self.tracker.observe(observation)
+        self.observe(observation)
         decision = None if self.state is State.FOLLOWING else self._find_way(observation)
         if decision is None:
             decision = self._follow(observation)
@@ -103,7 +110,7 @@ class Travel:
             return None
         if starts:
             return self._wait()
-        return self._look_around(seen)
+        return self._look_around(seen, observation.frame_share)
 
     def _set_off(self, path: list[int], event: Event) -> None:
         self._change(event)
@@ -161,7 +168,7 @@ class Travel:
             return self._give_up(verdict.failure, verdict.why)
         return Decision("hold", why=verdict.why)
 
-    def _look_around(self, here: Matches) -> Decision:
+    def _look_around(self, here: Matches, frame_share: float) -> Decision:
         """Lost mode (thesis section 4.2): towards what resembles a node most, else in growing sweeps."""
         self._change(Event.NOTHING_KNOWN)
         patience = self._destination.search_steps
@@ -172,7 +179,7 @@ class Travel:
         if self._search.exhausted:
             why = f"no node of the map recognised in {patience} steps, best similarity {s_nearest}"
             return self._give_up("lost", why)
-        heading_rad = self._search.next_heading()
+        heading_rad = self._search.next_heading(frame_share)
         if nearest and nearest[0][1].heading_rad is not None:
             heading_rad = nearest[0][1].heading_rad
         why = f"looking for a node I know, best similarity {s_nearest}"

@@ -20,6 +20,7 @@ from services.planner.travel.waypoints import (
     is_strict,
     may_advance,
     speed_fraction,
+    way_left_m,
 )
 from shared.mapgraph.graph import EdgeKey, edge_key
 from shared.mapgraph.routing import GOAL
@@ -72,11 +73,12 @@ class PathFollower:
         self._unclear, self._experience, self._tracker = unclear, experience, tracker
         self.path, self.index = path, 0
         self._strict = is_strict(profile)
-        self._unseen_frames = 0
+        self._unseen_frames = 0.0
+        self._share = 1.0
         self._heading_rad: float | None = None
         self._steady = SteadyHeading()
         self._best_rad, self._best_s = math.inf, 0
-        self._stale = self._waiting = self._blind_frames = 0
+        self._stale = self._waiting = self._blind_frames = 0.0
         self.progress = Progress(via_points=tuple(path))
 
     def step(self, observation: Observation, matcher: Matcher) -> tuple[Event | None, Decision]:
@@ -85,6 +87,7 @@ class PathFollower:
         Returns:
             What ended the path, None while it goes on; and what to do for this frame.
         """
+        self._turn(observation)
         matches = self._compare(matcher)
         notes = self._advance(matches, observation.ranges)
         waypoint = self.path[self.index]
@@ -102,15 +105,24 @@ class PathFollower:
             return None, _hold(f"at {name}, S {s_cv}", notes)
         if match is None or found is None or s_cv < self._profile.travel.s_via_min:
             return self._unseen(name, s_cv, notes)
-        self._unseen_frames = 0
+        self._unseen_frames = 0.0
         self._heading_rad, method = self._steadied(waypoint, found[0], s_cv), found[1]
         if self._no_progress(match):
             if self._near_end(match):
                 return Event.REACHED, _hold(f"as near to {name} as obstacles allow, S {s_cv}", notes)
             return Event.NO_PROGRESS, _hold(f"no progress towards {name}", notes)
         slow = self._at_end() and self._destination.arrival_rad > 0.0
-        speed = speed_fraction(match, self._maps.graph) if slow else 1.0
-        return None, Decision("go", self._heading_rad, s_cv, speed, method, f"to {name}, S {s_cv}", notes)
+        left_m = way_left_m(match, self._maps.graph)
+        speed = speed_fraction(left_m - observation.since.way_m) if slow and left_m is not None else 1.0
+        why = f"to {name}, S {s_cv}"
+        return None, Decision("go", self._heading_rad, s_cv, speed, method, why, notes, distance_m=left_m)
+
+    def _turn(self, observation: Observation) -> None:
+        """Directions are kept in the robot's frame, which turned; turns on the spot cost little patience."""
+        self._share = observation.frame_share
+        self._steady.turned(observation.moved.turn_rad)
+        if self._heading_rad is not None:
+            self._heading_rad = observation.moved.direction(self._heading_rad)
 
     def failed_edge(self) -> tuple[EdgeKey | None, int]:
         """What stopped the robot: the edge driven and its waypoint; at a waypoint, what comes next."""
@@ -186,7 +198,7 @@ class PathFollower:
 
     def _head_for(self, index: int) -> None:
         """Make another waypoint the present one, of which no progress is known yet."""
-        self.index, self._best_rad, self._best_s, self._stale = index, math.inf, 0, 0
+        self.index, self._best_rad, self._best_s, self._stale = index, math.inf, 0, 0.0
 
     def _may_advance(self, here: NodeMatch | None, there: NodeMatch, later: int, ranges: Ranges) -> bool:
         beside = later == self.index + 1 and self._is_at(here)
@@ -221,10 +233,10 @@ class PathFollower:
             self._heading_rad = blind_rad
             why = f"{name} not seen, S {s_cv}: to where the map has it"
             return None, Decision("go", blind_rad, s_cv, 1.0, "reckoned", why, notes)
-        self._unseen_frames += 1
+        self._unseen_frames += self._share
         if self._unseen_frames >= self._profile.travel.suspend_after or self._heading_rad is None:
             return Event.WAYPOINT_LOST, _hold(f"{name} not seen, S {s_cv}", notes)
-        why = f"{name} not seen for {self._unseen_frames} frames, keeping on"
+        why = f"{name} not seen for {self._unseen_frames:.0f} frames, keeping on"
         return None, Decision("go", self._heading_rad, s_cv, 1.0, "previous", why, notes)
 
     def _goes_on_blind(self) -> bool:
@@ -232,14 +244,14 @@ class PathFollower:
         blind = self.path[self.index + 1] == GOAL and self._blind_rad() is not None
         if blind:
             self._head_for(self.index + 1)
-            self._waiting = 0
+            self._waiting = 0.0
         return blind
 
     def _blind_rad(self) -> float | None:
         """Bearing of the goal by the map; None where that is not known, and after so many frames."""
         if self._strict or len(self.path) < 2:
             return None
-        self._blind_frames += 1
+        self._blind_frames += self._share
         if self._blind_frames > BLIND_FRAMES:
             return None
         return reckoned_rad(self._maps.graph, self._tracker.here, self._destination.lies(self.path[-2]))
@@ -250,13 +262,13 @@ class PathFollower:
         nearer, liker = disparity < self._best_rad * CLOSER, s_cv * CLOSER > self._best_s
         self._best_rad = disparity if nearer else self._best_rad
         self._best_s = s_cv if liker else self._best_s
-        self._stale = 0 if nearer or liker else self._stale + 1
+        self._stale = 0.0 if nearer or liker else self._stale + self._share
         return self._stale > (NEAREST_STEPS if self._near_end(match) else STUCK_STEPS)
 
     def _waits_too_long(self, match: NodeMatch | None) -> bool:
         """At a waypoint from which the next one does not show: what leads there is shut."""
         standing = not (self._strict or self._at_end()) and self._is_at(match)
-        self._waiting = self._waiting + 1 if standing else 0
+        self._waiting = self._waiting + self._share if standing else 0.0
         return self._waiting > WAITING_STEPS
 
     def _near_end(self, match: NodeMatch) -> bool:

@@ -17,8 +17,8 @@ TURN_RAD = math.radians(137.5)
 class Search:
     """Where to go while nothing is recognised: back along the last heading first, then ever longer sweeps.
 
-    The camera does not turn with the driving direction, so directions in its frame stay comparable. Obstacles
-    are passed by the drive service.
+    Directions are kept in the robot's frame: `turned` keeps them up where it turns. Obstacles are passed by
+    the drive service.
 
     Attributes:
         heading_rad: of the present sweep, robot frame.
@@ -27,8 +27,8 @@ class Search:
 
     heading_rad: float
     patience_steps: int
-    steps: int = 0
-    left: int = FIRST_STEPS
+    steps: float = 0.0
+    left: float = FIRST_STEPS
     sweep_steps: float = FIRST_STEPS
 
     @property
@@ -36,14 +36,18 @@ class Search:
         """Whether to give up."""
         return self.steps >= self.patience_steps
 
-    def next_heading(self) -> float:
-        """Heading of this step."""
+    def turned(self, turn_rad: float) -> None:
+        """The robot turned, counter-clockwise."""
+        self.heading_rad = math.remainder(self.heading_rad - turn_rad, math.tau)
+
+    def next_heading(self, frame_share: float = 1.0) -> float:
+        """Heading of this step, which counts for so much of one: less where the robot only turned."""
         if self.left <= 0:
             self.sweep_steps *= GROWTH
             self.left = round(self.sweep_steps)
             self.heading_rad = math.remainder(self.heading_rad + TURN_RAD, math.tau)
-        self.left -= 1
-        self.steps += 1
+        self.left -= frame_share
+        self.steps += frame_share
         return self.heading_rad
 
 

@@ -17,6 +17,10 @@ class SteadyHeading:
         self._kept_rad = 0.0
         self._flips = 0
 
+    def turned(self, turn_rad: float) -> None:
+        """The robot turned, counter-clockwise: what is kept is in its frame."""
+        self._kept_rad = math.remainder(self._kept_rad - turn_rad, math.tau)
+
     def follow(self, target: int, heading_rad: float, *, close: bool) -> float:
         """The heading to drive.
 

@@ -7,7 +7,6 @@ the robot has looked in vain for long.
 
 import logging
 from collections.abc import Mapping
-from dataclasses import replace
 
 from services.planner.mapping.reach import claims, distances, in_reach, nodes_nearby
 from services.planner.ports import MapAccess, Matcher, Matches, Observation
@@ -82,7 +81,7 @@ class Tracker:
         """A new frame, and how far the robot went since the one before."""
         self._at.before, self._at.now = self._at.now, observation.features
         if self.here is not None:
-            self.here = self.here.moved(observation.moved_m)
+            self.here = self.here.moved(observation.moved)
 
     def nearby(self) -> list[int]:
         """Nodes around where the robot is."""
@@ -134,7 +133,7 @@ class Tracker:
         if self.here is None or best.spread_m <= self.here.spread_m or self.here.node_id not in graph.nodes:
             self.here = best
         elif self.here.node_id in matches and (yaw := matches[self.here.node_id].yaw_rad) is not None:
-            self.here = replace(self.here, yaw_rad=-yaw)
+            self.here = self.here.facing(-yaw)
 
     def standing_at(self, node_id: int, matches: Matches) -> Displacement:
         """Where the robot is relative to a node it travelled to, by what it sees and what it did.

@@ -85,12 +85,16 @@ def may_advance(
     return beside and s_there > profile.travel.s_via_min
 
 
-def speed_fraction(match: NodeMatch, graph: MapGraph) -> float:
-    """Slow down towards the end of a path, as disparity and matches tell the distance."""
+def way_left_m(match: NodeMatch, graph: MapGraph) -> float | None:
+    """About how far a waypoint is, as disparity and matches tell; None where they do not."""
     if match.disparity_rad is None:
-        return 1.0
+        return None
     by_disparity_m = openness(graph, match.node_id) * match.disparity_rad / ROOM_RAD_PER_M
-    left_m = max(by_disparity_m, NEARER_SHARE * length_m(match, graph))
+    return max(by_disparity_m, NEARER_SHARE * length_m(match, graph))
+
+
+def speed_fraction(left_m: float) -> float:
+    """Slow down towards the end of a path."""
     return min(1.0, max(SLOWEST, left_m / SLOW_M))
 
 

@@ -26,7 +26,7 @@ from foxglove.messages import (
 from PIL import Image
 
 from shared.messages.base import Message
-from shared.messages.drive import Command, Heading
+from shared.messages.drive import Heading, Velocity
 from shared.messages.missions import Event
 from shared.messages.sensors import Frame, Ranges
 
@@ -36,9 +36,9 @@ MAX_STAMP_NS = 2**32 * 10**9 - 1
 """Foxglove counts seconds in 32 bits."""
 
 HEADING_LENGTH_M = 1.0  # seen beside the robot of 0.5 m
-COMMAND_M_PER_RADPS = 0.1  # full speed indoors (5 rad/s) is half a metre long
+VELOCITY_M_PER_MPS = 1.25  # full speed indoors (0.4 m/s) is half a metre long
 HEADING_COLOR = Color(r=0.2, g=0.4, b=1.0, a=1.0)
-COMMAND_COLOR = Color(r=0.1, g=0.7, b=0.3, a=1.0)
+VELOCITY_COLOR = Color(r=0.1, g=0.7, b=0.3, a=1.0)
 AVOIDING_COLOR = Color(r=1.0, g=0.5, b=0.0, a=1.0)
 
 EVERY_STEP = {"heading", "hold"}
@@ -97,8 +97,8 @@ def draw(message: Message, arrived_ns: int) -> Sequence[Drawing]:
         return [Drawing("scan", _scan(message, stamp))]
     if isinstance(message, Heading):
         return [Drawing("arrow", _heading_arrow(message, stamp))]
-    if isinstance(message, Command):
-        return [Drawing("arrow", _command_arrow(message, stamp))]
+    if isinstance(message, Velocity):
+        return [Drawing("arrow", _velocity_arrow(message, stamp))]
     if isinstance(message, Event):
         return [Drawing("log", _log(message, stamp))]
     return []
@@ -163,15 +163,14 @@ def _heading_arrow(heading: Heading, stamp: Timestamp) -> SceneUpdate:
     return _arrow(name, heading.robot, stamp, heading.heading_rad, length_m, HEADING_COLOR)
 
 
-def _command_arrow(command: Command, stamp: Timestamp) -> SceneUpdate:
-    backwards = command.wheel_speed_radps < 0
+def _velocity_arrow(velocity: Velocity, stamp: Timestamp) -> SceneUpdate:
     return _arrow(
-        f"{command.robot} command",
-        command.robot,
+        f"{velocity.robot} velocity",
+        velocity.robot,
         stamp,
-        command.steer_rad + (math.pi if backwards else 0.0),
-        COMMAND_M_PER_RADPS * abs(command.wheel_speed_radps),
-        AVOIDING_COLOR if command.avoiding else COMMAND_COLOR,
+        math.atan2(velocity.left_mps, velocity.forward_mps),
+        VELOCITY_M_PER_MPS * velocity.speed_mps,
+        AVOIDING_COLOR if velocity.avoiding else VELOCITY_COLOR,
     )
 
 

@@ -112,7 +112,7 @@ def hanging_apart(graph: MapGraph, claims: Mapping[int, Claim], here: Displaceme
 def _contradiction(pose: RelativePose, claim: Claim, here: Displacement, longest_m: float) -> str:
     """Why the node cannot be where the frame sees it; "" when it can."""
     yaw_miss = abs(math.remainder(here.yaw_rad + claim.yaw_rad - pose.yaw_rad, math.tau))
-    if yaw_miss > YAW_RAD + STDS * pose.yaw_std_rad:
+    if yaw_miss > YAW_RAD + STDS * math.hypot(pose.yaw_std_rad, here.yaw_std_rad):
         return f"would be turned by {math.degrees(yaw_miss):.0f} degrees: yaws round the loop do not close"
     gap = pose.position_m - np.array([here.x_m, here.y_m])
     covariance = pose.covariance_m2 + here.spread_m**2 * np.eye(2)
@@ -129,7 +129,7 @@ def _contradiction(pose: RelativePose, claim: Claim, here: Displacement, longest
     least_m, most_m = claimed_m / LENGTH_FACTOR - SPOT_M, claimed_m * LENGTH_FACTOR + SPOT_M
     ahead_m, aside_m = float(gap @ along), float(gap @ across)
     beyond = max(least_m - ahead_m, ahead_m - most_m, 0.0) / max(_std(covariance, along), 1e-6)
-    bearing_m = max(BEARING_RAD, claim.heading_std_rad) * far_m
+    bearing_m = max(BEARING_RAD, claim.heading_std_rad, here.yaw_std_rad) * far_m
     aside = aside_m / math.hypot(_std(covariance, across), bearing_m, SPOT_M / STDS)
     if math.hypot(beyond, aside) <= STDS:
         return ""

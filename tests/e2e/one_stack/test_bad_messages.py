@@ -9,7 +9,7 @@ import pytest
 import zenoh
 
 from shared.bus import wait_until
-from shared.messages.drive import Command, Heading
+from shared.messages.drive import Heading, Velocity
 from shared.messages.features import Features
 from shared.messages.maps import DeleteNode, MapRequest
 from shared.messages.matching import MatchRequest
@@ -60,12 +60,12 @@ STREAMS = [
     pytest.param("command", bytes(20_000), "simulator", "at most 10000 bytes", id="huge command"),
     pytest.param(
         "command",
-        altered(Command(robot="r1"), wheel_speed_radps=1e9),
+        altered(Velocity(robot="r1"), forward_mps=1e9),
         "simulator",
-        "wheel_speed_radps",
+        "forward_mps",
         id="command beyond all limits",
     ),
-    pytest.param("command", b"\x81" * 5_000, "simulator", "command.v1", id="nested too deeply"),
+    pytest.param("command", b"\x81" * 5_000, "simulator", "velocity.v1", id="nested too deeply"),
 ]
 
 QUESTIONS = [

@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from shared.bus import Bus, open_bus, wait_until
-from shared.messages.drive import Command, Heading
+from shared.messages.drive import Heading, Velocity
 from shared.messages.estop import EStopRequest, EStopState
 from shared.messages.sensors import Ranges
-from shared.topics import COMMAND, ESTOP, ESTOP_STATE, HEADING, RANGES, ROBOT_ESTOP_STATE
+from shared.topics import ESTOP, ESTOP_STATE, HEADING, RANGES, ROBOT_ESTOP_STATE, VELOCITY
 
 START_S, SOON_S = 60.0, 30.0
 """Long enough where other processes take most of the machine, and may stop ours for seconds."""
@@ -27,8 +27,8 @@ class Neighbours:
         self.bus = bus
         self._headings, self._ranges = bus.publisher(HEADING, robot="r1"), bus.publisher(RANGES, robot="r1")
         self.robot_estop = bus.publisher(ROBOT_ESTOP_STATE, robot="r1")
-        self._commands = bus.subscribe(COMMAND, robot="r1")
-        self.newest: Command | None = None
+        self._commands = bus.subscribe(VELOCITY, robot="r1")
+        self.newest: Velocity | None = None
         self._frames = count(1)
         self.estop_states = bus.subscribe(ESTOP_STATE, robot="r1")
 
@@ -61,8 +61,8 @@ class Neighbours:
         self,
         during_s: float,
         act: Callable[[], None] = lambda: None,
-        until: Callable[[list[Command]], bool] = lambda _: True,
-    ) -> list[Command]:
+        until: Callable[[list[Velocity]], bool] = lambda _: True,
+    ) -> list[Velocity]:
         """All commands of a while in which `act` is done again and again; it goes on until `until` holds."""
         began_s, came = time.monotonic(), []
         while (gone_s := time.monotonic() - began_s) < during_s or (not until(came) and gone_s < SOON_S):
@@ -74,7 +74,7 @@ class Neighbours:
 
     def drives(self, act: Callable[[], None]) -> bool:
         """Whether `act`, repeated, makes drive turn the wheels."""
-        return wait_until(lambda: any(c.wheel_speed_radps for c in self.commands(0.1, act)), SOON_S)
+        return wait_until(lambda: any(c.speed_mps for c in self.commands(0.1, act)), SOON_S)
 
     def estop(self, action: str, who: str = "", why: str = "") -> EStopState:
         return self.bus.ask(ESTOP, EStopRequest(action=action, who=who, why=why), SOON_S, robot="r1")

@@ -27,7 +27,7 @@ def go(neighbours, **changes):
 
 
 def still(commands):
-    return all(command.wheel_speed_radps == 0.0 for command in commands)
+    return all(command.stands for command in commands)
 
 
 def several(commands):
@@ -112,7 +112,7 @@ def test_of_two_planners_the_lower_epoch_is_refused(start, neighbours):
     older = go(neighbours, epoch=4, heading_rad=-0.5)
     answers = neighbours.commands(1.2, older, lambda _: still([neighbours.newest]))
     assert still([c for c in answers if c.epoch == 4])
-    assert not any(command.steer_rad < 0.0 for command in answers)
+    assert not any(command.left_mps < 0.0 for command in answers)
     assert still([neighbours.newest])  # the newer planner's heading expired meanwhile
     assert neighbours.drives(go(neighbours, epoch=6))
 

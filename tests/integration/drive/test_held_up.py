@@ -47,7 +47,7 @@ class Clocked:
     def moving(self) -> bool:
         self._neighbours.commands(0.1)
         newest = self._neighbours.newest
-        return newest is not None and newest.wheel_speed_radps != 0.0
+        return newest is not None and not newest.stands
 
 
 @pytest.fixture

@@ -71,7 +71,7 @@ def test_robot_is_stopped_by_a_model_where_its_sensors_say(example):
     simulation = Simulation(example, SMALL.model_copy(update={"render": False}), seed=1)
     simulation.reset(0, pose=(float(start[0]), float(start[1]), heading))
     ahead = simulation.ranges()[0]
-    simulation.command(0.0, 5.0, ttl_s=20.0)
+    simulation.command(0.4, ttl_s=20.0)
     simulation.step(6.0)
     truth = simulation.truth()
     radius = simulation.settings.robot.body_radius_m

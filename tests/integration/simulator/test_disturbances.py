@@ -104,7 +104,7 @@ def test_mount_leans_every_picture_alike_and_gravity_tells(world, clear_picture)
 def test_rocking_leans_pictures_of_a_robot_that_drives_and_of_no_other(world, clear_picture):
     rocking, plain = simulated(world, rocking=1.0), simulated(world)
     for simulation in (rocking, plain):
-        simulation.command(0.0, 5.0)
+        simulation.command(0.4)
         simulation.step(0.9)
     assert (rocking.panorama() != plain.panorama()).any()
     rocking.reset(1)

@@ -11,11 +11,11 @@ from typer.testing import CliRunner
 
 from services.launcher.commands.world import app
 from shared.bus import Bus, open_bus, wait_until
-from shared.messages.drive import Command
+from shared.messages.drive import Velocity
 from shared.messages.estop import EStopState
 from shared.messages.simulation import Pose, SimulationRequest
 from shared.queries import RefusedError
-from shared.topics import COMMAND, ESTOP_STATE, FRAME, RANGES, ROBOT_ESTOP_STATE, SIMULATION, TRUTH
+from shared.topics import ESTOP_STATE, FRAME, RANGES, ROBOT_ESTOP_STATE, SIMULATION, TRUTH, VELOCITY
 
 pytestmark = [pytest.mark.render, pytest.mark.usefixtures("patient_sessions")]
 START_S, SOON_S = 90.0, 60.0
@@ -33,7 +33,7 @@ class Peer:
     def __init__(self, bus: Bus) -> None:
         self.bus = bus
         self._in = [bus.subscribe(topic, robot="r1") for topic in (FRAME, RANGES, TRUTH)]
-        self._commands = bus.publisher(COMMAND, robot="r1")
+        self._commands = bus.publisher(VELOCITY, robot="r1")
         self._estop_states = bus.publisher(ESTOP_STATE, robot="r1")
         self.robot_estop = bus.subscribe(ROBOT_ESTOP_STATE, robot="r1")
         self.frame = self.ranges = self.truth = None
@@ -58,11 +58,9 @@ class Peer:
         """Everything of frame `seq` (or later) is here."""
         return all(m is not None and m.seq >= seq for m in (self.frame, self.ranges, self.truth))
 
-    def command(self, seq, steer_rad=0.0, wheel_speed_radps=4.0, ttl_ms=500):
+    def command(self, seq, forward_mps=0.32, left_mps=0.0, ttl_ms=500):
         self._commands.put(
-            Command(
-                seq=seq, robot="r1", steer_rad=steer_rad, wheel_speed_radps=wheel_speed_radps, ttl_ms=ttl_ms
-            )
+            Velocity(seq=seq, robot="r1", forward_mps=forward_mps, left_mps=left_mps, ttl_ms=ttl_ms)
         )
 
     def answer(self, seq):
@@ -181,7 +179,7 @@ def test_real_time_runs_by_itself_and_stops_when_commands_end(start):
     peer = start(lockstep=False)
     assert not peer.frame.lockstep
     peer.wait_for(lambda: peer.truth is not None and peer.frame.seq > 3)
-    turn = {"steer_rad": 1.0, "wheel_speed_radps": 5.0, "ttl_ms": 300}
+    turn = {"forward_mps": 0.22, "left_mps": 0.34, "ttl_ms": 300}
     peer.wait_for(lambda: peer.truth.speed_mps > 0.1 or peer.command(peer.frame.seq, **turn))
     # No command after this. Time is that of the robot: of what it stood still as a process, it drives little.
     moving_s = peer.truth.sim_time_s

@@ -13,11 +13,11 @@ import zenoh
 
 from shared.bus import Bus, open_bus, wait_until
 from shared.inbox import Inbox
-from shared.messages.drive import Command
+from shared.messages.drive import Velocity
 from shared.messages.maps import MapDelta, MapReply, MapRequest
 from shared.messages.missions import Event, MissionStatus
 from shared.queries import AbsentError, RefusedError, Requests, TimedOutError
-from shared.topics import COMMAND, EVENT, MAP, MAP_DELTA, STATUS
+from shared.topics import EVENT, MAP, MAP_DELTA, STATUS, VELOCITY
 from shared.transport.router_config import router_config
 from shared.wire import WireError
 
@@ -44,14 +44,14 @@ def collected(inbox: Inbox, enough: Callable[[list], bool]) -> list:
 
 
 def test_commands_are_newest_only(here: Bus, there: Bus):
-    inbox, publisher = there.subscribe(COMMAND, robot="*"), here.publisher(COMMAND, robot="r1")
-    linked(lambda: publisher.put(Command(robot="r1")), inbox)
+    inbox, publisher = there.subscribe(VELOCITY, robot="*"), here.publisher(VELOCITY, robot="r1")
+    linked(lambda: publisher.put(Velocity(robot="r1")), inbox)
     for number in range(1, 51):
-        publisher.put(Command(robot="r1", seq=number))
+        publisher.put(Velocity(robot="r1", seq=number))
     seen: list[int] = []
 
     def newest_came() -> bool:
-        publisher.put(Command(robot="r1", seq=50))  # any single command may be dropped under load
+        publisher.put(Velocity(robot="r1", seq=50))  # any single command may be dropped under load
         seen.extend(message.seq for message in inbox.take_all())
         return bool(seen) and seen[-1] == 50
 
@@ -93,18 +93,18 @@ def test_a_message_too_long_for_its_topic_fails_at_the_sender(here: Bus):
 
 def test_putting_on_a_closed_bus_is_an_error_and_closing_twice_is_none(router_endpoint: str):
     with open_bus(router_endpoint) as bus:
-        publisher = bus.publisher(COMMAND, robot="r1")
+        publisher = bus.publisher(VELOCITY, robot="r1")
         bus.close()
         with pytest.raises(zenoh.ZError):
-            publisher.put(Command(robot="r1"))
+            publisher.put(Velocity(robot="r1"))
 
 
 def test_publishers_and_subscribers_check_names(here: Bus):
     for name in ("a/b", "R1", "", "r1/**"):
         with pytest.raises(ValueError, match="a robot's name must match"):
-            here.publisher(COMMAND, robot=name)
+            here.publisher(VELOCITY, robot=name)
         with pytest.raises(ValueError, match="a robot's name must match"):
-            here.subscribe(COMMAND, robot=name)
+            here.subscribe(VELOCITY, robot=name)
 
 
 class Asking:

@@ -7,17 +7,17 @@ from types import SimpleNamespace
 import pytest
 
 from shared.inbox import Counters, Inbox
-from shared.messages.drive import Command
+from shared.messages.drive import Velocity
 from shared.wire import encode
 
 
-def inbox(capacity: int, counters: Counters | None = None) -> Inbox[Command]:
-    return Inbox(Command, 10_000, capacity, threading.Event(), counters or Counters())
+def inbox(capacity: int, counters: Counters | None = None) -> Inbox[Velocity]:
+    return Inbox(Velocity, 10_000, capacity, threading.Event(), counters or Counters())
 
 
-def push(box: Inbox[Command], *numbers: int) -> None:
+def push(box: Inbox[Velocity], *numbers: int) -> None:
     for number in numbers:
-        box.push(encode(Command(robot="r1", seq=number)))
+        box.push(encode(Velocity(robot="r1", seq=number)))
 
 
 def test_an_inbox_of_one_keeps_the_newest():
@@ -44,7 +44,7 @@ def test_losing_old_frames_on_purpose_is_no_overflow():
 def test_malformed_payloads_are_counted_and_skipped():
     counters = Counters()
     box = inbox(8, counters)
-    for junk in (b"", b"\xc1", b"\x91" * 5_000, encode(Command(robot="r1"))[:-1], bytes(10_001)):
+    for junk in (b"", b"\xc1", b"\x91" * 5_000, encode(Velocity(robot="r1"))[:-1], bytes(10_001)):
         box.push(junk)
     push(box, 7)
     assert [message.seq for message in box.take_all()] == [7]
@@ -80,7 +80,7 @@ def test_payloads_that_are_too_long_are_not_kept_and_all_together_are_bounded(
 ):
     monkeypatch.setattr("shared.inbox.QUEUE_BYTES", 1_000)
     counters = Counters()
-    box = Inbox(Command, 400, 1024, threading.Event(), counters)
+    box = Inbox(Velocity, 400, 1024, threading.Event(), counters)
     box.push(bytes(401))
     assert counters.snapshot() == {"malformed": 1}
     for _ in range(10):

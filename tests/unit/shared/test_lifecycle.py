@@ -20,10 +20,10 @@ SERVICE = """
 import sys
 from shared.lifecycle import run_service
 from shared.settings import ServiceSettings
-from shared.topics import COMMAND
+from shared.topics import VELOCITY
 
 def loop(bus, stop):
-    bus.subscribe(COMMAND, robot="*")
+    bus.subscribe(VELOCITY, robot="*")
     bus.watch_alive(lambda *_: None)
     bus.announce("drive")
     print("ready", flush=True)

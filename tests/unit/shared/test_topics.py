@@ -2,7 +2,7 @@
 
 import pytest
 
-from shared.topics import COMMAND, FRAME, MAP, MISSION_RECORD, QUERIES, TOPICS
+from shared.topics import FRAME, MAP, MISSION_RECORD, QUERIES, TOPICS, VELOCITY
 from shared.transport.keys import RESERVED, alive_key, robot_key
 
 
@@ -17,14 +17,14 @@ def test_a_key_is_its_template_with_the_names_in_place():
 )
 def test_names_outside_the_rule_are_refused(name: str):
     with pytest.raises(ValueError, match=r"a robot's name must match \[a-z0-9_-\]"):
-        COMMAND.key(robot=name)
+        VELOCITY.key(robot=name)
     with pytest.raises(ValueError, match=r"map must match \[a-z0-9_-\]"):
         MAP.key(map=name)
 
 
 @pytest.mark.parametrize("name", RESERVED)
 def test_no_robot_has_a_name_that_begins_other_keys(name: str):
-    for key in (COMMAND.key, MISSION_RECORD.key, lambda robot: robot_key(robot, "*")):
+    for key in (VELOCITY.key, MISSION_RECORD.key, lambda robot: robot_key(robot, "*")):
         with pytest.raises(ValueError, match=f"begin keys of no robot; got '{name}'"):
             key(robot=name)
     assert MAP.key(map=name) == f"topnav/maps/{name}/graph"

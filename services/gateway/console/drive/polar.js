@@ -19,12 +19,12 @@ export class Polar {
     this.ranges = null;
     this.heading = null;
     this.match = null;
-    this.command = null;
+    this.velocity = null;
     this.draw();
   }
 
-  takeCommand(command) {
-    this.command = command;
+  takeVelocity(velocity) {
+    this.velocity = velocity;
     $("polar-facts").textContent = this.words();
   }
 
@@ -98,7 +98,7 @@ export class Polar {
     const parts = [];
     if (this.ranges) parts.push(`nearest ${Math.min(...this.ranges.distances_m).toFixed(2)} m`);
     if (this.heading) parts.push(this.heading.action === "hold" ? "holding" : `going ${side(this.heading.heading_rad)}`);
-    if (this.command) parts.push(`${this.command.wheel_speed_radps.toFixed(1)} rad/s${this.command.avoiding ? ", avoiding" : ""}`);
+    if (this.velocity) parts.push(`${Math.hypot(this.velocity.forward_mps, this.velocity.left_mps).toFixed(2)} m/s${this.velocity.avoiding ? ", avoiding" : ""}`);
     return parts.join(", ");
   }
 }

@@ -75,7 +75,7 @@ export const TEXT = {
   nothingDecided: "Nothing decided yet.",
   nothingFits: "No decision fits the filter.",
   noRuns: "Nothing has run yet.",
-  chart: { similarity: "similarity S", heading: "heading, degrees left", speed: "wheel speed, rad/s" },
+  chart: { similarity: "similarity S", heading: "heading, degrees left", speed: "speed, m/s" },
   step: (step) => `step ${step}`,
   rename: "Rename",
   export: "Export",

@@ -27,8 +27,8 @@ export class History {
     this.now.heading = heading.action === "go" ? Math.atan2(Math.sin(heading.heading_rad), Math.cos(heading.heading_rad)) * DEG : null;
   }
 
-  takeCommand(command) {
-    this.now.speed = command.wheel_speed_radps;
+  takeVelocity(velocity) {
+    this.now.speed = Math.hypot(velocity.forward_mps, velocity.left_mps);
   }
 
   takeStatus(status) {

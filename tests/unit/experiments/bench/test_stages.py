@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from experiments.bench.stages import Arrival, latency, stage_durations_ms, table
-from shared.messages.drive import Command, Heading
+from shared.messages.drive import Heading, Velocity
 from shared.messages.features import Features
 from shared.messages.missions import Event, EventValue
 from shared.messages.sensors import Frame
@@ -25,7 +25,7 @@ def cycle(seq, start_s):
         ),
         Arrival("features", start_s + 0.050, features(seq)),
         Arrival("heading", start_s + 0.080, Heading(seq=seq, stamp_ns=seq, robot="r1")),
-        Arrival("command", start_s + 0.081, Command(seq=seq, stamp_ns=seq, robot="r1")),
+        Arrival("command", start_s + 0.081, Velocity(seq=seq, stamp_ns=seq, robot="r1")),
     ]
 
 
@@ -55,7 +55,7 @@ def heard(frames, commands):
     """Arrivals of frames and commands at these seconds, by number."""
     picture = {"encoding": "bgr8", "width_px": 2, "height_px": 1, "data": bytes(6)}
     messages = [("frame", s, Frame(seq=k, robot="r1", **picture)) for k, s in frames.items()]
-    messages += [("command", s, Command(seq=k, robot="r1")) for k, s in commands.items()]
+    messages += [("command", s, Velocity(seq=k, robot="r1")) for k, s in commands.items()]
     return [Arrival(*message) for message in messages]
 
 

@@ -8,7 +8,7 @@ import pytest
 from experiments.calibration.recordings import stops_of, straight_pairs
 from services.recorder.backlog import Sample
 from services.recorder.recording import RecordingWriter
-from shared.messages.drive import Command
+from shared.messages.drive import Velocity
 from shared.messages.sensors import Frame
 from shared.wire import encode
 
@@ -29,12 +29,18 @@ def frame(seq):
     return Sample("topnav/r1/frame", encode(sent), seq)
 
 
-def command(robot, seq, steer_rad):
-    speed_radps = STEP_M / (1e-9 * PERIOD_NS) / 0.08
-    sent = Command(
-        robot=robot, seq=seq, stamp_ns=1 + seq * PERIOD_NS, steer_rad=steer_rad, wheel_speed_radps=speed_radps
+def command(robot, seq, way_rad):
+    speed_mps = STEP_M / (1e-9 * PERIOD_NS)
+    stamp_ns = 1 + seq * PERIOD_NS
+    sent = Velocity(
+        robot=robot,
+        seq=seq,
+        stamp_ns=stamp_ns,
+        at_ns=stamp_ns,
+        forward_mps=speed_mps * math.cos(way_rad),
+        left_mps=speed_mps * math.sin(way_rad),
     )
-    return Sample(f"topnav/{robot}/command", encode(sent), seq)
+    return Sample(f"topnav/{robot}/velocity", encode(sent), seq)
 
 
 @pytest.fixture

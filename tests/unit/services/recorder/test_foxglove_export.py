@@ -20,7 +20,7 @@ from services.recorder.foxglove.export import export
 from services.recorder.foxglove.plain_json import plain_json, plain_schema
 from services.recorder.recording import RecordingWriter, recover
 from shared.messages.base import Message
-from shared.messages.drive import Command, Heading
+from shared.messages.drive import Heading, Velocity
 from shared.messages.features import Features
 from shared.messages.maps import AddNode, MapDelta, Node, PutEdge
 from shared.messages.missions import Event, EventValue, MissionStatus
@@ -126,7 +126,7 @@ def walk():
         yield "r1/frame", frame(seq)
         yield "r1/ranges", ranges()
         yield "r1/heading", Heading(robot="r1", seq=seq, heading_rad=0.5, s_cv=10 * seq)
-        yield "r1/command", Command(robot="r1", seq=seq, steer_rad=0.5, wheel_speed_radps=5.0)
+        yield "r1/velocity", Velocity(robot="r1", seq=seq, forward_mps=0.35, left_mps=0.19)
         yield "r1/status", MissionStatus(robot="r1", step=seq, similarity=7)
         yield "r1/event", Event(robot="r1", step=seq, kind="heading", reason="to node 3")
 
@@ -141,8 +141,8 @@ def test_every_message_is_there_as_json_and_as_what_foxglove_draws(tmp_path):
         "topnav/r1/ranges/scan": {"foxglove.LaserScan"},
         "topnav/r1/heading": {"heading.v1"},
         "topnav/r1/heading/arrow": {"foxglove.SceneUpdate"},
-        "topnav/r1/command": {"command.v1"},
-        "topnav/r1/command/arrow": {"foxglove.SceneUpdate"},
+        "topnav/r1/velocity": {"velocity.v1"},
+        "topnav/r1/velocity/arrow": {"foxglove.SceneUpdate"},
         "topnav/r1/status": {"mission_status.v1"},
         "topnav/r1/event": {"event.v1"},
         "topnav/r1/event/log": {"foxglove.Log"},
@@ -210,8 +210,12 @@ def test_distances_at_uneven_angles_are_no_scan_but_numbers(tmp_path):
     ("message", "yaw_rad", "length_m"),
     [
         (Heading(robot="r1", heading_rad=-0.7), -0.7, 1.0),
-        (Command(robot="r1", steer_rad=0.3, wheel_speed_radps=5.0), 0.3, 0.5),
-        (Command(robot="r1", steer_rad=0.3, wheel_speed_radps=-5.0), 0.3 - math.pi, 0.5),
+        (Velocity(robot="r1", forward_mps=0.4 * math.cos(0.3), left_mps=0.4 * math.sin(0.3)), 0.3, 0.5),
+        (
+            Velocity(robot="r1", forward_mps=-0.4 * math.cos(0.3), left_mps=-0.4 * math.sin(0.3)),
+            0.3 - math.pi,
+            0.5,
+        ),
     ],
 )
 def test_an_arrow_points_where_the_robot_shall_go(tmp_path, message, yaw_rad, length_m):
@@ -225,7 +229,7 @@ def test_an_arrow_points_where_the_robot_shall_go(tmp_path, message, yaw_rad, le
     assert arrow[2][0] + arrow[4][0] == pytest.approx(length_m)
 
 
-@pytest.mark.parametrize("message", [Heading(robot="r1", action="hold"), Command(robot="r1")])
+@pytest.mark.parametrize("message", [Heading(robot="r1", action="hold"), Velocity(robot="r1")])
 def test_a_robot_that_stands_still_has_no_arrow(tmp_path, message):
     kind = type(message).__name__.lower()
     _, drawn = only(exported(tmp_path, [(f"r1/{kind}", message)]), f"topnav/r1/{kind}/arrow")

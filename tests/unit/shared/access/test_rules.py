@@ -79,12 +79,12 @@ def test_both_sides_of_the_emergency_stop_keep_to_the_table(repository):
 
 
 def test_the_reader_would_notice_a_planner_that_commands():
-    found = uses(ast.parse("self._x = bus.publisher(COMMAND, robot=r)\nbus.subscribe(TRUTH, robot=r)"))
-    assert forbidden(Role.PLANNER, found) == ["planner publisher COMMAND", "planner subscribe TRUTH"]
+    found = uses(ast.parse("self._x = bus.publisher(VELOCITY, robot=r)\nbus.subscribe(TRUTH, robot=r)"))
+    assert forbidden(Role.PLANNER, found) == ["planner publisher VELOCITY", "planner subscribe TRUTH"]
 
 
 def test_one_role_each_moves_the_robot_and_decides_where_to():
-    assert STREAMS[topics.COMMAND].speakers == {Role.DRIVE}
+    assert STREAMS[topics.VELOCITY].speakers == {Role.DRIVE}
     assert STREAMS[topics.HEADING].speakers == {Role.PLANNER}
     assert STREAMS[topics.ESTOP_STATE].speakers == {Role.DRIVE}
 

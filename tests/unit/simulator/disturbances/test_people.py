@@ -115,7 +115,7 @@ def test_sonar_sees_a_person_and_the_robot_bumps_into_it(busy):
     assert math.dist(busy._crowd.walkers[0].pose()[:2], (x_m, y_m)) < 1e-9
     assert busy.ranges()[0] == pytest.approx(1.2 - 0.24, abs=0.05)
     walker.figure = type(walker.figure)(walker.figure.looks, walker.figure.solid, 0.26, 0.0)
-    busy.command(0.0, 6.0)
+    busy.command(0.48)
     busy.step(4.0)
     assert busy.truth().collisions == 1
     assert busy.truth().x_m < x_m - 0.4
@@ -126,7 +126,7 @@ def test_people_walk_the_same_in_every_run(busy):
         busy.reset(7)
         readings = []
         for k in range(10):
-            busy.command(0.5 * k, 4.0, ttl_s=0.3)
+            busy.command(0.32 * math.cos(0.5 * k), 0.32 * math.sin(0.5 * k), ttl_s=0.3)
             busy.step(0.3)
             readings.append(tuple(busy.ranges()))
         return busy.truth(), readings

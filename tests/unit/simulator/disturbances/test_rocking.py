@@ -14,9 +14,12 @@ from simulator.world.world_file import WorldFile
 
 DT_S = 0.01
 SPEED_MPS = 0.4
-WHEEL_RADPS = 5.0  # the same on wheels of 0.08 m
 AHEAD, STILL = (SPEED_MPS, 0.0), (0.0, 0.0)
 NO_EDGE = Rocking(way_m=math.inf)
+
+
+def towards(heading_rad):
+    return SPEED_MPS * math.cos(heading_rad), SPEED_MPS * math.sin(heading_rad)
 
 
 def driven(state, velocities, seed=1):
@@ -109,7 +112,7 @@ def tilts_of_a_drive(simulation, seed, legs=4):
     for leg in range(legs):
         for _ in range(27):
             wanted_rad = heading_rad + math.pi * leg + 0.1 * rng.standard_normal()
-            simulation.command(wanted_rad, WHEEL_RADPS, 0.3)
+            simulation.command(*towards(wanted_rad), ttl_s=0.3)
             simulation.step(0.3)
             tilts += [simulation.rocked()] if simulation.truth().speed_mps > 0.1 else []
         simulation.step(2.0)
@@ -135,7 +138,7 @@ def test_a_drive_rocks_the_same_again_after_a_reset_and_half_as_much_at_half_the
 def test_reset_and_being_put_elsewhere_end_it_at_once(hall):
     for end in (lambda s: s.reset(1), lambda s: s.place_robot(5.0, 5.0, 0.0)):
         simulation = rocking_robot(hall, 1.0)
-        simulation.command(0.0, WHEEL_RADPS)
+        simulation.command(SPEED_MPS)
         simulation.step(1.5)
         assert simulation.rocked() != (0.0, 0.0)
         end(simulation)
@@ -144,7 +147,7 @@ def test_reset_and_being_put_elsewhere_end_it_at_once(hall):
 
 def test_imu_of_a_rocking_robot_reads_its_tilt(hall):
     simulation = rocking_robot(hall, 1.0)
-    simulation.command(0.3, WHEEL_RADPS)
+    simulation.command(*towards(0.3))
     errors = []
     for _ in range(100):
         simulation.step(0.1)

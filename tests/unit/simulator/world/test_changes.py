@@ -37,7 +37,7 @@ def ask(simulation):
 
 def drive_ahead(simulation, seconds=4.0):
     simulation.reset(1)
-    simulation.command(0.0, 6.0)
+    simulation.command(0.48)
     simulation.step(seconds)
     return simulation.truth()
 
@@ -63,7 +63,7 @@ def test_closed_gate_blocks_sonar_and_robot_and_opens_again(simulation):
 
 
 def test_robot_time_and_collisions_go_on_when_the_world_changes(simulation):
-    simulation.command(0.0, 4.0)
+    simulation.command(0.32)
     simulation.step(0.5)
     before = simulation.truth()
     simulation.set_item("gate", present=False)

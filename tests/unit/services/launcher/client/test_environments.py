@@ -16,8 +16,8 @@ def test_names_of_profiles_exist_in_planner_and_drive():
         for asked in ("default", "thesis"):
             name = place.profile(asked)
             assert profile_named(name).name == DriveSettings(profile=name).profile == name
-    assert DriveSettings(profile=OUTDOOR.profile("thesis")).limits().wheels.max_radps == 10.0
-    assert DriveSettings(profile=INDOOR.profile("thesis")).limits().wheels.max_radps == 5.0
+    assert DriveSettings(profile=OUTDOOR.profile("thesis")).limits().speeds.max_mps == 0.8
+    assert DriveSettings(profile=INDOOR.profile("thesis")).limits().speeds.max_mps == 0.4
 
 
 def test_how_a_robot_decides_is_the_same_everywhere():

@@ -12,10 +12,11 @@ from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.view_range import ROOM_HALF_M
 from shared.messages.maps import Edge, Node
 from shared.messages.sensors import Ranges
+from shared.motion.motion import Motion
 from tests.unit.services.planner.travel.seen import Maps, by_node, features, match
 from tests.unit.shared.mapgraph.local.places import inliers_at
 
-STEP_M = (0.12, 0.0)
+STEP = Motion(0.12, 0.0)
 ANGLES_RAD = tuple(math.radians(30 * n) for n in range(12))
 RANGES = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(4.0,) * 12, max_range_m=4.0)
 
@@ -46,7 +47,7 @@ def departure(matcher):
 
 def drive(departure, matcher, view):
     matcher.seen = view
-    return departure.step(Observation(features(), RANGES, STEP_M))
+    return departure.step(Observation(features(), RANGES, STEP))
 
 
 def behind(away_m, yaw_rad=0.0, confidence=0.9):
@@ -71,7 +72,7 @@ def test_a_node_seen_as_if_the_robot_had_turned_at_once_is_a_look_alike(departur
     assert decision.why.startswith("out of sight")
     assert abs(decision.heading_rad) == pytest.approx(math.pi), "back on the way it came"
     assert departure.here.yaw_rad == where.yaw_rad
-    assert departure.here.x_m == pytest.approx(where.x_m + STEP_M[0])
+    assert departure.here.x_m == pytest.approx(where.x_m + STEP.x_m)
 
 
 def test_an_unsure_bearing_does_not_say_where_the_robot_is(departure, matcher):
@@ -112,22 +113,22 @@ def beside():
 def walled(beside):
     """Frames beside node 0 with a jamb close ahead, until the robot stands at the node."""
     jamb = RANGES.model_copy(update={"distances_m": (0.3, 0.3, *RANGES.distances_m[3:], 0.3)})
-    first = beside.step(Observation(features(), jamb, (0.0, 0.0)))
-    second = beside.step(Observation(features(), jamb, (0.0, -0.12)))
+    first = beside.step(Observation(features(), jamb, Motion(0.0, 0.0)))
+    second = beside.step(Observation(features(), jamb, Motion(0.0, -0.12)))
     return [first, second], jamb
 
 
 def test_a_direction_blocked_beside_its_node_is_left_from_the_node_itself(beside):
     on_the_way, _ = walled(beside)
     assert [decision.heading_rad for decision in on_the_way] == pytest.approx([-math.pi / 2] * 2, abs=0.2)
-    at_the_node = beside.step(Observation(features(), RANGES, (0.0, -0.12)))
+    at_the_node = beside.step(Observation(features(), RANGES, Motion(0.0, -0.12)))
     assert at_the_node.heading_rad == pytest.approx(0.0)
     assert not beside.done
 
 
 def test_a_direction_blocked_at_its_node_too_is_closed(beside):
     _, jamb = walled(beside)
-    beside.step(Observation(features(), jamb, (0.0, -0.12)))
+    beside.step(Observation(features(), jamb, Motion(0.0, -0.12)))
     assert beside.done
 
 
@@ -140,7 +141,7 @@ def test_a_new_node_closes_the_direction_it_lies_in(matcher, aside_m, explored):
     while not isinstance(found, NewNode):
         matcher.seen = match(0, -departure.here.x_m, -departure.here.y_m, 60)
         matcher.seen = matcher.seen.model_copy(update={"confidence": 0.9})
-        found = departure.step(Observation(features(), RANGES, (0.0, 0.12)))
+        found = departure.step(Observation(features(), RANGES, Motion(0.0, 0.12)))
     assert maps.graph.nodes[0].explored[3] == explored
 
 
@@ -178,7 +179,7 @@ def test_a_node_is_made_at_the_end_of_a_long_way_though_one_far_off_is_still_lik
 
 
 def test_a_way_past_nodes_that_stay_near_is_closed(departure, matcher):
-    still = Observation(features(), RANGES, (0.12, 0.0))
+    still = Observation(features(), RANGES, Motion(0.12, 0.0))
     matcher.seen = match(0, -0.3, 0.0, 150)
     departure.here = Displacement(0, x_m=-1.3)
     while not departure.done:

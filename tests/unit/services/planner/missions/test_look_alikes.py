@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from services.drive.core import DriveLimits
+from services.drive.limits import DriveLimits
 from services.planner.missions.explore import FrontierExploration
 from services.planner.missions.goto import GoalDestination, Goto
 from services.planner.profiles import DEFAULT

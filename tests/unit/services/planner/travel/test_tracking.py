@@ -9,6 +9,7 @@ from services.planner.travel.tracking import PATIENCE_FRAMES, Tracker
 from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.local.displacement import Displacement
 from shared.messages.sensors import Ranges
+from shared.motion.motion import Motion
 from tests.unit.services.planner.travel.seen import Maps, Matcher, by_node, features, match
 from tests.unit.shared.mapgraph.local.grid import grid
 
@@ -36,7 +37,7 @@ def tracker(matcher):
 
 
 def drive(tracker, moved_m=(0.12, 0.0), seq=0):
-    tracker.observe(Observation(features(seq), RANGES, moved_m))
+    tracker.observe(Observation(features(seq), RANGES, Motion(*moved_m)))
 
 
 def test_a_look_alike_elsewhere_is_not_where_the_robot_is(tracker):

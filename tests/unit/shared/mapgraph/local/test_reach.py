@@ -8,6 +8,7 @@ from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement, seen_from
 from shared.mapgraph.local.reach import hanging_apart, out_of_reach
 from shared.messages.maps import Node
+from shared.motion.motion import Motion
 from tests.unit.shared.mapgraph.local.grid import claim, edge, grid
 
 GRAPH = grid(8, 3)
@@ -70,7 +71,7 @@ def test_a_node_on_an_edge_that_nobody_drove_is_where_its_matches_say(driven, ap
 
 
 def test_driving_adds_up_in_the_frame_of_the_node_and_grows_uncertain():
-    here = Displacement(3, yaw_rad=math.pi / 2).moved((1.0, 0.0)).moved((0.0, 1.0))
+    here = Displacement(3, yaw_rad=math.pi / 2).moved(Motion(1.0, 0.0)).moved(Motion(0.0, 1.0))
     assert math.dist((here.x_m, here.y_m), (-1.0, 1.0)) < 1e-9
     assert 0.2 < here.spread_m < 0.4
 

@@ -1,0 +1,1 @@
+"""How a robot moved from one moment to another: composed, integrated, reckoned."""
