@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Generic, TypeVar
 
-from shared.messages import drive, estop, features, maps, matching, missions, sensors, simulation
+from shared.messages import body, drive, estop, features, maps, matching, missions, sensors, simulation
 from shared.messages.base import Message
 from shared.transport.keys import fill
 
@@ -63,6 +63,11 @@ RANGES = Topic("topnav/{robot}/ranges", sensors.Ranges, Delivery.DATA, 10_000)
 FEATURES = Topic("topnav/{robot}/features", features.Features, Delivery.DATA, 8 * MB)
 HEADING = Topic("topnav/{robot}/heading", drive.Heading, Delivery.COMMAND, 10_000)
 COMMAND = Topic("topnav/{robot}/command", drive.Command, Delivery.COMMAND, 10_000)
+VELOCITY = Topic("topnav/{robot}/velocity", drive.Velocity, Delivery.COMMAND, 10_000)
+MANUAL = Topic("topnav/{robot}/manual", drive.Manual, Delivery.COMMAND, 10_000)
+ODOMETRY = Topic("topnav/{robot}/odometry", body.Odometry, Delivery.LOG, 10_000)
+IMU = Topic("topnav/{robot}/imu", body.Imu, Delivery.DATA, 10_000)
+BATTERY = Topic("topnav/{robot}/battery", body.Battery, Delivery.DATA, 10_000)
 ESTOP_STATE = Topic("topnav/{robot}/stopped", estop.EStopState, Delivery.COMMAND, 10_000)
 ROBOT_ESTOP_STATE = Topic("topnav/{robot}/standing", estop.EStopState, Delivery.COMMAND, 10_000)
 STATUS = Topic("topnav/{robot}/status", missions.MissionStatus, Delivery.LOG, 1 * MB)

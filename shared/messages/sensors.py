@@ -3,7 +3,7 @@
 import math
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from shared.messages.base import SECTORS, Message, Name
 
@@ -11,6 +11,16 @@ BytesPerPixel = 3
 Direction = tuple[float, float, float]
 NORM_TOLERANCE = 1e-3
 """Of a unit vector's length: what a vector of half-precision numbers is off by; all else is no direction."""
+
+
+def _of_length_one(gravity: Direction) -> Direction:
+    if abs(math.hypot(*gravity) - 1.0) > NORM_TOLERANCE:
+        raise ValueError(f"gravity must be a unit vector, got length {math.hypot(*gravity):.4g}")
+    return gravity
+
+
+Gravity = Annotated[Direction, AfterValidator(_of_length_one)]
+"""Where down is: a unit vector, x forward, y left, z up."""
 
 
 class Frame(Message):
@@ -29,7 +39,7 @@ class Frame(Message):
     width_px: int = Field(ge=2, le=16_384)
     height_px: int = Field(ge=1, le=8_192)
     data: bytes = Field(max_length=64_000_000)
-    gravity: Direction | None = None
+    gravity: Gravity | None = None
 
     @model_validator(mode="after")
     def _size_fits(self) -> "Frame":
@@ -39,13 +49,6 @@ class Frame(Message):
         if self.encoding == "bgr8" and len(self.data) != expected:
             raise ValueError(f"bgr8 frame needs {expected} bytes, got {len(self.data)}")
         return self
-
-    @field_validator("gravity")
-    @classmethod
-    def _of_length_one(cls, gravity: Direction | None) -> Direction | None:
-        if gravity is not None and abs(math.hypot(*gravity) - 1.0) > NORM_TOLERANCE:
-            raise ValueError(f"gravity must be a unit vector, got length {math.hypot(*gravity):.4g}")
-        return gravity
 
 
 class Ranges(Message):

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from shared.messages import drive, estop, maps, matching, sensors, simulation
+from shared.messages import body, drive, estop, maps, matching, sensors, simulation
 from shared.messages import features as looks
 from shared.messages import missions as orders
 from shared.messages.base import Message
@@ -152,6 +152,7 @@ def node_match() -> matching.NodeMatch:
 
 
 AT = {"seq": 7, "stamp_ns": STAMP_NS}
+MOTION = {"forward_mps": 0.5, "left_mps": -0.25, "turn_radps": 0.75}
 DRIVE = AT | {"robot": "r1", "epoch": 3, "ttl_ms": 300, "why": "ahead"}
 
 
@@ -168,6 +169,15 @@ def seen() -> tuple[Message, ...]:
             max_range_m=5.0,
             step_s=0.3,
         ),
+        body.Odometry(**AT, **MOTION, robot="r1", x_m=1.5, y_m=-2.5, yaw_rad=0.5),
+        body.Imu(
+            **AT,
+            robot="r1",
+            gravity=(0.6, 0.0, -0.8),
+            turn_radps=(0.0, 0.25, 0.5),
+            acceleration_mps2=(0.5, 0.0, -0.25),
+        ),
+        body.Battery(**AT, robot="r1", share=0.75, charging=True, voltage_v=12.5),
         features(),
         looks.ExtractRequest(**AT, frame=frame()),
         matching.MatchRequest(
@@ -208,6 +218,8 @@ def driven() -> tuple[Message, ...]:
             method="epipolar",
         ),
         drive.Command(**DRIVE, steer_rad=0.25, wheel_speed_radps=4.0, avoiding=True),
+        drive.Velocity(**DRIVE, **MOTION, at_ns=STAMP_NS, avoiding=True),
+        drive.Manual(**AT, **MOTION, robot="r1", who="anna", action="release", ttl_ms=300),
         estop.EStopRequest(**AT, action="clear", who="anna", why="the floor is free"),
         estop.EStopState(**AT, robot="r1", engaged=True, who="anna", why="a child", since_ns=STAMP_NS),
     )

@@ -13,6 +13,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from shared.messages.arrays import ArraySpec
+from shared.messages.body import Imu
 from shared.messages.features import Features
 from shared.messages.maps import Edge
 from shared.messages.matching import NodeMatch
@@ -131,10 +132,15 @@ def _fit_match(fields: Fields, count: int, seed: int) -> Fields:
 def _fit_frame(fields: Fields, count: int, seed: int) -> Fields:
     height = count + 1
     size = 6 * height * height if fields["encoding"] == "bgr8" else count
-    rng = np.random.default_rng(seed)
-    data, down = rng.bytes(size), rng.standard_normal(3)
-    gravity = None if fields["gravity"] is None else tuple((down / np.linalg.norm(down)).tolist())
-    return fields | {"height_px": height, "width_px": 2 * height, "data": data, "gravity": gravity}
+    data = np.random.default_rng(seed).bytes(size)
+    return _fit_gravity(fields, count, seed) | {"height_px": height, "width_px": 2 * height, "data": data}
+
+
+def _fit_gravity(fields: Fields, _count: int, seed: int) -> Fields:
+    if fields["gravity"] is None:
+        return fields
+    down = np.random.default_rng(seed).standard_normal(3)
+    return fields | {"gravity": tuple((down / np.linalg.norm(down)).tolist())}
 
 
 def _fit_edge(fields: Fields, _count: int, _seed: int) -> Fields:
@@ -145,6 +151,7 @@ def _fit_edge(fields: Fields, _count: int, _seed: int) -> Fields:
 FITS: dict[type[BaseModel], Callable[[Fields, int, int], Fields]] = {
     Features: _fit_features,
     NodeMatch: _fit_match,
+    Imu: _fit_gravity,
     Frame: _fit_frame,
     Edge: _fit_edge,
 }

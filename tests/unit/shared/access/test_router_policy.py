@@ -13,9 +13,15 @@ def keys(role: Role, flow: str, kind: str, robot: str = "r1") -> set[str]:
 
 
 def test_a_drive_service_commands_its_own_robot_only():
-    assert keys(Role.DRIVE, IN, "put", "r2") == {"topnav/r2/command", "topnav/r2/stopped"}
+    assert keys(Role.DRIVE, IN, "put", "r2") == {
+        "topnav/r2/command",
+        "topnav/r2/stopped",
+        "topnav/r2/velocity",
+    }
     assert keys(Role.DRIVE, OUT, "put", "r2") == {
         "topnav/r2/heading",
+        "topnav/r2/manual",
+        "topnav/r2/odometry",
         "topnav/r2/ranges",
         "topnav/r2/standing",
     }
