@@ -1,8 +1,8 @@
 """topnav's node in ROS 2's own interpreter: carries CDR bytes between rclpy and a socket.
 
-Run as a program with the number of the socket, by a Python that has rclpy. It imports nothing but rclpy and the
-standard library: the libraries of ROS and those of topnav never meet in one process. It ends when the other end
-of the socket does.
+Run as a program with the number of the socket and a name, by a Python that has rclpy. It imports nothing but
+rclpy and the standard library: the libraries of ROS and those of topnav never meet in one process. It ends
+when the other end of the socket does.
 
 Each way a frame is eight bytes (lengths of what follows, little-endian), a JSON object and a payload. `at` is
 monotonic time, which both processes share.
@@ -24,7 +24,6 @@ MOST_BYTES = 64_000_000
 """As wires/wire.py has it; a longer frame is no frame."""
 GRAPH_PERIOD_S = 0.5
 """How soon a publisher that comes or goes is told of; chosen: before anybody asks why nothing happens."""
-NODE = "topnav"
 
 Frame = tuple[dict[str, Any], bytes]
 
@@ -192,7 +191,7 @@ def main() -> None:
         outlet.send({"is": "fault", "fatal": True, "text": f"{sys.executable} has no rclpy: {error}"})
         return
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-    node = rclpy.create_node(NODE)
+    node = rclpy.create_node(sys.argv[2])
     side_car, executor = SideCar(node, outlet), SingleThreadedExecutor()
     executor.add_node(node)
     node.create_timer(GRAPH_PERIOD_S, side_car.tell_graph)

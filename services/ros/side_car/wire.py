@@ -1,4 +1,4 @@
-"""ROS 2 through rclpy, whatever its middleware: a process in ROS's own interpreter, and the bytes to and fro."""
+"""ROS 2 through rclpy, whatever its middleware: a process in ROS's own interpreter, bytes to and fro."""
 
 import logging
 import os
@@ -8,6 +8,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -137,6 +138,9 @@ class SideCarWire:
         header = {"do": what, "topic": topic, "kind": kind}
         self._outbox.send({**header, "reliable": quality.reliable, "depth": quality.depth})
 
+    def _reply(self, call: int, response: bytes) -> None:
+        self._outbox.send({"do": "answer", "call": call}, response)
+
     def _read(self) -> None:
         while (frame := read_frame(self._stream)) is not None:
             header, payload = frame
@@ -146,8 +150,7 @@ class SideCarWire:
                 case "graph":
                     self._graph = {role: _endpoints(header[role]) for role in ("MP", "MS")}
                 case "call":
-                    answer = self._answers[header["service"]](payload)
-                    self._outbox.send({"do": "answer", "call": header["call"]}, answer)
+                    self._answers[header["service"]](payload, partial(self._reply, header["call"]))
                 case "ready":
                     log.info("rclpy is up on %s", header["rmw"])
                     self._ready.set()
@@ -163,19 +166,20 @@ def _endpoints(told: Mapping[str, list[tuple[str, str]]]) -> dict[str, list[Endp
     return {topic: [Endpoint(*one) for one in those] for topic, those in told.items()}
 
 
-def open_side_car(python: str, setup: Path | None, domain: int) -> SideCarWire:
+def open_side_car(python: str, setup: Path | None, domain: int, node: str) -> SideCarWire:
     """Start a node in another interpreter.
 
     Args:
         python: the interpreter that has rclpy.
         setup: a file that the shell reads first, as /opt/ros/jazzy/setup.bash; None for wheels.
         domain: ROS_DOMAIN_ID.
+        node: its name.
 
     Raises:
         WireError: it does not start, or has no rclpy.
     """
     ours, theirs = socket.socketpair()
-    command = [python, str(PROGRAM), str(theirs.fileno())]
+    command = [python, str(PROGRAM), str(theirs.fileno()), node]
     if setup is not None:
         command = ["bash", "-c", 'source "$0" && exec "$@"', str(setup), *command]
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}

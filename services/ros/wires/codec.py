@@ -21,9 +21,9 @@ NO_HASH = "TypeHashNotSupported"
 EVENT_INFO = "service_msgs/msg/ServiceEventInfo"
 SERVICES = {
     "std_srvs/srv/Trigger": ("", "bool success\nstring message"),
-    "std_srvs/srv/SetBool": ("bool data", "bool success\nstring message"),
 }
-"""Request and response of the services that topnav offers, as std_srvs defines them; rosbags has messages only."""
+"""Request and response of the services that topnav offers, as std_srvs defines them; rosbags has messages
+only."""
 
 EVENT_INFO_TEXT = """uint8 event_type
 builtin_interfaces/Time stamp
@@ -83,7 +83,7 @@ class Codec:
         return self._store.hash_rihs01(kind) if self._hashed else NO_HASH
 
     def _define(self, service: str) -> None:
-        """Add a service: its two messages, the event that pairs them, and the three together, for the hash."""
+        """Add a service: its two messages, the event that pairs them, and all together, for the hash."""
         request, response, event = (f"{service}_{part}" for part in ("Request", "Response", "Event"))
         definitions: dict[str, Any] = {}
         for name, text in zip((request, response), SERVICES[service], strict=True):

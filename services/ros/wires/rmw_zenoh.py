@@ -1,6 +1,7 @@
 """Keys, tokens and attachments of rmw_zenoh: what its nodes say to each other through a Zenoh router. Pure.
 
-Source: ros2/rmw_zenoh, docs/design.md, and rmw_zenoh_cpp/src/detail/{liveliness_utils,attachment_helpers}.cpp.
+Source: ros2/rmw_zenoh, docs/design.md, and
+rmw_zenoh_cpp/src/detail/{liveliness_utils,attachment_helpers}.cpp.
 """
 
 import struct
@@ -9,7 +10,7 @@ from dataclasses import dataclass
 import xxhash
 
 from services.ros.wires.codec import Codec, dds_name, ros_name
-from services.ros.wires.wire import NODE, Endpoint, Quality
+from services.ros.wires.wire import Endpoint, Quality
 
 ADMIN_SPACE = "@ros2_lv"
 TOKEN_PARTS = 13
@@ -31,11 +32,13 @@ class RmwZenohNames:
     Attributes:
         codec: knows the type hashes, without which a key is heard by nobody.
         domain: ROS_DOMAIN_ID.
+        node: name of the node.
         session: id of the Zenoh session, as Zenoh writes it.
     """
 
     codec: Codec
     domain: int
+    node: str
     session: str
 
     def data_key(self, name: str, kind: str) -> str:
@@ -48,14 +51,14 @@ class RmwZenohNames:
 
     def node_token(self) -> str | None:
         """Token of the node."""
-        return f"{ADMIN_SPACE}/{self.domain}/{self.session}/0/0/NN/%/%/{NODE}"
+        return f"{ADMIN_SPACE}/{self.domain}/{self.session}/0/0/NN/%/%/{self.node}"
 
     def token(self, entity: int, role: str, name: str, kind: str, quality: Quality) -> str:
         """Token of a publisher (MP), subscriber (MS) or server (SS): what `ros2 topic list` reads."""
         reliability = "" if quality.reliable else BEST_EFFORT
         depth = "" if quality.depth == DEFAULT_DEPTH else quality.depth
         return (
-            f"{ADMIN_SPACE}/{self.domain}/{self.session}/0/{entity}/{role}/%/%/{NODE}/"
+            f"{ADMIN_SPACE}/{self.domain}/{self.session}/0/{entity}/{role}/%/%/{self.node}/"
             f"{name.replace('/', '%')}/{dds_name(kind)}/{self.codec.type_hash(kind)}/"
             f"{reliability}::,{depth}:,:,:,,"
         )
@@ -65,7 +68,7 @@ class RmwZenohNames:
         return f"{ADMIN_SPACE}/{self.domain}/**"
 
     def read_token(self, key: str) -> tuple[str, str, Endpoint] | None:
-        """Role, topic and endpoint of a token of somebody else; None of a node's, our own, or no such thing."""
+        """Role, topic and endpoint of a token of somebody else; None of a node's, our own, or no token."""
         parts = key.split("/")
         if len(parts) != TOKEN_PARTS or parts[2] == self.session:
             return None

@@ -5,13 +5,16 @@ from dataclasses import dataclass
 from typing import Protocol
 
 Deliver = Callable[[bytes, float], None]
-"""Takes a payload and when it came, monotonic seconds; called on a thread of the wire, so it must be quick."""
+"""Takes a payload and when it came, monotonic seconds; called on a thread of the wire, so it must be
+quick."""
 
-Answer = Callable[[bytes], bytes]
-"""Takes a request and returns the response; called on a thread of the wire."""
+Reply = Callable[[bytes], None]
+Answer = Callable[[bytes, Reply], None]
+"""Takes a request, and what sends its response, now or later; called on a thread of the wire, so it must be
+quick."""
 
-NODE = "topnav"
-"""Name of our node in ROS."""
+NODE, GUARD_NODE = "topnav", "topnav_guard"
+"""Names of our nodes in ROS."""
 
 MOST_BYTES = 64_000_000
 """Longest payload that is taken: the longest frame of the bus (shared/topics.py)."""
@@ -52,8 +55,8 @@ class Quality:
 SENSOR = Quality(reliable=False, depth=1)
 """The newest reading of a sensor; the only one that hears every publisher."""
 COMMAND = Quality(reliable=True, depth=1, lives_s=0.2)
-"""Velocities: a reliable publisher is heard by every base. One that was held up longer is worse than none: the
-wheels stop without it (chosen, less than a command lives)."""
+"""Velocities: a reliable publisher is heard by every base. One that was held up longer is worse than none:
+the wheels stop without it (chosen, less than a command lives)."""
 REPORT = Quality(reliable=True, depth=10)
 
 

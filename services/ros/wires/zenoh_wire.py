@@ -108,14 +108,19 @@ class ZenohWire:
         key = self._names.data_key(service, kind)
 
         def store(query: zenoh.Query) -> None:
-            with query:
-                asked = None if query.attachment is None else query.attachment.to_bytes()
-                attachment = self._names.answer_attachment(asked, time.time_ns())
-                if attachment is None and self._names.answers_need_attachment:
-                    log.warning("%s: a request without the attachment of rmw_zenoh is not answered", service)
-                    return
-                request = query.payload.to_bytes() if query.payload is not None else b""
-                query.reply(key, answer(request), attachment=attachment)
+            asked = None if query.attachment is None else query.attachment.to_bytes()
+            if self._names.answers_need_attachment and self._names.answer_attachment(asked, 0) is None:
+                log.warning("%s: a request without the attachment of rmw_zenoh is not answered", service)
+                return
+            request = query.payload.to_bytes() if query.payload is not None else b""
+
+            def reply(response: bytes) -> None:
+                with query:
+                    query.reply(
+                        key, response, attachment=self._names.answer_attachment(asked, time.time_ns())
+                    )
+
+            answer(request, reply)
 
         self._declared.append(self._session.declare_queryable(key, store, complete=True))
         self._announce("SS", service, kind, REPORT)
