@@ -191,7 +191,7 @@ def load_robot_file(path: Path) -> RobotFile:
     try:
         return RobotFile.model_validate(read_yaml(path))
     except YamlFileError as error:
-        raise RobotFileError(f"{path}: {error}") from error
+        raise RobotFileError(f"{path}: {' '.join(str(error).split())}") from error
     except ValidationError as error:
         problems = error.errors(include_url=False, include_input=True)
         first = problems[0]

@@ -123,8 +123,8 @@ class Sensing:
         if self._turning.mirrored:
             scan, odometry = self._file.scan.topic, self._file.odometry
             return (
-                f"{scan}: scans turn against {odometry.topic if odometry else 'nothing'}: the scanner is mirrored "
-                "(scan.upside_down in the robot's file), or the odometry's yaw has the wrong sign"
+                f"{scan}: scans turn against {odometry.topic if odometry else 'nothing'}: the scanner is "
+                "mirrored (scan.upside_down in the robot's file), or the odometry's yaw has the wrong sign"
             )
         return ""
 

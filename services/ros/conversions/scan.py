@@ -110,6 +110,8 @@ def _checked(scan: Any) -> tuple[FloatArray, FloatArray]:
         raise ConversionError(
             f"two turns in all at most expected, got a step of {scan.angle_increment:.6g} rad"
         )
+    if abs(scan.angle_min) > 2.0 * math.tau:
+        raise ConversionError(f"angle_min within two turns expected, got {scan.angle_min:.6g} rad")
     if not 0.0 <= scan.range_min < scan.range_max:
         raise ConversionError(f"range_min below range_max expected, got {scan.range_min}, {scan.range_max}")
     return scan.angle_min + np.arange(len(ranges_m)) * scan.angle_increment, ranges_m

@@ -6,7 +6,7 @@ and one period of the loop.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -89,17 +89,17 @@ class GuardCore:
         return wish.scaled(most_mps / speed_mps), f"{free_m:.2f} m are free: {most_mps:.2f} m/s"
 
     def _without_a_start(self, motion: Motion, now_s: float) -> Motion:
-        """Speeding up is limited, slowing down is not."""
+        """Speeding up is limited, from rest also into another direction; slowing down is not."""
         limits, said = self._limits, self._said
         time_s = min(max(now_s - self._said_s, 0.0), self._period_s)
-        before_mps = math.hypot(said.forward_mps, said.left_mps)
         speed_mps = math.hypot(motion.forward_mps, motion.left_mps)
-        most_mps = before_mps + limits.accelerate_mps2 * time_s
-        share = most_mps / speed_mps if speed_mps > most_mps else 1.0
-        most_radps = abs(said.turn_radps) + limits.turn_radps2 * time_s
-        if abs(motion.turn_radps) > most_radps:
-            share = min(share, most_radps / abs(motion.turn_radps))
-        return motion.scaled(share)
+        if speed_mps > 0.0:
+            along = said.forward_mps * motion.forward_mps + said.left_mps * motion.left_mps
+            most_mps = max(0.0, along / speed_mps) + limits.accelerate_mps2 * time_s
+            motion = motion.scaled(min(1.0, most_mps / speed_mps))
+        before_radps = max(0.0, said.turn_radps * math.copysign(1.0, motion.turn_radps))
+        most_radps = before_radps + limits.turn_radps2 * time_s
+        return replace(motion, turn_radps=max(-most_radps, min(most_radps, motion.turn_radps)))
 
 
 def _points(bearings_rad: FloatArray, distances_m: FloatArray) -> FloatArray:
