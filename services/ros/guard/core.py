@@ -7,6 +7,7 @@ and one period of the loop.
 
 import math
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -31,10 +32,15 @@ def speed_limit_mps(free_m: float, brake_mps2: float, delay_s: float) -> float:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the base is to do, and what was changed about the wish; "" for nothing."""
+    """What the base is to do, and what was changed about the wish; "" for nothing.
+
+    Attributes:
+        kind: of the reason: "old" or "near".
+    """
 
     motion: Motion
     why: str = ""
+    kind: Literal["old", "near"] = "old"
 
 
 class GuardCore:
@@ -75,7 +81,7 @@ class GuardCore:
         if scan_age_s > self._limits.scan_ms / 1000.0:
             return Verdict(STAND, f"no scan for {min(scan_age_s, 999.0):.2f} s")
         motion, why = self._in_free_way(self._wish, scan_age_s)
-        return Verdict(self._without_a_start(motion, now_s), why)
+        return Verdict(self._without_a_start(motion, now_s), why, "near")
 
     def _in_free_way(self, wish: Motion, scan_age_s: float) -> tuple[Motion, str]:
         speed_mps = math.hypot(wish.forward_mps, wish.left_mps)

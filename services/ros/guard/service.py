@@ -65,7 +65,7 @@ class RobotGuard:
                 self._read(kind, payload, came_s)
         verdict = self._core.verdict(now_s)
         if verdict.why:
-            self._counters.count("guarded", verdict.why)
+            self._counters.count(verdict.kind, verdict.why)
         if self._repeating.due(verdict.motion, now_s):
             if problem := self._base.problem():
                 self._counters.count("base", problem)

@@ -93,6 +93,7 @@ class SideCar:
         self._called = 0
         self._topics: set[str] = set()
         self._doings = {
+            "watch": self._watch,
             "subscribe": self._subscribe,
             "advertise": self._advertise,
             "publish": self._publish,
@@ -108,7 +109,7 @@ class SideCar:
             self._outlet.send({"is": "fault", "text": f"{header.get('do')} {header.get('topic')}: {error}"})
 
     def tell_graph(self) -> None:
-        """Say who else publishes and subscribes to our topics."""
+        """Say who else publishes and subscribes to the topics that were asked for."""
         told: dict[str, Any] = {"is": "graph", "MP": {}, "MS": {}}
         for topic in self._topics.copy():
             told["MP"][topic] = self._others(self._node.get_publishers_info_by_topic(topic))
@@ -118,6 +119,9 @@ class SideCar:
     def _others(self, endpoints: Any) -> list[tuple[str, str]]:
         return [(e.node_name, e.topic_type) for e in endpoints if e.node_name != self._node.get_name()]
 
+    def _watch(self, header: dict[str, Any], _payload: bytes) -> None:
+        self._topics.add(header["topic"])
+
     def _subscribe(self, header: dict[str, Any], _payload: bytes) -> None:
         topic, outlet = header["topic"], self._outlet
 
@@ -125,14 +129,12 @@ class SideCar:
             outlet.send({"is": "message", "topic": topic, "at": time.monotonic()}, payload)
 
         self._node.create_subscription(type_of(header["kind"]), topic, store, _quality(header), raw=True)
-        self._topics.add(topic)
 
     def _advertise(self, header: dict[str, Any], _payload: bytes) -> None:
         topic = header["topic"]
         self._publishers[topic] = self._node.create_publisher(
             type_of(header["kind"]), topic, _quality(header)
         )
-        self._topics.add(topic)
 
     def _publish(self, header: dict[str, Any], payload: bytes) -> None:
         """What was held up on its way here is not said any more."""

@@ -8,6 +8,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -42,10 +43,11 @@ class Outbox:
                 self._changed.notify()
 
     def close(self) -> None:
-        """Stop sending."""
+        """Stop sending; the stream is shut down already."""
         with self._changed:
             self._closing = True
             self._changed.notify()
+        self._thread.join()
 
     def _run(self) -> None:
         while True:
@@ -72,6 +74,7 @@ class SideCarWire:
         self._deliver: dict[str, Deliver] = {}
         self._answers: dict[str, Answer] = {}
         self._graph: dict[str, dict[str, list[Endpoint]]] = {"MP": {}, "MS": {}}
+        self._watched: set[str] = set()
         self._down = ""
         self._closing = False
         self._ready = threading.Event()
@@ -110,11 +113,11 @@ class SideCarWire:
 
     def publishers(self, topic: str) -> list[Endpoint]:
         """See `Wire`."""
-        return self._graph["MP"].get(topic, [])
+        return self._others("MP", topic)
 
     def subscribers(self, topic: str) -> list[Endpoint]:
         """See `Wire`."""
-        return self._graph["MS"].get(topic, [])
+        return self._others("MS", topic)
 
     def require_up(self) -> None:
         """See `Wire`."""
@@ -123,9 +126,12 @@ class SideCarWire:
 
     def close(self) -> None:
         """See `Wire`."""
+        if self._closing:
+            return
         self._closing = True
+        with suppress(OSError):  # the side-car may be gone
+            self._stream.shutdown(socket.SHUT_RDWR)
         self._outbox.close()
-        self._stream.shutdown(socket.SHUT_RDWR)
         try:
             self._process.wait(END_S)
         except subprocess.TimeoutExpired:
@@ -133,6 +139,13 @@ class SideCarWire:
             self._process.wait()
         self._thread.join()
         self._stream.close()
+
+    def _others(self, role: str, topic: str) -> list[Endpoint]:
+        """Who is there as far as the side-car has told, which it does of topics that were asked for."""
+        if topic not in self._watched:
+            self._watched.add(topic)
+            self._outbox.send({"do": "watch", "topic": topic})
+        return self._graph[role].get(topic, [])
 
     def _declare(self, what: str, topic: str, kind: str, quality: Quality) -> None:
         header = {"do": what, "topic": topic, "kind": kind}
