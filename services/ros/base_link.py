@@ -5,7 +5,7 @@ from typing import Protocol
 
 from services.ros.conversions.twist import Motion, twist_bytes
 from services.ros.wires.codec import Codec
-from services.ros.wires.wire import COMMAND, Endpoint, Wire
+from services.ros.wires.wire import URGENT, Endpoint, Wire
 
 
 class Spoken(Protocol):
@@ -44,7 +44,7 @@ class BaseLink:
         if kind is None:
             return
         if kind not in self._put:
-            self._put[kind] = self._wire.publisher(self._spoken.topic, kind, COMMAND)
+            self._put[kind] = self._wire.publisher(self._spoken.topic, kind, URGENT)
         self._put[kind](twist_bytes(self._codec, kind, motion, self._spoken.frame, robot_time_s))
 
 

@@ -16,7 +16,7 @@ from services.ros.sensing import SCAN
 from services.ros.settings import RosSettings
 from services.ros.wires.codec import Codec, CodecError
 from services.ros.wires.opening import wait_for_wire
-from services.ros.wires.wire import COMMAND, GUARD_NODE, Deliver, Wire
+from services.ros.wires.wire import GUARD_NODE, URGENT, Deliver, Wire
 from shared.inbox import Counters
 
 log = logging.getLogger(__name__)
@@ -40,7 +40,7 @@ class RobotGuard:
         self._last_s, self._ignore_until_s = time.monotonic(), float("-inf")
         wire.subscribe(file.scan.topic, SCAN, self._store(SCAN))
         heard = file.velocity.types()[0]  # who speaks to us reads the type from us
-        wire.subscribe(file.velocity.topic, heard, self._store(heard), COMMAND)
+        wire.subscribe(file.velocity.topic, heard, self._store(heard), URGENT)
 
     def wait(self) -> None:
         """Sleep until something came or a period passed."""

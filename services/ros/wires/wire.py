@@ -54,7 +54,7 @@ class Quality:
 
 SENSOR = Quality(reliable=False, depth=1)
 """The newest reading of a sensor; the only one that hears every publisher."""
-COMMAND = Quality(reliable=True, depth=1, lives_s=0.2)
+URGENT = Quality(reliable=True, depth=1, lives_s=0.2)
 """Velocities: a reliable publisher is heard by every base. One that was held up longer is worse than none:
 the wheels stop without it (chosen, less than a command lives)."""
 REPORT = Quality(reliable=True, depth=10)

@@ -13,10 +13,10 @@ import zenoh
 from services.ros.wires.bridge import BridgeNames
 from services.ros.wires.rmw_zenoh import RmwZenohNames
 from services.ros.wires.wire import (
-    COMMAND,
     MOST_BYTES,
     REPORT,
     SENSOR,
+    URGENT,
     Answer,
     Deliver,
     Endpoint,
@@ -87,7 +87,7 @@ class ZenohWire:
 
     def publisher(self, topic: str, kind: str, quality: Quality = REPORT) -> Callable[[bytes], None]:
         """See `Wire`."""
-        urgent = quality == COMMAND
+        urgent = quality == URGENT
         publisher = self._session.declare_publisher(
             self._names.data_key(topic, kind),
             priority=zenoh.Priority.REAL_TIME if urgent else zenoh.Priority.DATA,

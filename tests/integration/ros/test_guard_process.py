@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from services.ros.conversions.twist import STAND, Motion, twist_bytes
-from services.ros.wires.wire import COMMAND
+from services.ros.wires.wire import URGENT
 from shared.bus import wait_until
 from tests.integration.ros.conftest import SOON_S
 from tests.ros_messages import CODEC, TWIST, TWIST_STAMPED
@@ -21,7 +21,7 @@ def guarded(robot, start, join):
     """A guarded base, and what says a wish once."""
     base, process = robot(TWIST), start("services.ros.guard", **GUARD)
     driver = join("driver")
-    say = driver.publisher("/wish", TWIST_STAMPED, COMMAND)
+    say = driver.publisher("/wish", TWIST_STAMPED, URGENT)
     assert wait_until(lambda: driver.subscribers("/wish") != [], SOON_S), process.log
 
     def wish(motion=AHEAD):

@@ -1,6 +1,5 @@
 """The ROS service between a robot in ROS and topnav's bus: what is sensed, driven, refused and stopped."""
 
-import dataclasses
 import itertools
 import time
 

@@ -11,7 +11,7 @@ from services.ros.conversions.twist import Motion, motion_of, twist_bytes
 from services.ros.robot_file import WireChoice
 from services.ros.wires.opening import Interpreter, open_wire
 from services.ros.wires.rmw_zenoh import RmwZenohNames
-from services.ros.wires.wire import COMMAND, WireError
+from services.ros.wires.wire import URGENT, WireError
 from shared.bus import wait_until
 from tests.integration.ros.conftest import ROS_PYTHON, SOON_S
 from tests.ros_messages import CODEC, SCAN, TWIST
@@ -38,7 +38,7 @@ def stands(_request, reply):
 def test_what_one_node_says_another_hears(join):
     ours, theirs, came = join("topnav"), join("base"), []
     theirs.subscribe("/cmd_vel", TWIST, lambda payload, _at_s: came.append(payload))
-    say = ours.publisher("/cmd_vel", TWIST, COMMAND)
+    say = ours.publisher("/cmd_vel", TWIST, URGENT)
     motion = Motion(0.25, -0.5, 1.5)
 
     def heard():

@@ -3,7 +3,7 @@
 import pytest
 
 from services.ros.wires.bridge import BridgeNames
-from services.ros.wires.wire import COMMAND, REPORT, SENSOR, Endpoint
+from services.ros.wires.wire import REPORT, SENSOR, URGENT, Endpoint
 
 TWIST = "geometry_msgs/msg/Twist"
 OURS, NAMED = BridgeNames("abc1"), BridgeNames("abc1", "/bot1")
@@ -16,7 +16,7 @@ def test_a_key_is_the_name_and_the_bridges_namespace_before_it():
 
 def test_tokens_carry_type_and_qualities():
     assert OURS.node_token() == "@/abc1/@ros2_lv"
-    assert OURS.token(1, "MP", "/base/cmd_vel", TWIST, COMMAND) == (
+    assert OURS.token(1, "MP", "/base/cmd_vel", TWIST, URGENT) == (
         "@/abc1/@ros2_lv/MP/base§cmd_vel/geometry_msgs§msg§Twist/:1:0:0,1"
     )
     assert OURS.token(1, "MS", "/scan", "sensor_msgs/msg/LaserScan", SENSOR).endswith("/:0:0:0,1")

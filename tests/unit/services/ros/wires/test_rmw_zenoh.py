@@ -7,7 +7,7 @@ import xxhash
 
 from services.ros.wires.codec import Codec
 from services.ros.wires.rmw_zenoh import RmwZenohNames
-from services.ros.wires.wire import COMMAND, SENSOR, Endpoint, Quality
+from services.ros.wires.wire import SENSOR, URGENT, Endpoint, Quality
 
 HASH = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
 STRING = "std_msgs/msg/String"
@@ -34,7 +34,7 @@ def test_tokens_name_the_node_and_each_endpoint():
 
 @pytest.mark.parametrize(
     ("quality", "ends"),
-    [(SENSOR, "/2::,1:,:,:,,"), (COMMAND, "/::,1:,:,:,,"), (Quality(depth=42), "/::,:,:,:,,")],
+    [(SENSOR, "/2::,1:,:,:,,"), (URGENT, "/::,1:,:,:,,"), (Quality(depth=42), "/::,:,:,:,,")],
 )
 def test_qualities_are_told_where_they_differ_from_the_default(quality, ends):
     assert OURS.token(1, "MS", "/scan", "sensor_msgs/msg/LaserScan", quality).endswith(ends)
