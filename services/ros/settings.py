@@ -12,7 +12,7 @@ class RosSettings(ServiceSettings):
     """Read from the environment.
 
     Attributes:
-        robot_file: describes the robot, see deploy/ROS.md. python: interpreter with rclpy, for robots that
+        robot_file: describes the robot, see deploy/ROBOTS.md. python: interpreter with rclpy, for robots that
         are reached by it. setup: what the shell reads before it, as /opt/ros/jazzy/setup.bash; nothing for an
         environment of wheels. state_dir: where the robot keeps an emergency stop across restarts.
     """
