@@ -9,7 +9,7 @@ import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 PACKAGES = ("services", "shared", "simulator", "experiments")
-SERVICES = ("features", "map_store", "planner", "drive", "gateway", "recorder", "launcher")
+SERVICES = ("features", "map_store", "planner", "drive", "gateway", "recorder", "launcher", "ros")
 
 # Pure code: the same input gives the same output, whatever the clock, the bus and the environment say.
 PURE = (
@@ -27,6 +27,13 @@ PURE = (
     "services/features/retrieval/*.py",
     "services/launcher/compose/**/*.py",
     "services/launcher/processes/restart.py",
+    "services/ros/conversions/*.py",
+    "services/ros/base_link.py",
+    "services/ros/driving.py",
+    "services/ros/repeating.py",
+    "services/ros/wires/bridge.py",
+    "services/ros/wires/codec.py",
+    "services/ros/wires/rmw_zenoh.py",
 )
 EDGE_FILES = {
     "__main__.py",
@@ -63,6 +70,7 @@ FORBIDDEN = {
     "features": {"sapien", "fastapi", "sqlalchemy"},
     "recorder": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
     "launcher": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
+    "ros": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
 }
 ROOMS = ("compose", "processes", "terminal", "client", "drawing", "evaluation", "commands")
 """Of the launcher, from the ground up: a room imports itself and those before it."""

@@ -82,9 +82,11 @@ BODIES = (Role.ROBOT, Role.SIMULATOR)
 PEOPLE = (Role.GATEWAY, Role.OPERATOR)
 """The two ways in which people's wishes reach the bus: the web console and the shell."""
 WATCHERS = (*PEOPLE, Role.RECORDER, Role.VIEWER)
+ASKERS = (*PEOPLE, Role.ROBOT)
+"""A robot whose body is in ROS passes on what people wish there: of itself only (services/ros)."""
 
 STREAMS: dict[Topic[Any], Grant] = {
-    topics.FRAME: _grant(BODIES, [Role.FEATURES, *WATCHERS]),
+    topics.FRAME: _grant(BODIES, [Role.ROBOT, Role.FEATURES, *WATCHERS]),
     topics.RANGES: _grant(BODIES, [Role.DRIVE, Role.PLANNER, *WATCHERS]),
     topics.FEATURES: _grant([Role.FEATURES], [Role.PLANNER, *WATCHERS]),
     topics.HEADING: _grant([Role.PLANNER], [Role.DRIVE, *WATCHERS]),
@@ -95,7 +97,7 @@ STREAMS: dict[Topic[Any], Grant] = {
     topics.BATTERY: _grant(BODIES, WATCHERS),
     topics.ESTOP_STATE: _grant([Role.DRIVE], [*BODIES, Role.PLANNER, *WATCHERS]),
     topics.ROBOT_ESTOP_STATE: _grant(BODIES, [Role.DRIVE, *WATCHERS]),
-    topics.STATUS: _grant([Role.PLANNER], [Role.PLANNER, *WATCHERS]),
+    topics.STATUS: _grant([Role.PLANNER], [Role.PLANNER, Role.ROBOT, *WATCHERS]),
     topics.EVENT: _grant([Role.PLANNER], WATCHERS),
     # Only evaluation may know where the robot really is.
     topics.TRUTH: _grant([Role.SIMULATOR], [*PEOPLE, Role.RECORDER]),
@@ -103,10 +105,10 @@ STREAMS: dict[Topic[Any], Grant] = {
 }
 QUESTIONS: dict[Query[Any, Any], Grant] = {
     topics.MATCH: _grant([Role.FEATURES], [Role.PLANNER, Role.MAP_STORE, *PEOPLE]),
-    topics.EXTRACT: _grant([Role.FEATURES], PEOPLE),
-    topics.MISSION: _grant([Role.PLANNER], PEOPLE),
+    topics.EXTRACT: _grant([Role.FEATURES], ASKERS),
+    topics.MISSION: _grant([Role.PLANNER], ASKERS),
     topics.MISSION_KINDS: _grant([Role.PLANNER], PEOPLE),
-    topics.ESTOP: _grant([Role.DRIVE], PEOPLE),
+    topics.ESTOP: _grant([Role.DRIVE], ASKERS),
     # One key reads and writes: who only reads has a key of its own.
     topics.MAP: _grant([Role.MAP_STORE], [Role.PLANNER, *PEOPLE]),
     topics.MAP_READ: _grant([Role.MAP_STORE], [Role.FEATURES]),

@@ -23,6 +23,7 @@ SERVICES = {
     "planner": "services.planner",
     "drive": "services.drive",
     "gateway": "services.gateway",
+    "ros": "services.ros",
     "recorder": "services.recorder",
     "launcher": "services.launcher",
 }

@@ -16,6 +16,7 @@ FOLDERS = {
     "services/planner": Role.PLANNER,
     "services/drive": Role.DRIVE,
     "services/gateway": Role.GATEWAY,
+    "services/ros": Role.ROBOT,
     "experiments": Role.OPERATOR,
 }
 # Plays simulator and planner of many robots on a bus of its own, which is not secured.
