@@ -191,6 +191,7 @@ def run(settings: SimulatorSettings, world: WorldFile, bus: Bus, stop: threading
         TakenError: another process is this robot.
     """
     sole = SoleRobot(bus, settings.robot)
+    log.info("building world %s", settings.world)
     simulation = Simulation(world, settings.simulation(), settings.seed)
     ports = Ports(bus, settings.robot, settings.state_dir)
     loop = (LockstepLoop if settings.lockstep else RealTimeLoop)(simulation, settings, ports)

@@ -1,6 +1,5 @@
 """Settings of the simulator process, from SIMULATOR_* variables."""
 
-import os
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -8,19 +7,11 @@ from pydantic import BeforeValidator, Field, PositiveFloat, PositiveInt
 from pydantic_settings import NoDecode, SettingsConfigDict
 
 from shared.settings import ServiceSettings
+from simulator.cache_folder import user_cache_dir
 from simulator.disturbances.levels import Disturbances
 from simulator.settings import CameraSettings, RangeSettings, SimulationSettings
 
 Folder = Annotated[Path | None, BeforeValidator(lambda value: value or None)]
-
-
-def user_cache_dir() -> Path | None:
-    """Folder for topnav below the user's cache folder, $XDG_CACHE_HOME or ~/.cache; None without a home."""
-    base = Path(os.environ.get("XDG_CACHE_HOME", ""))
-    try:
-        return (base if base.is_absolute() else Path("~/.cache").expanduser()) / "topnav"
-    except RuntimeError:
-        return None
 
 
 class SimulatorSettings(ServiceSettings):

@@ -37,6 +37,7 @@ def hide_and_seek(
     draw: Annotated[bool, typer.Option(help="Draw every round.")] = True,
     data_dir: options.DataDir = options.DATA_DIR,
     endpoint: options.Endpoint = None,
+    timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
     suite: Annotated[
         str | None,
         typer.Option(help="thesis: its 14 rounds; random: rounds in each of four worlds. Maps them first."),
@@ -59,7 +60,9 @@ def hide_and_seek(
     from services.launcher.terminal.output import new_run_folder
 
     if suite is None:
-        choice = StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
+        choice = StackChoice(
+            data_dir, world, seed, lockstep, profile, pipeline, endpoint, timeout_s=timeout_s
+        )
         folder = (drawings or new_run_folder(options.RUNS_DIR)) if draw else None
         _play_rounds(choice, world, seed, map_name, rounds or ROUNDS, max_steps, folder, json_file)
         return

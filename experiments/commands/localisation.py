@@ -20,6 +20,7 @@ def localisation(
     seed: options.Seed = 1,
     json_file: options.JsonFile = None,
     data_dir: options.DataDir = options.DATA_DIR,
+    timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
 ) -> int:
     """Take pictures anywhere and ask goal-check, as a robot that is switched on somewhere must.
 
@@ -45,7 +46,8 @@ def localisation(
     space = free_space(load_world(world))
     rng = np.random.default_rng(seed)
     poses = poses_of(space.random_pose, truth.poses.values(), pictures, rng, mapped=not unmapped)
-    with open_stack(StackChoice(data_dir, world, seed, lockstep=True)) as stack:
+    choice = StackChoice(data_dir, world, seed, lockstep=True, timeout_s=timeout_s)
+    with open_stack(choice) as stack:
         if stack.gateway_url is None:
             raise ExperimentError("that stack tells no address of its gateway: give its folder (--data-dir)")
         experimenter = Experimenter(stack.bus, stack.robot)

@@ -28,6 +28,7 @@ def recovery(
     seed: options.Seed = 1,
     json_file: options.JsonFile = None,
     data_dir: options.DataDir = options.DATA_DIR,
+    timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
 ) -> int:
     """Carried robots, pictures from elsewhere, a shut door: each ends well or says by name why not."""
     import numpy as np
@@ -43,7 +44,8 @@ def recovery(
     if only and only not in KINDS:
         raise typer.BadParameter(f"--only must be one of {', '.join(KINDS)}, got {only!r}")
     rng, rows = np.random.default_rng(seed), list[dict[str, Any]]()
-    with open_stack(StackChoice(data_dir, world, seed, lockstep=True)) as stack:
+    choice = StackChoice(data_dir, world, seed, lockstep=True, timeout_s=timeout_s)
+    with open_stack(choice) as stack:
         require_map(stack, map_name)
         space = free_space(load_world(world))
         game = Game(stack, space, map_name, rng)

@@ -22,6 +22,7 @@ def soak(
         float, typer.Option(help="Growth that no service may pass once half an hour is known, MB/h.")
     ] = 100.0,
     data_dir: options.DataDir = options.DATA_DIR,
+    timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
 ) -> None:
     """Missions without end while services break.
 
@@ -38,7 +39,8 @@ def soak(
 
     plan = Plan(world, map_name, seed, hours, most_mb, chaos, chaos and enter_own_network())
     journal = Journal(json_file, {"world": world, "map": map_name, "seed": seed, "chaos": chaos})
-    with open_stack(StackChoice(data_dir, world, seed, lockstep=False)) as stack:
+    choice = StackChoice(data_dir, world, seed, lockstep=False, timeout_s=timeout_s)
+    with open_stack(choice) as stack:
         require_map(stack, map_name)
         journal.start()
         soak(stack, plan, journal)

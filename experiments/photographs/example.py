@@ -112,11 +112,11 @@ def _leaning(count: int, rng: np.random.Generator) -> tuple[Any, Any]:
 
 def _render(world: WorldFile, folder: Path, views: list[tuple[str, Pose2, tuple[float, float]]]) -> None:
     # SAPIEN's renderer is loaded only where pictures are wanted.
+    from simulator.cache_folder import user_cache_dir
     from simulator.scene.disk_cache import DiskCache
     from simulator.scene.painter import Painter
     from simulator.scene.render_scene import RenderScene
     from simulator.sensors.attitude import leaning
-    from simulator.service_settings import user_cache_dir
     from simulator.settings import CameraSettings, SimulationSettings
     from simulator.world.contents import expand
 

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 
 from shared.messages.sensors import Frame
 from shared.messages.simulation import Pose
+from simulator.cache_folder import user_cache_dir
 from simulator.disturbances.levels import Disturbances
 from simulator.sensors.attitude import LEVEL, PitchRoll
-from simulator.service_settings import user_cache_dir
 from simulator.settings import CameraSettings, SimulationSettings
 from simulator.world.world_file import WorldFile
 

@@ -99,7 +99,8 @@ class FeatureService:
         start_s = time.perf_counter()
         raw = match_candidates(self._pipeline, request, current, known.nodes)
         matched_s = time.perf_counter()
-        results = verify_candidates(self._pipeline, request, raw)
+        answered = robot.answered.of(current, known, request.with_matches)
+        results = verify_candidates(self._pipeline, request, raw, answered)
         return MatchReply(
             seq=current.seq,
             stamp_ns=current.stamp_ns,

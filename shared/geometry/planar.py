@@ -51,7 +51,7 @@ def estimate_planar(
         return refused("inconsistent", fit.mask)
     if _only_turned(rotation, fit, chance, settings):
         return _rotation_result(rotation)
-    near = _near_misses(fit, matches, chance, wide_chance, threshold)
+    near = _near_misses(fit, chance, wide_chance, threshold)
     return replace(_accept(fit, matches, chance, evidence, settings), near_misses=near)
 
 
@@ -123,8 +123,8 @@ def _accept(
 
 def _apart_rad(yaw_rad: float, matches: PlanarMatches, mask: BoolArray) -> FloatArray:
     """Angle between the current and the yaw-compensated target bearing of each inlier, radians."""
-    level = matches.h_current[mask] * (matches.h_target[mask] * np.exp(1j * yaw_rad)).conj()
-    dot = level.real + matches.z_current[mask] * matches.z_target[mask]
+    (h_current, h_target), (z_current, z_target) = matches.horizontal[:, mask], matches.height[:, mask]
+    dot = (h_current * (h_target * np.exp(1j * yaw_rad)).conj()).real + z_current * z_target
     return np.asarray(np.arccos(np.clip(dot, -1.0, 1.0)), dtype=np.float64)
 
 
@@ -135,18 +135,15 @@ def _chance_rates(fit: PlanarFit, matches: PlanarMatches, thresholds: list[float
     """
     shifts = np.unique(np.linspace(1, len(matches) - 1, CHANCE_SHIFTS).astype(np.intp))
     wrong = matches.wrongly_paired(shifts)
-    result = evaluate(wrong, np.array([fit.phi]), np.array([fit.phi_target]))
+    result = evaluate(wrong, np.array([[fit.phi], [fit.phi_target]]))
     return [float(np.clip(np.mean(result.consistent(x)[0]), 1e-3, 0.999)) for x in thresholds]
 
 
-def _near_misses(
-    fit: PlanarFit, matches: PlanarMatches, chance: float, wide_chance: float, threshold: float
-) -> float:
+def _near_misses(fit: PlanarFit, chance: float, wide_chance: float, threshold: float) -> float:
     """Matches between one and four thresholds from the model, less those expected by chance.
 
     A tilted camera leaves many: right matches that the plane cannot reach.
     """
-    result = evaluate(matches, np.array([fit.phi]), np.array([fit.phi_target]))
-    wide = int((result.consistent(WIDE * threshold)[0][0] & ~fit.mask).sum())
+    wide = int((fit.seen.consistent(WIDE * threshold)[0][0] & ~fit.mask).sum())
     outliers = int((~fit.mask).sum())
     return max(wide - outliers * max(wide_chance - chance, 0.0), 0.0)

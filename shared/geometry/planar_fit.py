@@ -36,6 +36,7 @@ class PlanarFit:
     Attributes:
         phi: direction of travel, current frame, radians.
         phi_target: the same direction in the target frame, radians.
+        seen: it against all matches.
         mask: (N,) inliers: near the epipolar plane and in front of both cameras.
         noise_rad: standard deviation of their residuals, radians.
         covariance: (2, 2) of (phi, phi'), radians squared.
@@ -46,6 +47,7 @@ class PlanarFit:
 
     phi: float
     phi_target: float
+    seen: Evaluation
     mask: BoolArray
     noise_rad: float
     covariance: FloatArray
@@ -75,21 +77,21 @@ def fit_planar(
     none of 787 right ones).
     """
     threshold = settings.threshold_rad
-    phi, phi_target = solve_pairs(matches.rows, draw_pairs(len(matches), settings.pairs, rng))
-    if len(phi) == 0:
+    directions = solve_pairs(matches.rows, draw_pairs(len(matches), settings.pairs, rng))
+    if directions.size == 0:
         return NoFit(np.zeros(len(matches), dtype=np.bool_))
-    lines = np.argsort(-line_scores(matches, phi, phi_target, threshold), kind="stable")[:SIGNED]
-    phi, phi_target = phi[lines], phi_target[lines]
-    score, turn = _signed_scores(evaluate(matches, phi, phi_target), matches.weight, threshold)
+    lines = np.argsort(-line_scores(matches, directions, threshold), kind="stable")[:SIGNED]
+    directions = directions[:, lines]
+    score, turn = _signed_scores(evaluate(matches, directions), matches.weight, threshold)
     best = np.argsort(-score, kind="stable")[:REFINED]
-    phi, phi_target = phi[best] + turn[best], phi_target[best] + turn[best]
-    start = evaluate(matches, phi, phi_target)
+    directions = directions[:, best] + turn[best]
+    start = evaluate(matches, directions)
     if _most(start.consistent(REACH * threshold)[0]) < settings.min_inliers:
         return NoFit(start.consistent(threshold)[0][0])
-    phi, phi_target, covariance = refine(matches, phi, phi_target, threshold)
-    score, turn = _signed_scores(evaluate(matches, phi, phi_target), matches.weight, threshold)
+    directions, covariance = refine(matches, directions, threshold)
+    score, turn = _signed_scores(evaluate(matches, directions), matches.weight, threshold)
     k = int(np.argmax(score))
-    return _winner(matches, float(phi[k] + turn[k]), float(phi_target[k] + turn[k]), covariance[k], threshold)
+    return _winner(matches, directions[:, k] + turn[k], covariance[:, :, k], threshold)
 
 
 def _most(masks: BoolArray) -> int:
@@ -134,20 +136,22 @@ def _lower_quartile(values: FloatArray) -> float:
 
 
 def _winner(
-    matches: PlanarMatches, phi: float, phi_target: float, covariance: FloatArray, threshold: float
+    matches: PlanarMatches, direction: FloatArray, covariance: FloatArray, threshold: float
 ) -> PlanarFit:
-    result = evaluate(matches, np.array([phi]), np.array([phi_target]))
-    mask = result.consistent(threshold)[0][0]
-    noise = noise_rad(result.residual[0][mask])
-    near = np.abs(result.residual[0]) <= threshold
+    seen = evaluate(matches, direction[:, None])
+    mask = seen.consistent(threshold)[0][0]
+    noise = noise_rad(seen.residual[0][mask])
+    near = np.abs(seen.residual[0]) <= threshold
+    phi, phi_target = wrap_rad(direction).tolist()
     return PlanarFit(
-        phi=float(wrap_rad(phi)),
-        phi_target=float(wrap_rad(phi_target)),
+        phi=phi,
+        phi_target=phi_target,
+        seen=seen,
         mask=mask,
         noise_rad=noise,
         covariance=covariance * noise**2,
-        sign_margin=sign_margin(result.forward[0][near], matches.weight[near], noise),
-        parallax_z=parallax_z(result.forward[0][mask], noise),
+        sign_margin=sign_margin(seen.forward[0][near], matches.weight[near], noise),
+        parallax_z=parallax_z(seen.forward[0][mask], noise),
     )
 
 

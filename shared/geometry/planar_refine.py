@@ -5,7 +5,7 @@ import numpy as np
 from shared.geometry.planar_model import PlanarMatches, seen_along
 from shared.geometry.sphere import FloatArray
 
-RIDGE = 1e-9
+RIDGE = 1e-9 * np.eye(2)[:, :, None]
 """Added to the normal matrix, whose entries are of the order of 1 per match: a degenerate model gets a huge
 covariance, not an exception."""
 MOST_STEP_RAD = 0.3
@@ -16,41 +16,38 @@ TUKEY = 4.7
 """Width of the biweight in standard deviations, 4.685 for 95 % efficiency (Holland and Welsch 1977)."""
 MAD = 1.4826
 """Standard deviation of normal noise over its median absolute deviation."""
-Symmetric = tuple[FloatArray, FloatArray, FloatArray]
-"""(K,) matrices of 2 x 2: both diagonal entries outside, the other one between."""
+COFACTOR_SIGNS = np.array([[[1.0], [-1.0]], [[-1.0], [1.0]]])
+HEIGHT_SIGNS = np.array([[[-1.0]], [[1.0]]])
+"""Signs of z_t and z_c in the derivatives of equation (1) of planar_model by phi and phi'."""
 
 
 def refine(
-    matches: PlanarMatches, phi: FloatArray, phi_target: FloatArray, threshold: float, iterations: int = 6
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+    matches: PlanarMatches, directions: FloatArray, threshold: float, iterations: int = 6
+) -> tuple[FloatArray, FloatArray]:
     """Refine K models.
 
     Tukey's biweight, first wide (twice the threshold), then at TUKEY times the measured noise.
 
     Args:
         matches: prepared matches.
-        phi: (K,) start, radians, sign already chosen.
-        phi_target: (K,) start, radians.
+        directions: (2, K) start, phi and phi', radians, sign already chosen.
         threshold: inlier threshold, radians.
         iterations: Gauss-Newton steps.
 
     Returns:
-        Refined phi (K,) and phi' (K,), and (K, 2, 2) covariances of both for unit noise.
+        Refined directions (2, K), and (2, 2, K) covariances of both for unit noise.
     """
-    scale = np.full(len(phi), 2.0 * threshold)
+    scale = np.full(directions.shape[1], 2.0 * threshold)
     for i in range(iterations):
-        residual, jacobian, weight = _linearise(matches, phi, phi_target, threshold, scale)
+        residual, jacobian, weight = _linearise(matches, directions, threshold, scale)
         weighted = weight * jacobian
-        gradient = _sums(weighted, residual)
-        step = np.clip(
-            -_times(_inverse(_normal(jacobian, weighted)), gradient), -MOST_STEP_RAD, MOST_STEP_RAD
-        )
-        phi, phi_target = phi + step[0], phi_target + step[1]
+        gradient = np.einsum("ikn,kn->ik", weighted, residual)
+        step = -np.einsum("ijk,jk->ik", _inverse(_normal(jacobian, weighted)), gradient)
+        directions = directions + np.minimum(np.maximum(step, -MOST_STEP_RAD), MOST_STEP_RAD)
         if i >= WIDE_STEPS - 1:
             scale = _scales(residual, weight, threshold)
-    _, jacobian, weight = _linearise(matches, phi, phi_target, threshold, scale)
-    a, b, d = _inverse(_normal(jacobian, weight * jacobian))
-    return phi, phi_target, np.stack([a, b, b, d], axis=1).reshape(-1, 2, 2)
+    _, jacobian, weight = _linearise(matches, directions, threshold, scale)
+    return directions, _inverse(_normal(jacobian, weight * jacobian))
 
 
 def _scales(residual: FloatArray, weight: FloatArray, threshold: float) -> FloatArray:
@@ -62,25 +59,19 @@ def _scales(residual: FloatArray, weight: FloatArray, threshold: float) -> Float
 
 
 def _linearise(
-    matches: PlanarMatches, phi: FloatArray, phi_target: FloatArray, threshold: float, scale: FloatArray
+    matches: PlanarMatches, directions: FloatArray, threshold: float, scale: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Residual e (K, N), its derivatives (2, K, N) by phi and phi', and weights (K, N).
 
     The derivative of the denominator matters, de = ds / n + e t.b d(t.b) / n^2: without it noise in b,
     which enters both s and ds, pulls the direction towards the crowd of features when the baseline is short.
     """
-    turned = seen_along(matches, phi, phi_target)
+    turned = seen_along(matches, directions)
     result = turned.evaluation(matches)
     inverse = 1.0 / result.norm
-    drag = result.residual * inverse
-    jacobian = np.empty((2, *result.residual.shape))
-    for out, horizontal, height in (
-        (jacobian[0], turned.current, -matches.z_target),
-        (jacobian[1], turned.target, matches.z_current),
-    ):
-        np.multiply(drag, horizontal.imag, out=out)
-        out += height
-        out *= horizontal.real
+    jacobian = (result.residual * inverse) * turned.aside
+    jacobian += HEIGHT_SIGNS * matches.height[::-1, None]
+    jacobian *= turned.along
     jacobian *= inverse
     possible = np.minimum(result.forward, result.same_side) >= -threshold
     ratio = result.residual / scale[:, None]
@@ -91,23 +82,12 @@ def _linearise(
     return result.residual, jacobian, weight
 
 
-def _sums(weighted: FloatArray, values: FloatArray) -> FloatArray:
-    """Sums (2, K) over the matches of weighted derivatives times (K, N) values."""
-    return np.asarray(np.einsum("ikn,kn->ik", weighted, values), dtype=np.float64)
+def _normal(jacobian: FloatArray, weighted: FloatArray) -> FloatArray:
+    """Normal matrices (2, 2, K)."""
+    return np.asarray(np.einsum("ikn,jkn->ijk", weighted, jacobian) + RIDGE, dtype=np.float64)
 
 
-def _normal(jacobian: FloatArray, weighted: FloatArray) -> Symmetric:
-    """Normal matrices."""
-    by_phi, by_target = _sums(weighted, jacobian[0]), _sums(weighted[1:], jacobian[1])
-    return by_phi[0] + RIDGE, by_phi[1], by_target[0] + RIDGE
-
-
-def _inverse(matrix: Symmetric) -> Symmetric:
-    a, b, d = matrix
-    inverse = 1.0 / (a * d - b * b)
-    return d * inverse, -b * inverse, a * inverse
-
-
-def _times(matrix: Symmetric, vector: FloatArray) -> FloatArray:
-    a, b, d = matrix
-    return np.stack([a * vector[0] + b * vector[1], b * vector[0] + d * vector[1]])
+def _inverse(matrices: FloatArray) -> FloatArray:
+    """Inverse of symmetric (2, 2, K)."""
+    (a, b), (_, d) = matrices
+    return np.asarray(COFACTOR_SIGNS * matrices[::-1, ::-1] / (a * d - b * b), dtype=np.float64)

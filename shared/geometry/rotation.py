@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shared.geometry.planar_model import PlanarMatches
-from shared.geometry.sphere import BoolArray, FloatArray, angle_between_rad, wrap_rad
+from shared.geometry.sphere import BoolArray, FloatArray, wrap_rad
 
 PAIRS = 200
 """Rotations drawn from two matches each; chosen: with half of the matches right, 50 of them are right."""
@@ -38,9 +38,10 @@ def fit_yaw(matches: PlanarMatches, threshold_rad: float) -> RotationFit:
     """
     reach = np.cos(REACH * threshold_rad)
     proposals = matches.lon_difference
-    level = matches.h_current * matches.h_target.conj()
-    upright = matches.z_current * matches.z_target
-    close = np.multiply.outer(np.exp(-1j * proposals), level).real >= reach - upright
+    level = matches.horizontal[0] * matches.horizontal[1].conj()
+    upright = matches.height[0] * matches.height[1]
+    turns = np.stack([np.cos(proposals), np.sin(proposals)], axis=1)
+    close = turns @ np.stack([level.real, level.imag]) >= reach - upright
     best = int(np.argmax(close.sum(axis=1)))
     yaw, mask = float(proposals[best]), close[best]
     weight = np.abs(level)  # near the poles a longitude says little
@@ -65,28 +66,26 @@ def fit_rotation(
     """Rotation R_current_target (3, 3) that explains most of (N, 3) bearings, and its (N,) inliers.
 
     Two matches give a rotation (TRIAD); the best is refined by the orthogonal Procrustes problem (Wahba).
-
+    The cosine b . R b_t of what a rotation R leaves is linear in the nine products of both bearings.
     """
-    count = len(current)
+    count, least = len(current), np.cos(REACH * threshold_rad)
     first = rng.integers(0, count, PAIRS)
     second = (first + rng.integers(1, count, PAIRS)) % count
-    hypotheses = _triad(current[first], current[second]) @ np.swapaxes(
-        _triad(target[first], target[second]), 1, 2
-    )
-    dot = np.einsum("ni,hij,nj->hn", current, hypotheses, target, optimize=True)
-    mask: BoolArray = dot[int(np.argmax(np.sum(dot >= np.cos(REACH * threshold_rad), axis=1)))] >= np.cos(
-        3.0 * threshold_rad
-    )
+    both = np.stack([current, target])
+    frames, frames_target = _triad(both[:, first], both[:, second])
+    products = (current[:, :, None] * target[:, None]).reshape(count, 9).T
+    near = (frames @ np.swapaxes(frames_target, 1, 2)).reshape(PAIRS, 9) @ products >= least
+    mask: BoolArray = near[int(np.argmax(near.sum(axis=1)))]
     rotation = np.eye(3)
     for _ in range(ROUNDS):
         u, _, vt = np.linalg.svd(current[mask].T @ target[mask])
         rotation = u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt
-        mask = angle_between_rad(current, target @ rotation.T) <= REACH * threshold_rad
+        mask = rotation.ravel() @ products >= least
     return np.asarray(rotation, dtype=np.float64), mask
 
 
 def _triad(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Orthonormal frames (H, 3, 3), columns from two bearings (H, 3) each; useless if parallel."""
+    """Orthonormal frames (..., 3, 3), columns from two bearings (..., 3) each; useless if parallel."""
     normal = np.cross(a, b)
-    normal = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
-    return np.stack([a, normal, np.cross(a, normal)], axis=2)
+    normal = normal / np.maximum(np.sqrt(np.sum(normal * normal, axis=-1, keepdims=True)), 1e-12)
+    return np.stack([a, normal, np.cross(a, normal)], axis=-1)

@@ -1,13 +1,21 @@
 """The folder of a world file, out of which nothing is read."""
 
 import hashlib
+import logging
+import time
+from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
 from simulator.assets.model import AssetError, Model
+from simulator.assets.model_cache import kept_model
 from simulator.assets.model_file import SUFFIXES, read_model
 from simulator.assets.picture_file import PICTURE_SUFFIXES, picture_from_bytes
+from simulator.scene.disk_cache import DiskCache
 from simulator.scene.parts import Picture
 
+log = logging.getLogger(__name__)
+
+TELL_S = 2.0  # between two lines about many models; chosen
 MOST_BYTES = 64_000_000  # untrusted input: chosen, ten times a scanned chair
 NAMED_SUFFIXES = (".mtl", ".bin")  # what a model may name beside pictures
 
@@ -15,9 +23,11 @@ NAMED_SUFFIXES = (".mtl", ".bin")  # what a model may name beside pictures
 class AssetFolder:
     """Reads models and pictures by their path relative to a folder, each file once."""
 
-    def __init__(self, folder: Path) -> None:
-        """Use the folder of a world file; nothing is read yet."""
+    def __init__(self, folder: Path, cache: DiskCache | None = None) -> None:
+        """Use the folder of a world file; nothing is read yet. The cache keeps models as they were read."""
         self._root = folder.resolve()
+        self._cache = cache or DiskCache.none()
+        self._told_s = time.monotonic()
         self._models: dict[Path, Model] = {}
         self._pictures: dict[Path, Picture] = {}
 
@@ -29,8 +39,20 @@ class AssetFolder:
         """
         path = self._find(name, SUFFIXES)
         if path not in self._models:
-            self._models[path] = read_model(path, self.read(path), self._beside(path))
+            data = self.read(path)
+            model = kept_model(
+                path.name, data, self._cache, lambda: read_model(path, data, self._beside(path))
+            )
+            self._models[path] = replace(model, cache=self._cache)
+            self._tell(path.name)
         return self._models[path]
+
+    def _tell(self, name: str) -> None:
+        """Say every few seconds how far it is."""
+        now_s = time.monotonic()
+        if now_s - self._told_s > TELL_S:
+            self._told_s = now_s
+            log.info("%d models read, the last is %s", len(self._models), name)
 
     def picture(self, name: str) -> Picture:
         """Read a picture; raises AssetError as `model` does."""

@@ -35,28 +35,28 @@ def header_of(data: bytes, name: str) -> dict[str, Any]:
     return header
 
 
-def check_header(header: dict[str, Any], name: str) -> None:
+def check_header(header: dict[str, Any], name: str, most_vertices: int = MOST_VERTICES) -> None:
     """Refuse what would exhaust memory or never end.
 
     Raises:
         AssetError: too many vertices or nodes, nodes that are no tree, or a header of another make.
     """
     try:
-        _check(header, name)
+        _check(header, name, most_vertices)
         textured_primitives(header)
     except (AttributeError, LookupError, TypeError) as error:
         raise AssetError(f"{name} is not a valid glTF file: {error!r:.120}; export it again") from error
 
 
-def _check(header: dict[str, Any], name: str) -> None:
+def _check(header: dict[str, Any], name: str, most_vertices: int) -> None:
     needed = [str(one) for one in header.get("extensionsRequired", [])]
     if any("draco" in one or "meshopt" in one for one in needed):
         raise AssetError(f"{name} is compressed ({', '.join(needed)}); export it without compression")
     for accessor in header.get("accessors", []):
         count = accessor.get("count", 0)
-        if not isinstance(count, int) or not 0 <= count <= MOST_VERTICES:
+        if not isinstance(count, int) or not 0 <= count <= most_vertices:
             raise AssetError(
-                f"{name} must have at most {MOST_VERTICES} vertices, got {count!r:.40}; reduce the mesh"
+                f"{name} must have at most {most_vertices} vertices, got {count!r:.40}; reduce the mesh"
             )
     nodes = header.get("nodes", [])
     if len(nodes) > MOST_NODES:

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from simulator.scene.disk_cache import DiskCache
 from simulator.scene.meshes import Mesh
 from simulator.scene.parts import Picture, Piece
 
@@ -27,25 +28,29 @@ class Patch:
         picture: its texture.
         mapped: whether the file gave texture coordinates, so that another picture can take this one's place.
         two_sided: whether the file wants its back seen.
+        seen: false for glass: it is looked through, but stops the robot.
     """
 
     mesh: Mesh
     picture: Picture
     mapped: bool
     two_sided: bool
+    seen: bool = True
 
 
 @dataclass(frozen=True)
 class Model:
     """All patches of a file. The digest, of the content and of the files it names, is the identity.
 
-    `kept` holds what was made of it, by options: a world is expanded several times.
+    `kept` holds what was made of it, by options: a world is expanded several times. `cache` keeps on disk
+    what takes longest.
     """
 
     digest: str
     name: str
     patches: tuple[Patch, ...] = field(compare=False, repr=False)
     kept: dict[Hashable, Piece] = field(default_factory=dict, compare=False, repr=False)
+    cache: DiskCache = field(default_factory=DiskCache.none, compare=False, repr=False)
 
     def vertices(self) -> FloatArray:
         """All vertices, (n, 3), in the axes of the file."""

@@ -17,6 +17,7 @@ SUFFIXES = (".glb", ".gltf", ".obj")
 MOST_TRIANGLES = 200_000  # untrusted input: as in gltf_guard
 GAMMA = 1 / 2.2  # of the renderer's textures; colours of glTF are linear
 GREY = (190, 190, 190)  # of what has no look; by eye
+GLASS = 0.5  # what is less opaque is looked through; also glTF's own alphaCutoff
 
 
 class Neighbours(Protocol):
@@ -40,7 +41,7 @@ def read_model(path: Path, data: bytes, neighbours: Neighbours) -> Model:
     name, suffix = path.name, path.suffix.lower().lstrip(".")
     header = {} if suffix == "obj" else header_of(data, name)
     check_header(header, name)
-    scene = _parsed(data, suffix, name, neighbours)
+    scene = parsed(data, suffix, name, neighbours)
     looks = [getattr(shape.visual, "material", None) for shape in scene.geometry.values()]
     pictures = sum(getattr(look, "baseColorTexture", None) is not None for look in looks)
     if pictures < textured_primitives(header):
@@ -72,7 +73,11 @@ def _patches(scene: Any, linear: bool, name: str) -> list[Patch]:
     return [patch for patch in patches if len(patch.mesh.triangles)]
 
 
-def _parsed(data: bytes, suffix: str, name: str, neighbours: Neighbours) -> Any:
+def parsed(data: bytes, suffix: str, name: str, neighbours: Neighbours) -> Any:
+    """The scene that trimesh makes of a file's content; AssetError if it makes none.
+
+    A file that it names and that cannot be read is an error where `neighbours` keeps it as a fault.
+    """
     import trimesh  # half a second, for worlds with models only
 
     class Named(trimesh.resolvers.Resolver):  # type: ignore[misc]
@@ -111,9 +116,9 @@ def _parsed(data: bytes, suffix: str, name: str, neighbours: Neighbours) -> Any:
 def _patch(shape: Any, transform: npt.NDArray[np.float64], linear: bool, name: str) -> Patch:
     """One geometry of the file; `linear` says that its colours are not gamma-encoded."""
     triangles = np.asarray(shape.faces, np.int64)
-    _check_arrays(np.asarray(shape.vertices, float), triangles, name)
+    check_arrays(np.asarray(shape.vertices, float), triangles, name)
     vertices = np.asarray(shape.vertices, float) @ transform[:3, :3].T + transform[:3, 3]
-    _check_arrays(vertices, triangles, name)
+    check_arrays(vertices, triangles, name)
     if np.linalg.det(transform[:3, :3]) < 0:
         triangles = triangles[:, ::-1]
     material = getattr(shape.visual, "material", None)
@@ -126,13 +131,13 @@ def _patch(shape: Any, transform: npt.NDArray[np.float64], linear: bool, name: s
         uvs = np.stack([uvs[:, 0], 1.0 - uvs[:, 1]], axis=-1)
     mesh, source = creased(vertices, triangles, uvs)
     two_sided = bool(getattr(material, "doubleSided", False))
-    base = _base_colour(material, linear)
+    base, seen = base_colour(material, linear), _opacity(material) >= GLASS
     if image is not None and uvs is not None:
-        pixels = picture_from_image(image, f"texture of {name}").pixels
+        pixels = picture_from_image(image, f"texture of {name}", _cutoff(material)).pixels
         if base.min() < 255:
-            pixels = (pixels * (base / 255.0)).astype(np.uint8)
-        return Patch(mesh, picture_of(pixels), True, two_sided)
-    colours = _vertex_colours(shape, linear)
+            pixels = (pixels * np.append(base / 255.0, 1.0)[: pixels.shape[2]]).astype(np.uint8)
+        return Patch(mesh, picture_of(pixels), True, two_sided, seen)
+    colours = vertex_colours(shape, linear)
     if colours is not None and material is None:
         base = np.full(3, 255.0)
     whole = np.broadcast_to(base, (len(vertices), 3)) if colours is None else colours * (base / 255.0)
@@ -141,13 +146,37 @@ def _patch(shape: Any, transform: npt.NDArray[np.float64], linear: bool, name: s
     own, pixels = painted(mesh, np.asarray(whole, np.uint8)[source])
     if uvs is not None:  # another picture may be put on it
         own = mesh if len(np.unique(whole, axis=0)) == 1 else own
-    return Patch(own, picture_of(pixels), uvs is not None and own is mesh, two_sided)
+    return Patch(own, picture_of(pixels), uvs is not None and own is mesh, two_sided, seen)
 
 
-def _check_arrays(vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64], name: str) -> None:
-    if len(triangles) > MOST_TRIANGLES or len(vertices) > MOST_VERTICES:
+def _opacity(material: Any) -> float:
+    """Of a whole surface, 0 to 1: what a glTF material that blends says."""
+    factor = getattr(material, "baseColorFactor", None)
+    if getattr(material, "alphaMode", None) != "BLEND" or factor is None:
+        return 1.0
+    return float(np.asarray(factor, float).reshape(-1)[3]) / 255.0
+
+
+def _cutoff(material: Any) -> float | None:
+    """Less opaque than this a texture has holes; None where its opacity does not count."""
+    mode = getattr(material, "alphaMode", None)
+    if mode == "MASK":
+        cutoff = getattr(material, "alphaCutoff", None)
+        return GLASS if cutoff is None else float(cutoff)
+    return GLASS if mode == "BLEND" else None
+
+
+def check_arrays(
+    vertices: npt.NDArray[np.float64],
+    triangles: npt.NDArray[np.int64],
+    name: str,
+    most_triangles: int = MOST_TRIANGLES,
+    most_vertices: int = MOST_VERTICES,
+) -> None:
+    """Raise AssetError unless triangles name vertices that are there, finite and not too many."""
+    if len(triangles) > most_triangles or len(vertices) > most_vertices:
         raise AssetError(
-            f"{name} must have at most {MOST_TRIANGLES} triangles and {MOST_VERTICES} vertices, "
+            f"{name} must have at most {most_triangles} triangles and {most_vertices} vertices, "
             f"got {len(triangles)} and {len(vertices)}; reduce the mesh"
         )
     if triangles.ndim != 2 or triangles.shape[1] != 3 or vertices.ndim != 2 or vertices.shape[1] != 3:
@@ -168,7 +197,7 @@ def _check_arrays(vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.i
         )
 
 
-def _base_colour(material: Any, linear: bool) -> npt.NDArray[np.float64]:
+def base_colour(material: Any, linear: bool) -> npt.NDArray[np.float64]:
     """Colour that the texture or the vertices are multiplied with, gamma-encoded 0..255; (3,)."""
     factor = getattr(material, "baseColorFactor", None)
     if factor is None and material is not None and getattr(material, "image", None) is None:
@@ -186,7 +215,7 @@ def _base_colour(material: Any, linear: bool) -> npt.NDArray[np.float64]:
     return np.asarray(np.round(255.0 * (colour / 255.0) ** GAMMA) if linear else colour)
 
 
-def _vertex_colours(shape: Any, linear: bool) -> npt.NDArray[np.float64] | None:
+def vertex_colours(shape: Any, linear: bool) -> npt.NDArray[np.float64] | None:
     """(n, 3) gamma-encoded 0..255, None if the file gives none."""
     colours = None
     if getattr(shape.visual, "kind", None) == "vertex":

@@ -28,8 +28,11 @@ def picture_from_bytes(data: bytes, name: str) -> Picture:
     return picture_from_image(opened, name)
 
 
-def picture_from_image(image: Any, name: str) -> Picture:
-    """Decode a picture that Pillow has opened; see `picture_from_bytes`."""
+def picture_from_image(image: Any, name: str, cutoff: float | None = None) -> Picture:
+    """Decode a picture that Pillow has opened; see `picture_from_bytes`.
+
+    With a `cutoff` there are holes where its opacity, 0 to 1, is below: RGBA bytes, if there are any.
+    """
     width, height = image.size
     if max(width, height) > MOST_SIDE_PX:
         raise AssetError(
@@ -37,13 +40,19 @@ def picture_from_image(image: Any, name: str) -> Picture:
             f"got {width} x {height}; scale it down"
         )
     try:
-        pixels = np.ascontiguousarray(image.convert("RGB"), np.uint8)
+        pixels = np.array(image.convert("RGB" if cutoff is None else "RGBA"), np.uint8)
     except (OSError, ValueError, SyntaxError, MemoryError, EOFError) as error:
         raise AssetError(f"picture {name!r:.80} is broken: {error!s:.120}; export it again") from error
+    if cutoff is None:
+        return picture_of(pixels)
+    holes = pixels[..., 3] < 255.0 * cutoff
+    if not holes.any():
+        return picture_of(np.ascontiguousarray(pixels[..., :3]))
+    pixels[..., 3] = np.where(holes, 0, 255)
     return picture_of(pixels)
 
 
 def picture_of(pixels: npt.NDArray[np.uint8]) -> Picture:
-    """A texture of (height, width, 3) RGB bytes, named by its content."""
+    """A texture of (height, width, 3) RGB or (height, width, 4) RGBA bytes, named by its content."""
     digest = hashlib.sha256(repr(pixels.shape).encode() + pixels.tobytes()).hexdigest()
     return Picture(digest[:32], pixels)

@@ -28,7 +28,7 @@ MOST_LENGTH_M = 100.0
 MOST_VALUES = 100
 MOST_TEXT = 200
 MOST_DEPTH = 3
-MOST_PARTS = 3000
+MOST_PARTS = 20_000  # the outlines of a floor of offices
 MOST_SIZE_M = 400.0
 
 FileKind = Literal["model", "picture"]
@@ -40,7 +40,8 @@ class Kind:
 
     name: str
     function: Callable[..., Piece]
-    files: Mapping[str, FileKind] = field(default_factory=dict)  # options that name files
+    files: Mapping[str, FileKind] = field(default_factory=dict)
+    """Options that name files; "collision.file": the key `file` of a mapping."""
 
     def options(self) -> list[str]:
         """Names of its options."""
@@ -52,18 +53,23 @@ class Kind:
         Raises:
             ValueError: there is no folder to read from, or a file cannot be used.
         """
-        read: dict[str, Any] = {}
-        for name in self.files.keys() & options.keys():
-            value = options[name]
-            if value is None or not isinstance(value, str):
+        read = dict(options)
+        for path, kind in self.files.items():
+            outer, _, name = path.rpartition(".")
+            inner = read.get(outer)
+            holder = read if not outer else dict(inner) if isinstance(inner, dict) else {}
+            value = holder.get(name)
+            if not isinstance(value, str):
                 continue
             if folder is None:
-                raise ValueError(f"{self.name}.{name}: files are found beside a world file; use load_world")
+                raise ValueError(f"{self.name}.{path}: files are found beside a world file; use load_world")
             try:
-                read[name] = folder.model(value) if self.files[name] == "model" else folder.picture(value)
+                holder[name] = folder.model(value) if kind == "model" else folder.picture(value)
             except ValueError as error:
-                raise ValueError(f"{self.name}.{name}: {error}") from error
-        return {**options, **read}
+                raise ValueError(f"{self.name}.{path}: {error}") from error
+            if outer:
+                read[outer] = holder
+        return read
 
     def check(self, options: dict[str, Any]) -> None:
         """Raise ValueError if an option is unknown or does not fit."""

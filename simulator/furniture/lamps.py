@@ -1,4 +1,4 @@
-"""Ceiling light, light panel, floor lamp, table lamp."""
+"""Ceiling light, light panel, floor lamp, table lamp, and light without any lamp."""
 
 import numpy as np
 
@@ -65,3 +65,12 @@ def table_lamp(rng: np.random.Generator, strength: float = 0.35, colour: Rgb = (
         post(0.0, 0.0, (0.22, 0.42), 0.13, shade, solid=False, taper=0.7, casts_shadow=False),
     )
     return Piece(parts, (Light((0.0, 0.0, 0.44), (0.06, 0.06, 0.06), _power(strength)),))
+
+
+def light(
+    rng: np.random.Generator, strength: float = 3.6, colour: Rgb = (255, 255, 255), clear_m: float = 0.6
+) -> Piece:
+    """Light without a lamp, for models that bring theirs; what is within `clear_m` of it casts no shadow."""
+    del rng
+    r, g, b = (strength * (channel / 255.0) for channel in colour)
+    return Piece((), (Light((0.0, 0.0, 0.0), (0.1, 0.1, 0.1), (r, g, b), clear_m=clear_m),))

@@ -44,6 +44,8 @@ class _Options(dict[str, Any]):
 @lru_cache(maxsize=4096)
 def _extent(kind: str, text: str, options: _Options, seed: int) -> Extent:  # noqa: ARG001
     parts = FURNITURE[kind].build(options, seed).parts
+    if not parts:  # nothing but light
+        return Extent(Rect(0.0, 0.0, 0.0, 0.0), False, 0.0, 0.0)
     corners, heights, solid = [], [], False
     for part in parts:
         half = np.array(part.size_m) / 2

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from simulator.generation.pieces import Placed
 from simulator.generation.plans.rectangles import Point, Rect
 from simulator.world.freespace import FreeSpace, free_space
-from simulator.world.world_check import TIGHT_M, examine
+from simulator.world.world_check import TIGHT_M, cut_off, examine
 from simulator.world.world_file import WorldFile
 
 MENDINGS = 25
@@ -57,7 +57,7 @@ def wrong_at(world: WorldFile) -> Point | None:
     if report.cut_off_m2 <= CUT_OFF_M2 and not report.unreachable:
         return None
     space = free_space(world)
-    lost = (space.clearance_m >= space.robot_radius_m) & ~space.free
+    lost = cut_off(space)
     if lost.any():
         return _gap_to(space, _largest(lost))
     room = next(room for room in world.rooms if room.name in report.unreachable)

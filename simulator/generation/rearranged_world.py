@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from simulator.assets.folder import AssetFolder
+from simulator.cache_folder import user_cache
 from simulator.generation.mending import mended, wrong_at
 from simulator.generation.pieces import Placed, piece_at
 from simulator.generation.rearranging import Rearranging
@@ -37,8 +39,9 @@ def rearrange_file(world: str, into: Path, seed: int, share: float = 0.3) -> Wor
         GenerationError: the robot cannot get everywhere whatever is taken away.
     """
     path = world_path(world)
+    assets = AssetFolder(path.parent, user_cache())
     contents = rearranged(
-        read_contents(path), lambda some: world_of(path, some), np.random.default_rng(seed), share
+        read_contents(path), lambda some: world_of(path, some, assets), np.random.default_rng(seed), share
     )
     return write_world(into, {**contents, "name": f"{contents['name']}-rearranged"})
 
@@ -65,7 +68,11 @@ def rearranged(
     room = Rearranging(world, len(items), rng)
     for k in rng.permutation(room.movable)[: round(share * len(room.movable))].tolist():
         (room.remove, room.move, room.exchange)[int(rng.integers(3))](k)
-    kept = [(item, piece) for item, piece in zip(items, room.pieces, strict=False) if piece is not None]
+    kept = [
+        (_looks(item, items[source]), piece)
+        for item, piece, source in zip(items, room.pieces, room.sources, strict=False)
+        if piece is not None
+    ]
     kept += [({}, leaf) for leaf in _leaves(world, rng)]
     strength = float(rng.uniform(*LIGHT))
     written = {id(piece): _written(item, piece, strength) for item, piece in kept}
@@ -80,10 +87,15 @@ def rearranged(
     return whole(mended(pieces, lambda some: load(whole(some))))
 
 
+def _looks(item: Contents, other: Contents) -> Contents:
+    """The item itself, or nothing but the kind and the options of another that takes its place."""
+    return item if item is other else {key: other[key] for key in ("kind", "options") if key in other}
+
+
 def _written(item: Contents, piece: Placed, strength: float) -> Contents:
     """An item where its piece stands; options keep the words they were written in, lamps shine otherwise."""
-    if item.get("kind") != piece.kind:
-        item = {"kind": piece.kind, **({"options": piece.options} if piece.options else {})}
+    if not item:
+        item = {"kind": piece.kind, "options": piece.options}
     options = item.get("options", {})
     if "strength" in options:
         item = {**item, "options": {**options, "strength": round(options["strength"] * strength, 2)}}

@@ -56,6 +56,11 @@ class DiskCache:
         self._works = folder is not None
         self._lock = threading.Lock()
 
+    @classmethod
+    def none(cls) -> "DiskCache":
+        """One that keeps nothing."""
+        return cls(None, 0)
+
     def fetch(self, key: str, make: Callable[[], Arrays]) -> list[npt.NDArray[Any]]:
         """Return the arrays kept under a key, or make and keep them.
 

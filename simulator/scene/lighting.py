@@ -105,8 +105,16 @@ def _direct(
     strength = cosine / (SOFT_M2 + squared)
     lit = np.flatnonzero(strength > CLEAR_SHARE)
     visible = np.zeros(len(start), np.float32)
-    visible[lit] = ~grid.hit(start[lit] + START_M * normals[lit], point)
+    begin = start[lit] + START_M * normals[lit]
+    visible[lit] = ~grid.hit(begin, grid.ends_inside(begin, _before(begin, point, light.clear_m)))
     return np.asarray((strength * visible)[:, None] * np.array(light.power, np.float32), np.float32)
+
+
+def _before(start: FloatArray, point: FloatArray, clear_m: float) -> FloatArray:
+    """Where rays from (n, 3) points end that need not come nearer to a point than `clear_m`."""
+    delta = point - start
+    length = np.maximum(np.linalg.norm(delta, axis=1, keepdims=True), 1e-6)
+    return np.asarray(start + delta * np.maximum(1.0 - clear_m / length, 0.0), np.float32)
 
 
 def _openness(start: FloatArray, normals: FloatArray, grid: "_FilledGrid") -> FloatArray:
@@ -156,6 +164,20 @@ class _FilledGrid:
             ((points - self._low) / self._cell_m).astype(int), 0, np.array(self._filled.shape) - 1
         ).T
         self._filled[i, j, k] = True
+
+    def ends_inside(self, start: FloatArray, end: FloatArray) -> FloatArray:
+        """Ends of segments from (n, 3) points inside, where the grid ends for those that leave it."""
+        low, high = self._low + self._cell_m, self._high - self._cell_m
+        outside = np.flatnonzero(((end < low) | (end > high)).any(axis=1))
+        if not len(outside):
+            return end
+        begin, delta = start[outside], end[outside] - start[outside]
+        room = np.where(delta > 0.0, high - begin, low - begin)
+        moving = np.abs(delta) > 1e-6
+        share = np.where(moving, room / np.where(moving, delta, 1.0), np.inf).min(axis=1)
+        inside = end.copy()
+        inside[outside] = begin + delta * np.clip(share, 0.0, 1.0)[:, None]
+        return inside
 
     def way_out_m(self, start: FloatArray, unit: FloatArray) -> FloatArray:
         """Distance along one direction until the grid ends, from each of (n, 3) points inside; (n,)."""

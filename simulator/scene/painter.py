@@ -54,7 +54,7 @@ class Painter:
                 self._ordered[look] = self._pool.submit(self._paint, *look)
 
     def take(self, material: Material) -> Image:
-        """Wait for the texture of a material, and forget it; (height, width, 3) RGB bytes."""
+        """Wait for the texture of a material, and forget it; (height, width, 3) RGB bytes, 4 with holes."""
         if material.picture is not None:
             return material.picture.pixels
         self.order([material])

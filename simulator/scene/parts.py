@@ -1,6 +1,6 @@
 """Parts: the simple solids of which worlds are made. Pure; rendering, physics and sensors read them."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -20,10 +20,18 @@ Shape = Literal["box", "cylinder", "ellipsoid", "cushion", "drape", "leaf", "mes
 
 @dataclass(frozen=True)
 class Picture:
-    """Texture from a file: (height, width, 3) RGB bytes, row 0 at the top. The digest is the identity."""
+    """Texture from a file: (height, width, 3) RGB bytes, row 0 at the top. The digest is the identity.
+
+    A fourth channel of 0 or 255 says where there are holes. `source` is the bytes, or makes them.
+    """
 
     digest: str
-    pixels: npt.NDArray[np.uint8] = field(compare=False, repr=False)
+    source: npt.NDArray[np.uint8] | Callable[[], npt.NDArray[np.uint8]] = field(compare=False, repr=False)
+
+    @property
+    def pixels(self) -> npt.NDArray[np.uint8]:
+        """The bytes; decoded at each call where they are packed."""
+        return self.source() if callable(self.source) else self.source
 
 
 @dataclass(frozen=True)
@@ -88,12 +96,16 @@ class Part:
 
 @dataclass(frozen=True)
 class Light:
-    """An area that shines: `facing` None shines evenly all round, else with the cosine to that direction."""
+    """An area that shines: `facing` None shines evenly all round, else with the cosine to that direction.
+
+    What is within `clear_m` of it casts no shadow: the shade of a lamp that a model brings.
+    """
 
     centre_m: Vec3
     size_m: Vec3
     power: tuple[float, float, float]
     facing: Vec3 | None = None
+    clear_m: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -38,14 +38,11 @@ def prisms_of(vertices: FloatArray, triangles: npt.NDArray[np.integer]) -> list[
     """
     _, place = np.unique(np.round(vertices, 5), axis=0, return_inverse=True)
     places = place.reshape(-1)[triangles]
-    low, high = float(vertices[:, 2].min()), float(vertices[:, 2].max())
-    cuts = np.arange(low, min(high, SLICED_M), SLICE_M)
-    cuts = np.append(cuts[: max(1, len(cuts))], max(high, low + SKIN_M))
     done: list[Prism] = []
     open_: list[Prism] = []
-    for z0, z1 in pairwise(cuts):
-        fresh = _slice(vertices, triangles, places, float(z0), float(z1))
-        closed, open_ = _continued(open_, fresh)
+    for z0, z1 in slices_of(vertices):
+        fresh = _slice(vertices, triangles, places, z0, z1)
+        closed, open_ = continued(open_, fresh)
         done += closed
     done += open_
     if len(done) > MOST_PRISMS:
@@ -56,17 +53,37 @@ def prisms_of(vertices: FloatArray, triangles: npt.NDArray[np.integer]) -> list[
     return done
 
 
+def slices_of(vertices: FloatArray) -> list[tuple[float, float]]:
+    """Heights between which a mesh is cut: SLICE_M apart up to SLICED_M, one slice above."""
+    low, high = float(vertices[:, 2].min()), float(vertices[:, 2].max())
+    cuts = np.arange(low, min(high, SLICED_M), SLICE_M)
+    cuts = np.append(cuts[: max(1, len(cuts))], max(high, low + SKIN_M))
+    return [(float(z0), float(z1)) for z0, z1 in pairwise(cuts)]
+
+
+def within(
+    vertices: FloatArray, triangles: npt.NDArray[np.integer], z0: float, z1: float
+) -> npt.NDArray[np.bool_]:
+    """Which triangles reach into a slice, (n,)."""
+    z = vertices[triangles, 2]
+    chosen = (z.max(axis=1) >= z0) & (z.min(axis=1) < z1)
+    if z1 - z0 > SKIN_M and chosen.any():  # a top that only touches the lower cut belongs below
+        chosen &= (z.max(axis=1) > z0 + 1e-6) | (z.min(axis=1) >= z0)
+    return np.asarray(chosen)
+
+
 def hull_outline(points: FloatArray) -> FloatArray:
     """Convex outline of (n, 2) points with a skin, of at most DIRECTIONS corners, counter-clockwise."""
     skin = SKIN_M / 2 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], float)
-    return _convex((points[:, None] + skin).reshape(-1, 2))
+    return convex((points[:, None] + skin).reshape(-1, 2))
 
 
-def _convex(points: FloatArray) -> FloatArray:
+def convex(points: FloatArray) -> FloatArray:
+    """Convex outline of (n, 2) points, of at most DIRECTIONS corners, counter-clockwise."""
     hull = cv2.convexHull(points.astype(np.float32)).reshape(-1, 2).astype(float)
     if len(hull) > DIRECTIONS:
         hull = _circumscribed(hull)
-    return np.asarray(hull if _twice_area(hull) > 0 else hull[::-1])
+    return np.asarray(hull if twice_area(hull) > 0 else hull[::-1])
 
 
 def _circumscribed(hull: FloatArray) -> FloatArray:
@@ -88,15 +105,13 @@ def _slice(
     z0: float,
     z1: float,
 ) -> list[Prism]:
-    z = vertices[triangles, 2]
-    chosen = (z.max(axis=1) >= z0) & (z.min(axis=1) < z1)
-    if z1 - z0 > SKIN_M and chosen.any():  # a top that only touches the lower cut belongs below
-        chosen &= (z.max(axis=1) > z0 + 1e-6) | (z.min(axis=1) >= z0)
+    chosen = within(vertices, triangles, z0, z1)
     if not chosen.any():
         return []
-    triangles, places, z = triangles[chosen], places[chosen], z[chosen]
+    triangles, places = triangles[chosen], places[chosen]
+    z = vertices[triangles, 2]
     group = _connected(places, z, z0, z1)
-    points, owner = _clipped(vertices, triangles, z0, z1)
+    points, owner = clipped(vertices, triangles, z0, z1)
     group = _coarsened(group[owner], points)
     found = []
     for k in np.unique(group):
@@ -106,7 +121,7 @@ def _slice(
     return found
 
 
-def _clipped(
+def clipped(
     vertices: FloatArray, triangles: npt.NDArray[np.integer], z0: float, z1: float
 ) -> tuple[FloatArray, npt.NDArray[np.int64]]:
     """Corners of the triangles within z0..z1, and where their edges pass z0 and z1; with their triangles."""
@@ -160,7 +175,7 @@ def _coarsened(group: npt.NDArray[np.int64], points: FloatArray) -> npt.NDArray[
     return np.asarray(cell.reshape(-1)[back], np.int64)
 
 
-def _continued(below: list[Prism], fresh: list[Prism]) -> tuple[list[Prism], list[Prism]]:
+def continued(below: list[Prism], fresh: list[Prism]) -> tuple[list[Prism], list[Prism]]:
     """Join prisms of a slice to those below them that have nearly the same outline.
 
     Returns:
@@ -172,9 +187,9 @@ def _continued(below: list[Prism], fresh: list[Prism]) -> tuple[list[Prism], lis
         for other in left:
             if abs(prism.low_m - other.high_m) > SKIN_M:
                 continue
-            both = _convex(np.concatenate([prism.outline_m, other.outline_m]))
-            least = min(_twice_area(prism.outline_m), _twice_area(other.outline_m))
-            if _twice_area(both) < SAME_AREA * least + SKIN_M**2:
+            both = convex(np.concatenate([prism.outline_m, other.outline_m]))
+            least = min(twice_area(prism.outline_m), twice_area(other.outline_m))
+            if twice_area(both) < SAME_AREA * least + SKIN_M**2:
                 whole = Prism(other.low_m, prism.high_m, both)
                 left = [one for one in left if one is not other]
                 break
@@ -182,7 +197,7 @@ def _continued(below: list[Prism], fresh: list[Prism]) -> tuple[list[Prism], lis
     return left, grown
 
 
-def _twice_area(outline: FloatArray) -> float:
+def twice_area(outline: FloatArray) -> float:
     """Twice the area that an outline encloses, positive if it runs counter-clockwise."""
     x, y = outline.T
     return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())

@@ -148,7 +148,8 @@ class RenderScene:
     def _material(self, material: Material) -> render.RenderMaterial:
         look = look_of(material)
         if look not in self._looks:
-            rgba = cv2.cvtColor(self._painter.take(material), cv2.COLOR_RGB2RGBA)
+            pixels = self._painter.take(material)
+            rgba = pixels if pixels.shape[2] == 4 else cv2.cvtColor(pixels, cv2.COLOR_RGB2RGBA)
             levels = int(math.log2(min(rgba.shape[:2]))) + 1
             made = render.RenderMaterial()
             made.base_color_texture = render.RenderTexture2D(rgba, "R8G8B8A8Unorm", mipmap_levels=levels)

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from simulator.scene.parts import Material, Part, Span, Vec3
+from simulator.scene.prisms import Prism
 
 
 def around(middle: float, half: float) -> Span:
@@ -48,3 +49,15 @@ def post(x: float, y: float, z: Span, radius: float, material: Material, **optio
     """An upright cylinder."""
     part = Part("cylinder", (x, y, (z[0] + z[1]) / 2), (2 * radius, 2 * radius, z[1] - z[0]), material)
     return replace(part, **options)  # type: ignore[arg-type]
+
+
+def hull_part(prism: Prism, look: Material) -> Part:
+    """A prism as a part; `look` is never seen, and had better be one that the world has."""
+    low, high = prism.outline_m.min(axis=0), prism.outline_m.max(axis=0)
+    middle = (low + high) / 2
+    corners = tuple((round(float(x), 5), round(float(y), 5)) for x, y in prism.outline_m - middle)
+    return Part(
+        "hull", (float(middle[0]), float(middle[1]), (prism.low_m + prism.high_m) / 2),
+        (float(high[0] - low[0]), float(high[1] - low[1]), prism.high_m - prism.low_m),
+        look, casts_shadow=False, outline_m=corners,
+    )  # fmt: skip

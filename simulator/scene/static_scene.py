@@ -1,5 +1,6 @@
 """What never moves, ready for the renderer: one lit mesh per material. Pure but for the cache passed in."""
 
+import logging
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,8 @@ from simulator.scene.mesh_shapes import mesh_of
 from simulator.scene.meshes import FloatArray, Mesh, facing_any, joined
 from simulator.scene.parts import Light, Material, Part
 from simulator.world.world_file import Lighting
+
+log = logging.getLogger(__name__)
 
 CODE = ("curved_shapes.py", "lighting.py", "mesh_shapes.py", "meshes.py", "parts.py", "texturing.py")
 
@@ -70,6 +73,7 @@ def _lit(
     sun: Sunlight | None,
     alike: bool,
 ) -> list[LitMesh]:
+    log.info("computing the light of %d parts", len(parts))
     culled = {material: facing_any(mesh, viewpoints) for material, mesh in by_material(parts).items()}
     groups = {material: mesh for material, mesh in culled.items() if len(mesh.triangles)}
     whole = joined(list(groups.values()))

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from simulator.furniture.catalogue import FURNITURE
 from simulator.scene.parts import Contents, Light, Part, Piece, moved
+from simulator.world.brought_floor import edges
 from simulator.world.grounds import ground_parts
 from simulator.world.items import Item
 from simulator.world.rooms import room_parts
@@ -20,7 +21,7 @@ def placed(item: Item, alike: bool = False) -> Piece:
 
 
 def expand(world: WorldFile) -> Contents:
-    """All parts (building and grounds first, then furniture in file order) and all lights."""
+    """All parts (building and grounds first, then furniture in file order, then edges) and all lights."""
     parts: list[Part] = [*room_parts(world), *ground_parts(world)]
     if world.alike:
         parts = [replace(part, texture_at_m=(0.0, 0.0, 0.0)) for part in parts]
@@ -29,4 +30,5 @@ def expand(world: WorldFile) -> Contents:
         piece = placed(item, world.alike)
         parts.extend(piece.parts)
         lights.extend(piece.lights)
+    parts += edges(world, tuple(parts))
     return tuple(parts), tuple(lights)

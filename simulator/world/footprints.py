@@ -10,6 +10,7 @@ from shared.geometry.perspective import rotation_z
 from simulator.scene.parts import Part, solids_between
 
 FloatArray = npt.NDArray[np.float64]
+ROUNDING_M = 1e-9
 
 
 def _no_polygons() -> FloatArray:
@@ -40,6 +41,20 @@ class Footprints:
             np.concatenate([self.disc_centres_m, walking.disc_centres_m]),
             np.concatenate([self.disc_radii_m, walking.disc_radii_m]),
             self.polygons_m,
+        )
+
+    def within(self, origin_m: FloatArray, reach_m: float) -> "Footprints":
+        """Those that something within reach of a point (2,) may belong to."""
+        far_m = np.hypot(*(self.centres_m - origin_m).T) - np.hypot(*self.halves_m.T)
+        disc_far_m = np.hypot(*(self.disc_centres_m - origin_m).T) - self.disc_radii_m
+        near, near_discs = far_m < reach_m, disc_far_m < reach_m
+        return Footprints(
+            self.centres_m[near],
+            self.halves_m[near],
+            self.yaws_rad[near],
+            self.disc_centres_m[near_discs],
+            self.disc_radii_m[near_discs],
+            _within(self.polygons_m, origin_m, reach_m),
         )
 
 
@@ -82,16 +97,20 @@ def clearance_m(points_m: FloatArray, shapes: Footprints) -> FloatArray:
 def clearance_grid_m(xs_m: FloatArray, ys_m: FloatArray, shapes: Footprints, far_m: float) -> FloatArray:
     """Distance from each point of a grid to the nearest outline, at most far_m; (len(ys), len(xs)) metres.
 
-    Each outline is compared with the points near it only, so that large worlds take seconds.
+    Each outline is compared only with the points that are nearer to a box round it than to what came before,
+    so that large worlds, and worlds of many outlines, take seconds.
     """
     best = np.full((len(ys_m), len(xs_m)), far_m)
     for low, high, one in _each(shapes):
         columns = slice(*np.searchsorted(xs_m, (low[0] - far_m, high[0] + far_m)))
         rows = slice(*np.searchsorted(ys_m, (low[1] - far_m, high[1] + far_m)))
-        window = best[rows, columns]
-        if window.size:
-            points = np.stack(np.meshgrid(xs_m[columns], ys_m[rows]), axis=-1).reshape(-1, 2)
-            np.minimum(window, clearance_m(points, one).reshape(window.shape), out=window)
+        window, xs, ys = best[rows, columns], xs_m[columns], ys_m[rows]
+        dx = np.maximum(np.maximum(low[0] - xs, xs - high[0]), 0.0)
+        dy = np.maximum(np.maximum(low[1] - ys, ys - high[1]), 0.0)
+        row, column = np.nonzero(dx[None] ** 2 + dy[:, None] ** 2 <= (window + ROUNDING_M) ** 2)
+        if len(row):
+            found = clearance_m(np.stack([xs[column], ys[row]], axis=-1), one)
+            window[row, column] = np.minimum(window[row, column], found)
     return best
 
 
@@ -119,6 +138,7 @@ def cast_rays(origin_m: FloatArray, angles_rad: FloatArray, shapes: Footprints, 
     Slab test for rectangles, quadratic for discs; a ray that starts inside an outline gives 0.
     """
     best = np.full(len(angles_rad), max_m)
+    shapes = shapes.within(origin_m, max_m)
     if len(shapes.yaws_rad):
         start = _into(origin_m - shapes.centres_m, shapes.yaws_rad)
         relative = angles_rad[:, None] - shapes.yaws_rad[None, :]
@@ -137,9 +157,8 @@ def cast_rays(origin_m: FloatArray, angles_rad: FloatArray, shapes: Footprints, 
         half = np.sqrt(np.maximum(shapes.disc_radii_m**2 - gap2, 0.0))
         hit = (gap2 <= shapes.disc_radii_m**2) & (along + half >= 0.0)
         best = np.minimum(best, np.where(hit, np.maximum(along - half, 0.0), np.inf).min(axis=1))
-    near = _within(shapes.polygons_m, origin_m, max_m)
-    if len(near):
-        best = np.minimum(best, _cast_at_polygons(origin_m, angles_rad, near).min(axis=1))
+    if len(shapes.polygons_m):
+        best = np.minimum(best, _cast_at_polygons(origin_m, angles_rad, shapes.polygons_m).min(axis=1))
     return best
 
 

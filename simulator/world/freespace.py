@@ -1,7 +1,7 @@
 """Free floor of a world: where a robot fits, shortest ways, lines of sight, random poses. Pure."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import cv2
@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simulator.scene.parts import Part, rotation_of
+from simulator.world.brought_floor import floor_grid
 from simulator.world.contents import expand
 from simulator.world.footprints import clearance_grid_m, footprints
 from simulator.world.grid_search import shortest_cells
@@ -19,6 +20,8 @@ Point = tuple[float, float]
 BODY_BAND_M = (0.02, 0.79)  # heights in which the robot hits things: above thresholds, below the camera
 FINE_M, COARSE_M = 0.05, 0.1  # cells; chosen: a fifth of the robot's radius, and twice that beyond
 SMALL_WORLD_M = 30.0  # this size; larger worlds would take minutes
+CAMERA_M = 0.8  # height of the camera, as in settings.CameraSettings
+LOOKED_OVER_M = 0.3  # what ends so far above the camera hides a strip of the walls behind it only; chosen
 FAR_M = 3.0  # clearances beyond this are of no interest and not computed; chosen
 
 
@@ -91,7 +94,11 @@ class FreeSpace:
         path = self.shortest_path(start, goal)
         return sum(math.dist(a, b) for a, b in pairwise(path)) if path else math.inf
 
-    def line_of_sight(self, a: Point, b: Point, height_m: float = 0.8) -> bool:
+    def in_view(self, a: Point, b: Point) -> bool:
+        """Whether pictures of two points show the same: a table or a chair between them is looked over."""
+        return self.line_of_sight(a, b) or self.line_of_sight(a, b, CAMERA_M + LOOKED_OVER_M)
+
+    def line_of_sight(self, a: Point, b: Point, height_m: float = CAMERA_M) -> bool:
         """Whether no wall and no solid furniture stands between two points at a height."""
         return not _blocked(self.parts, (*a, height_m), (*b, height_m))
 
@@ -131,6 +138,14 @@ def free_space(
         robot_radius_m: of the disc.
         resolution_m: side of a cell; None takes a finer one for small worlds.
     """
+    whole = ground_clearance(world, robot_radius_m, resolution_m)
+    return replace(whole, free=_flood(whole.free, whole.cell((world.start.x_m, world.start.y_m))))
+
+
+def ground_clearance(
+    world: WorldFile, robot_radius_m: float = 0.26, resolution_m: float | None = None
+) -> FreeSpace:
+    """The same with all floor where the disc fits, whether one gets there from the start or not."""
     parts, _ = expand(world)
     rects = world.rectangles()
     x0, y0 = min(r[0][0] for r in rects), min(r[1][0] for r in rects)
@@ -139,14 +154,10 @@ def free_space(
         resolution_m = FINE_M if max(x1 - x0, y1 - y0) <= SMALL_WORLD_M else COARSE_M
     xs = np.arange(x0, x1 + resolution_m / 2, resolution_m)
     ys = np.arange(y0, y1 + resolution_m / 2, resolution_m)
-    inside = np.zeros((len(ys), len(xs)), bool)
-    for rx, ry in rects:
-        inside |= ((xs >= rx[0]) & (xs <= rx[1]))[None, :] & ((ys >= ry[0]) & (ys <= ry[1]))[:, None]
+    inside = floor_grid(world, parts, xs, ys)
     clearance = np.where(inside, clearance_grid_m(xs, ys, footprints(parts, *BODY_BAND_M), FAR_M), 0.0)
     origin = (float(x0), float(y0))
-    whole = FreeSpace(clearance >= robot_radius_m, clearance, origin, resolution_m, robot_radius_m, parts)
-    reached = _flood(whole.free, whole.cell((world.start.x_m, world.start.y_m)))
-    return FreeSpace(reached, clearance, origin, resolution_m, robot_radius_m, parts)
+    return FreeSpace(clearance >= robot_radius_m, clearance, origin, resolution_m, robot_radius_m, parts)
 
 
 def _flood(free: npt.NDArray[np.bool_], start: tuple[int, int]) -> npt.NDArray[np.bool_]:
@@ -171,6 +182,21 @@ def _blocked(parts: tuple[Part, ...], a: tuple[float, float, float], b: tuple[fl
         half = np.array(part.size_m) / 2
         t0, t1 = (-half - local) / step, (half - local) / step
         near, far = np.minimum(t0, t1).max(), np.maximum(t0, t1).min()
-        if near <= far and far >= 0.0 and near <= 1.0:
+        if near > far or far < 0.0 or near > 1.0:
+            continue
+        if part.shape != "hull" or _crosses(np.array(part.outline_m), local[:2], step[:2]):
             return True
     return False
+
+
+def _crosses(outline: FloatArray, start: FloatArray, step: FloatArray) -> bool:
+    """Whether a segment meets a convex outline, (corners, 2) counter-clockwise, by clipping at its edges."""
+    along = np.roll(outline, -1, axis=0) - outline
+    normals = np.stack([along[:, 1], -along[:, 0]], axis=-1)
+    room, speed = ((outline - start) * normals).sum(axis=1), normals @ step
+    if (room[np.abs(speed) < 1e-12] < 0.0).any():
+        return False
+    entering, leaving = speed < -1e-12, speed > 1e-12
+    near = float((room[entering] / speed[entering]).max(initial=0.0))
+    far = float((room[leaving] / speed[leaving]).min(initial=1.0))
+    return near <= far

@@ -30,7 +30,8 @@ def ground_parts(world: WorldFile) -> list[Part]:
     """Floors of all grounds and their borders, world frame."""
     parts: list[Part] = []
     for ground in world.grounds:
-        parts.extend(floor_parts((ground.x_m, ground.y_m), ground.floor))
+        if ground.floor is not None:
+            parts.extend(floor_parts((ground.x_m, ground.y_m), ground.floor))
         if ground.border != "none":
             build = BORDERS[ground.border]
             for edge, span in _outer_edges(world, ground):

@@ -41,7 +41,12 @@ class Item(FileModel):
 
     @field_serializer("options", when_used="json")
     def _files_by_content(self, options: dict[str, Any]) -> dict[str, Any]:
-        return {name: getattr(value, "digest", value) for name, value in options.items()}
+        return {
+            name: {key: getattr(one, "digest", one) for key, one in value.items()}
+            if isinstance(value, dict)
+            else getattr(value, "digest", value)
+            for name, value in options.items()
+        }
 
     @model_validator(mode="after")
     def _known(self) -> Self:

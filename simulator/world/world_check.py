@@ -3,9 +3,14 @@
 import math
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
+import numpy.typing as npt
 
+from simulator.scene.parts import Part
+from simulator.world.brought_floor import CELL_M, brought
 from simulator.world.contents import expand, placed
+from simulator.world.floating import floating
 from simulator.world.footprints import clearance_m, footprints
 from simulator.world.freespace import BODY_BAND_M, FreeSpace, free_space
 from simulator.world.passages import Passage, narrow_passages
@@ -51,7 +56,6 @@ def examine(world: WorldFile, robot_radius_m: float = ROBOT_RADIUS_M) -> WorldRe
     if not lights and not any(part.material.glow for part in parts) and not getattr(world, "sun", None):
         doubts.append("no lamps: only the even light of `lighting` is there; add a ceiling_light")
     space = None if faults else free_space(world, robot_radius_m)
-    whole = _whole_free(space) if space else None
     cell = space.resolution_m**2 if space else 0.0
     lost = _unreachable(world, space) if space else ()
     doubts += [f"{name}: the robot cannot get there from the start" for name in lost]
@@ -60,17 +64,17 @@ def examine(world: WorldFile, robot_radius_m: float = ROBOT_RADIUS_M) -> WorldRe
         f"passage at ({p.x_m}, {p.y_m}) is {p.width_m} m wide, the robot {2 * robot_radius_m:.2f} m: tight"
         for p in passages if p.width_m < TIGHT_M
     ]  # fmt: skip
+    if in_the_air := floating(world):
+        doubts.append(f"nothing holds {', '.join(in_the_air[:8])}{' ...' if len(in_the_air) > 8 else ''}")
     return WorldReport(
         name=world.name,
         size_m=(
             round(max(x[1] for x, _ in rects) - min(x[0] for x, _ in rects), 3),
             round(max(y[1] for _, y in rects) - min(y[0] for _, y in rects), 3),
         ),
-        floor_m2=round(sum((x[1] - x[0]) * (y[1] - y[0]) for x, y in rects), 2),
+        floor_m2=round(_floor_m2(world, parts), 2),
         free_m2=round(float(space.free.sum()) * cell, 2) if space else 0.0,
-        cut_off_m2=round(float((whole & ~space.free).sum()) * cell, 2)
-        if space and whole is not None
-        else 0.0,
+        cut_off_m2=round(float(cut_off(space).sum()) * cell, 2) if space else 0.0,
         rooms=len(world.rooms),
         parts=len(parts),
         solids=sum(part.solid for part in parts),
@@ -82,6 +86,18 @@ def examine(world: WorldFile, robot_radius_m: float = ROBOT_RADIUS_M) -> WorldRe
         faults=tuple(faults),
         doubts=tuple(doubts),
     )
+
+
+def _floor_m2(world: WorldFile, parts: tuple[Part, ...]) -> float:
+    """Area of all floor; of what furniture brings, as many cells as it covers."""
+    rects = [(a.x_m, a.y_m) for a in (*world.rooms, *world.openings)]
+    rects += [(ground.x_m, ground.y_m) for ground in world.grounds if ground.floor is not None]
+    total = sum((x[1] - x[0]) * (y[1] - y[0]) for x, y in rects)
+    for ground in world.grounds:
+        if ground.floor is None:
+            xs, ys = (np.arange(low, high, CELL_M) for low, high in (ground.x_m, ground.y_m))
+            total += float(brought(parts, xs, ys).sum()) * CELL_M**2
+    return total
 
 
 def start_faults(world: WorldFile, robot_radius_m: float = ROBOT_RADIUS_M) -> list[str]:
@@ -102,8 +118,16 @@ def start_faults(world: WorldFile, robot_radius_m: float = ROBOT_RADIUS_M) -> li
     ]
 
 
-def _whole_free(space: FreeSpace) -> np.ndarray:
-    return np.asarray(space.clearance_m >= space.robot_radius_m)
+def cut_off(space: FreeSpace) -> npt.NDArray[np.bool_]:
+    """Free floor that is not reached, without the land round a place that is closed in."""
+    lost = (space.clearance_m >= space.robot_radius_m) & ~space.free
+    border = np.ones(lost.shape, bool)
+    border[1:-1, 1:-1] = False
+    if (space.free & border).any():
+        return np.asarray(lost)
+    _, labels = cv2.connectedComponents(lost.astype(np.uint8), connectivity=4)
+    outside = np.unique(labels[border & lost])
+    return np.asarray(lost & ~np.isin(labels, outside))
 
 
 def _unreachable(world: WorldFile, space: FreeSpace) -> tuple[str, ...]:

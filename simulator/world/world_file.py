@@ -7,6 +7,7 @@ from pydantic import AfterValidator, Field, ValidationError, ValidationInfo, fie
 
 from shared.yaml_reading import YamlFileError, read_yaml
 from simulator.assets.folder import AssetFolder
+from simulator.cache_folder import user_cache
 from simulator.textures.catalogue import KINDS
 from simulator.world.fields import MOST_M, Channel, Degrees, FileModel, Height, Interval, Metres, Name, Seed
 from simulator.world.items import MOST_ITEMS, Item, Placement, placed_items
@@ -68,10 +69,14 @@ Border = Literal["none", "fence", "barrier", "sidewalk", "wall"]
 
 
 class Ground(Rectangle):
-    """A rectangle of floor under the open sky; `border` runs along the edges that touch no other floor."""
+    """A rectangle of floor under the open sky; `border` runs along the edges that touch no other floor.
+
+    Without `floor` nothing is shown: furniture brings the floor with it, and there is floor only where some
+    of it lies level at height 0, see world.brought_floor.
+    """
 
     name: Name
-    floor: Surface
+    floor: Surface | None = None
     border: Border = "none"
 
 
@@ -236,14 +241,14 @@ def read_contents(path: Path) -> dict[str, Any]:
     return data
 
 
-def world_of(path: Path, contents: dict[str, Any]) -> WorldFile:
-    """The world of a file's contents; models and pictures are read from its folder.
+def world_of(path: Path, contents: dict[str, Any], assets: AssetFolder | None = None) -> WorldFile:
+    """The world of a file's contents; models and pictures are read from its folder, or were by `assets`.
 
     Raises:
         WorldFileError: values that do not fit, all of them.
     """
     try:
-        return WorldFile.model_validate(contents, context=AssetFolder(path.parent))
+        return WorldFile.model_validate(contents, context=assets or AssetFolder(path.parent, user_cache()))
     except ValidationError as error:
         faults = "; ".join(
             f"{'.'.join(str(part) for part in e['loc']) or 'world'}: {e['msg']}" for e in error.errors()

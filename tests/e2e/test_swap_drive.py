@@ -46,7 +46,7 @@ def test_the_script_imports_nothing_of_this_project(repository):
 
 def test_a_mission_succeeds_with_the_other_controller(stack):
     space = free_space(load_world("apartment"))
-    result = explore(stack, "apartment", "swap", seed=1, max_steps=40)
+    result = explore(stack, "apartment", "swap", seed=1, max_steps=90)
     assert len(result.graph.nodes) > 3
     game = Game(stack, space, "swap", np.random.default_rng(1))
     start = game.begin(seed=1).pose

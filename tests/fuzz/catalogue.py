@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tests.fuzz.decoder import Decoder
 
-FAMILIES = ("bus", "pictures", "archives", "recordings", "worlds", "files", "requests")
+FAMILIES = ("bus", "pictures", "archives", "recordings", "worlds", "importing", "files", "requests")
 FOUND = Path(__file__).parent / "found"
 """Inputs that crashed a decoder once, by its name; they are the first of its seeds for ever."""
 

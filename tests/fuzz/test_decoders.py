@@ -16,6 +16,7 @@ EXECUTIONS = {
     "archives": 800,
     "recordings": 800,
     "worlds": 250,
+    "importing": 400,
     "files": 500,
     "requests": 400,
 }

@@ -71,16 +71,27 @@ def match_candidates(
     )
 
 
-def verify_candidates(pipeline: Pipeline, request: MatchRequest, raw: RawMatches) -> tuple[NodeMatch, ...]:
-    """Verify the nodes asked for, the targets and as much of the shortlist as matters; most similar first."""
+def verify_candidates(
+    pipeline: Pipeline,
+    request: MatchRequest,
+    raw: RawMatches,
+    known: dict[int, NodeMatch] | None = None,
+) -> tuple[NodeMatch, ...]:
+    """Verify the nodes asked for, the targets and as much of the shortlist as matters; most similar first.
+
+    Nodes in `known` are not verified again; the others are added to it.
+    """
+    of_nodes = {} if known is None else known
 
     def verified(node_id: int) -> NodeMatch:
+        if node_id in of_nodes:
+            return of_nodes[node_id]
         candidate, pairs = raw.candidates[node_id], raw.pairs[node_id]
         match = verify(raw.query, candidate, pairs, raw.seq, pipeline.verification, request.with_matches)
-        if node_id >= 0:
-            return match
-        target = request.targets[-1 - node_id]
-        return _looked_at(match, raw.thumbnail, target)
+        if node_id < 0:
+            return _looked_at(match, raw.thumbnail, request.targets[-1 - node_id])
+        of_nodes[node_id] = match
+        return match
 
     asked = sorted({*request.node_ids, *(n for n in raw.candidates if n < 0)})
     results = {node_id: verified(node_id) for node_id in asked}

@@ -7,7 +7,7 @@ takes fewer pictures a second; how it decides is the same everywhere.
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from simulator.world.world_file import WorldFile, load_world
+from simulator.world.world_file import WorldFile, read_contents, world_path
 
 
 @dataclass(frozen=True)
@@ -66,4 +66,8 @@ def environment_of(world: WorldFile | str | Path | None) -> Environment:
     """The environment of a world; None is the default world, which is indoors."""
     if world is None:
         return INDOOR
-    return ENVIRONMENTS[(world if isinstance(world, WorldFile) else load_world(str(world))).environment]
+    if isinstance(world, WorldFile):
+        return ENVIRONMENTS[world.environment]
+    # Not all of it is read: models take seconds, and whoever uses the world checks it.
+    named = read_contents(world_path(str(world))).get("environment", "indoor")
+    return ENVIRONMENTS.get(named, INDOOR) if isinstance(named, str) else INDOOR

@@ -1,7 +1,7 @@
 """The stack a command works with: one that runs already, or one of its own."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -11,6 +11,8 @@ from services.launcher.client.failure import ExperimentError, one_line_errors
 from services.launcher.processes.stack_settings import Ports, located
 from services.launcher.processes.state import StateFolder
 from services.launcher.processes.supervisor import Launcher
+from services.launcher.terminal.options import START_TIMEOUT_S
+from services.launcher.terminal.progress import start_progress
 from shared.bus import Bus, wait_until
 from shared.messages.missions import MissionRequest
 from shared.topics import MISSION
@@ -31,6 +33,7 @@ class StackChoice:
         endpoint: join the stack there; None joins the one that runs in data_dir, or starts one.
         ports: of a stack of its own; None takes free ones.
         secure: certificates and access rules for a stack of its own.
+        timeout_s: how long the start of one of its own may take.
     """
 
     data_dir: Path
@@ -43,6 +46,7 @@ class StackChoice:
     ports: Ports | None = None
     environment: dict[str, str] = field(default_factory=dict)
     secure: bool = False
+    timeout_s: float = START_TIMEOUT_S
 
 
 @dataclass(frozen=True)
@@ -94,7 +98,9 @@ def _opened(choice: StackChoice) -> Iterator[Stack]:
             _require_services(bus, address.endpoint)
             yield Stack(bus, address, url, None, world=world)
         return
-    with _launcher(choice) as launcher:
+    with ExitStack() as opened:
+        with start_progress() as told:
+            launcher = opened.enter_context(_launcher(choice, told))
         own = Address(launcher.endpoint, launcher.certs)
         with own.open() as bus:
             _require_services(bus, own.endpoint)
@@ -112,7 +118,7 @@ def other_world(stack: Stack, world: str) -> str:
     )
 
 
-def _launcher(choice: StackChoice) -> Launcher:
+def _launcher(choice: StackChoice, told: Callable[[str], None]) -> Launcher:
     place = environment_of(choice.world)
     environment = {**place.variables, **choice.environment}
     if choice.pipeline is not None:
@@ -126,6 +132,8 @@ def _launcher(choice: StackChoice) -> Launcher:
         ports=choice.ports,
         environment=environment,
         secure=choice.secure,
+        timeout_s=choice.timeout_s,
+        told=told,
     )
 
 

@@ -20,6 +20,7 @@ def demo(
     keep: Annotated[
         bool, typer.Option(envvar="KEEP", help="Leave everything and the web page up until Ctrl+C.")
     ] = False,
+    timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
 ) -> None:
     """Explore the apartment, then find a hidden robot from its picture; ends with the report's path."""
     from services.launcher.client.failure import ExperimentError
@@ -36,7 +37,7 @@ def demo(
     # The documented ports where they are free: the console is where the README says.
     usual = Ports.from_variables(os.environ)
     ports = Ports.free() if usual.taken() else usual
-    choice = StackChoice(scene.folder / "data", world, seed, lockstep=True, ports=ports)
+    choice = StackChoice(scene.folder / "data", world, seed, lockstep=True, ports=ports, timeout_s=timeout_s)
     console.print(f"starting all services, logs in {choice.data_dir / 'launcher' / 'logs'}", highlight=False)
     with open_stack(choice) as stack:
         console.print(f"all up; watch the robot on {stack.gateway_url}", highlight=False)

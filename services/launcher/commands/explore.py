@@ -29,6 +29,7 @@ def explore(
     pipeline: options.PipelineName = None,
     data_dir: options.DataDir = options.DATA_DIR,
     endpoint: options.Endpoint = None,
+    timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
 ) -> None:
     """Explore a world and build a map of pictures."""
     from services.launcher.client import failure, run_record, stack
@@ -39,7 +40,9 @@ def explore(
 
     started, file = datetime.now(UTC), world_file.load_world(world)
     space, path = freespace.free_space(file), truth_file.truth_path(data_dir, map_name)
-    choice = stack.StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
+    choice = stack.StackChoice(
+        data_dir, world, seed, lockstep, profile, pipeline, endpoint, timeout_s=timeout_s
+    )
     with stack.open_stack(choice) as opened:
         output.print_warning(stack.other_world(opened, world))
         before = exploration.make_room(opened, map_name, path, go_on=continue_, fresh=fresh)

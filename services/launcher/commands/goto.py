@@ -23,16 +23,26 @@ def goto(
     max_steps: options.MaxSteps = 1500,
     data_dir: options.DataDir = options.DATA_DIR,
     endpoint: options.Endpoint = None,
+    timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
 ) -> None:
     """Drive to where a picture was taken."""
     from services.launcher.client import failure, maps, mission, stack, trail
     from services.launcher.drawing.pictures import frame_from_file
-    from services.launcher.terminal.output import print_figures, rounded, wide_console, write_json
+    from services.launcher.terminal.output import (
+        print_figures,
+        print_warning,
+        rounded,
+        wide_console,
+        write_json,
+    )
     from services.launcher.terminal.progress import mission_progress
     from shared.messages.missions import MissionRequest
 
-    choice = stack.StackChoice(data_dir, world, seed, lockstep, profile, pipeline, endpoint)
+    choice = stack.StackChoice(
+        data_dir, world, seed, lockstep, profile, pipeline, endpoint, timeout_s=timeout_s
+    )
     with stack.open_stack(choice) as opened:
+        print_warning(stack.other_world(opened, world))
         maps.require_map(opened, map_name)
         client = mission.MissionClient(opened.bus, opened.robot)
         goal = mission.goal_features(opened.bus, frame_from_file(image, opened.robot))

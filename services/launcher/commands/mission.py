@@ -22,6 +22,7 @@ Image = Annotated[Path | None, typer.Option(help="A goal picture, for kinds that
 def show_kinds(
     data_dir: options.DataDir = options.DATA_DIR,
     endpoint: options.Endpoint = None,
+    timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
     as_json: options.AsJson = False,
 ) -> None:
     """Show the kinds of mission of the running stack, with their parameters."""
@@ -30,7 +31,7 @@ def show_kinds(
     from shared.messages.missions import MissionKindsRequest
     from shared.topics import MISSION_KINDS
 
-    with stack.open_stack(stack.StackChoice(data_dir, endpoint=endpoint)) as opened:
+    with stack.open_stack(stack.StackChoice(data_dir, endpoint=endpoint, timeout_s=timeout_s)) as opened:
         reply = opened.bus.ask(MISSION_KINDS, MissionKindsRequest(), stack.ASK_TIMEOUT_S, robot=opened.robot)
     if as_json:
         typer.echo(json.dumps([kind.model_dump() for kind in reply.kinds], indent=2))
@@ -52,6 +53,7 @@ def start(
     max_steps: options.MaxSteps = 20_000,
     data_dir: options.DataDir = options.DATA_DIR,
     endpoint: options.Endpoint = None,
+    timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
     json_file: options.JsonFile = None,
 ) -> None:
     """Start a mission of any kind and follow it to its end."""
@@ -62,7 +64,7 @@ def start(
     from shared.messages.missions import MissionRequest
 
     parameters = dict(_parameter(text) for text in given or [])
-    with stack.open_stack(stack.StackChoice(data_dir, endpoint=endpoint)) as opened:
+    with stack.open_stack(stack.StackChoice(data_dir, endpoint=endpoint, timeout_s=timeout_s)) as opened:
         client = mission.MissionClient(opened.bus, opened.robot)
         goal = image and mission.goal_features(opened.bus, frame_from_file(image, opened.robot))
         request = MissionRequest(

@@ -33,7 +33,7 @@ def up(
         bool, typer.Option("--detach/--foreground", help="Return once all is healthy.")
     ] = False,
     data_dir: options.StackDir = options.DATA_DIR,
-    timeout_s: Annotated[float, typer.Option(help="How long the start may take.")] = 120.0,
+    timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
     file: Annotated[
         Path | None,
         typer.Option("--file", "-f", help="Which processes there are.", show_default="docker-compose.yml"),
@@ -45,13 +45,15 @@ def up(
     from services.launcher.compose.compose_file import COMPOSE_FILE
     from services.launcher.processes.running import run_foreground, start_detached
     from services.launcher.processes.stack_settings import StackSettings
+    from services.launcher.terminal.progress import LinesNowAndThen, start_progress
     from services.launcher.terminal.services import Changes, status_table
 
     choices: dict[str, Any] = {"world": world, "lockstep": lockstep, "seed": seed, "profile": profile}
     settings = StackSettings(data_dir.resolve(), **choices, secure=secure)
     compose_file, console = (file or COMPOSE_FILE).resolve(), Console()
     if detach:
-        state = start_detached(settings, compose_file, timeout_s)
+        with start_progress() as told:
+            state = start_detached(settings, compose_file, timeout_s, told)
         console.print(status_table(state.services))
         console.print(f"console {state.gateway_url}; stop with 'topnav down'", highlight=False)
     else:
@@ -64,4 +66,5 @@ def up(
         def healthy(url: str) -> None:
             console.print(f"all healthy; console {url}, stop with Ctrl+C or 'topnav down'")
 
-        run_foreground(settings, compose_file, timeout_s, watch, healthy)
+        lines = LinesNowAndThen(lambda text: console.print(f"waiting for {text}", highlight=False))
+        run_foreground(settings, compose_file, timeout_s, watch, healthy, lines)

@@ -1,4 +1,4 @@
-"""`topnav world`: generate a world file, and look at one before anybody drives in it."""
+"""`topnav world`: generate or import a world file, and look at one before anybody drives in it."""
 
 import math
 from dataclasses import asdict
@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from simulator.world.world_check import WorldReport
     from simulator.world.world_file import WorldFile
 
-app = typer.Typer(name="world", no_args_is_help=True, help="Generate worlds, and check their files.")
+app = typer.Typer(
+    name="world", no_args_is_help=True, help="Generate or import worlds, and check their files."
+)
 
 World = Annotated[str, typer.Argument(help="A .yaml file, or the name of a world that comes with topnav.")]
 Plan = Annotated[Path | None, typer.Option(help="Draw the floor plan to this PNG file.")]
@@ -61,6 +63,36 @@ def generate(
     _show(examine(world))
     split = world.generated.split if world.generated else ""
     typer.echo(f"{path}: split {split}; next: topnav explore --world {path} --map new")
+
+
+@app.command("import")
+def import_(
+    source: Annotated[Path, typer.Argument(help="A Gazebo world (.world, .sdf), or a scene (.glb, .gltf).")],
+    into: Annotated[Path, typer.Option(help="Folder for the world file and its models.")],
+    models: Annotated[
+        list[Path] | None, typer.Option(help="Folder with models; may be given often.", show_default=False)
+    ] = None,
+    start: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(help="x and y (m), yaw (degrees) of the robot; default: in the largest free floor."),
+    ] = None,
+    leave_out: Annotated[
+        bool, typer.Option("--leave-out", help="Go on without models that are missing or broken.")
+    ] = False,
+) -> None:
+    """Turn a world that others made into a world file; floor, walls and obstacles come from its geometry."""
+    from services.launcher.terminal.output import wide_console
+    from services.launcher.terminal.progress import stage_progress
+    from simulator.importing.import_world import import_world
+    from simulator.world.world_check import examine
+
+    console = wide_console(stderr=True)
+    with stage_progress(console, f"importing {source.name}") as progress:
+        imported = import_world(source, into, models or [], start, leave_out, progress)
+    for note in imported.notes:
+        console.print(f"[yellow]note[/yellow]  {note}", highlight=False)
+    _show(examine(imported.world))
+    typer.echo(f"{imported.path}; next: topnav explore --world {imported.path} --map {into.name}")
 
 
 @app.command()
@@ -150,7 +182,7 @@ def _show(report: "WorldReport") -> None:
     table = Table(title=f"world {report.name}", show_header=False)
     figures = {
         "size": f"{report.size_m[0]:g} x {report.size_m[1]:g} m",
-        "floor": f"{report.floor_m2:g} m2 in {report.rooms} rooms",
+        "floor": f"{report.floor_m2:g} m2" + (f" in {report.rooms} rooms" if report.rooms else ""),
         "free for the robot": f"{report.free_m2:g} m2, and {report.cut_off_m2:g} m2 that it cannot reach",
         "parts": f"{report.parts}, of which {report.solids} solid",
         "lamps, materials": f"{report.lights}, {report.looks}",

@@ -1,25 +1,26 @@
 """Coverage over driven metres, as a picture."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from matplotlib.figure import Figure
 
 from services.launcher.drawing.pictures import save_figure
-from services.launcher.evaluation.coverage_curve import Curve
 
 LINES = ("#1f5fd0", "#d0701f", "#888888")
 FINISHED = 0.97
 """Coverage at which a map is as good as finished."""
 
 
-def draw_coverage(path: Path, title: str, curves: Mapping[str, Curve], most_m: float | None = None) -> None:
+def draw_coverage(
+    path: Path, title: str, curves: Mapping[str, Sequence[tuple[float, float]]], most_m: float | None = None
+) -> None:
     """Draw driven metres and covered shares, with the line at which a map is as good as finished.
 
     Args:
         path: picture to write.
         title: of the picture.
-        curves: by name, at most as many as there are colours.
+        curves: driven metres with the covered share by name, at most as many as there are colours.
         most_m: metres at the right border; None shows all.
     """
     figure = Figure(figsize=(7.5, 4.2), layout="constrained")

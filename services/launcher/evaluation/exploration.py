@@ -90,7 +90,7 @@ def figures(result: Exploration, space: FreeSpace, map_name: str, seed: int) -> 
     """The figures of `topnav explore --json`; the keys up to wall_s are fixed."""
     poses, run = result.truth.poses, result.run
     place = environment_of(result.truth.world)
-    checks = check_edges(result.graph.edges, poses, space.line_of_sight, place.blind_m)
+    checks = check_edges(result.graph.edges, poses, space.in_view, place.blind_m)
     positions = np.array([(p.x_m, p.y_m) for p in poses.values()], dtype=np.float64).reshape(-1, 2)
     return {
         "world": result.truth.world,

@@ -6,16 +6,18 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from dotenv import dotenv_values
 
 from services.launcher.compose.compose_file import COMPOSE_FILE
+from services.launcher.processes.runner import State
 from services.launcher.processes.stack_settings import Ports, StackSettings, located
 from services.launcher.processes.state import AlreadyRunningError, ServiceStatus, StackState, StateFolder
 from services.launcher.processes.supervisor import Launcher
-from services.launcher.processes.wait import LaunchError
+from services.launcher.processes.wait import TELL_S, LaunchError, waiting_for
 from shared.inbox import wait_until
 from shared.lifecycle import JsonFormatter, stop_on_signals
 
@@ -26,12 +28,16 @@ LOOK_S = 1.0
 """Chosen: a launcher that can no longer do its work ends so soon."""
 
 
+Told = Callable[[str], None]
+
+
 def run_foreground(
     settings: StackSettings,
     compose_file: Path,
     timeout_s: float,
     watch: Callable[[Mapping[str, ServiceStatus]], None],
     healthy: Callable[[str], None],
+    told: Told | None = None,
 ) -> None:
     """Run until SIGINT or SIGTERM.
 
@@ -41,6 +47,7 @@ def run_foreground(
         timeout_s: how long the start may take.
         watch: hears every change of status.
         healthy: hears the address of the console once all is healthy.
+        told: hears meanwhile, about once a second, what is waited for.
 
     Raises:
         LaunchError: the stack does not come up.
@@ -58,6 +65,7 @@ def run_foreground(
         compose_file=compose_file,
         watch=watch,
         secure=settings.secure,
+        told=told,
     )
     _log_to(launcher.logs / "launcher.jsonl")
     launcher.start(wait=False)
@@ -77,8 +85,12 @@ def variables_with_dotenv(folder: Path) -> dict[str, str]:
     return {k: v for k, v in dotenv_values(folder / ".env").items() if v is not None} | dict(os.environ)
 
 
-def start_detached(settings: StackSettings, compose_file: Path, timeout_s: float) -> StackState:
+def start_detached(
+    settings: StackSettings, compose_file: Path, timeout_s: float, told: Told | None = None
+) -> StackState:
     """Start `topnav up --foreground` in the background and wait until all is healthy.
+
+    Meanwhile `told` hears about once a second what is waited for.
 
     Raises:
         AlreadyRunningError: the data folder belongs to a running stack.
@@ -99,8 +111,15 @@ def start_detached(settings: StackSettings, compose_file: Path, timeout_s: float
             start_new_session=True,
         )
 
+    tell_s = time.monotonic() + TELL_S
+
     def up() -> StackState | None:
+        nonlocal tell_s
         state = folder.read()
+        if told is not None and state is not None and time.monotonic() >= tell_s:
+            tell_s = time.monotonic() + TELL_S
+            waiting = [n for n, one in state.services.items() if one.state is not State.HEALTHY]
+            told(waiting_for(waiting, state.services, folder.logs))
         return state if state and state.launcher_pid == child.pid and state.healthy else None
 
     # It counts the time itself: whoever ended it first would read of services that stop, not of what failed.

@@ -55,6 +55,7 @@ class Launcher:
         timeout_s: how long the start may take.
         policy: back-off of restarts.
         watch: called from another thread with every change of status.
+        told: called about once a second while the start is waited for, with what it waits for.
     """
 
     def __init__(
@@ -69,16 +70,18 @@ class Launcher:
         only: Collection[str] | None = None,
         variables: Mapping[str, str] | None = None,
         compose_file: Path = COMPOSE_FILE,
-        timeout_s: float = 120.0,
+        timeout_s: float = 300.0,
         policy: RestartPolicy | None = None,
         watch: Callable[[Mapping[str, ServiceStatus]], None] | None = None,
         secure: bool = False,
+        told: Callable[[str], None] | None = None,
     ) -> None:
         folder = Path(data_dir).resolve()
         self.settings = StackSettings(
             folder, world, lockstep, seed, profile, ports or Ports.free(), dict(environment or {}), secure
         )
         self._root, self._timeout_s, self._watch = compose_file.resolve().parent, timeout_s, watch
+        self._told = told
         self._state = StateFolder(folder)
         self._started = ""
         self._liveliness = Liveliness()
@@ -197,7 +200,7 @@ class Launcher:
         Raises:
             LaunchError: not in time; at once for a service that keeps ending.
         """
-        require_healthy(self.status, list(self.status()), timeout_s, self.logs, stop=stop)
+        require_healthy(self.status, list(self.status()), timeout_s, self.logs, stop=stop, told=self._told)
 
     def _specs(
         self, compose_file: Path, variables: Mapping[str, str] | None, only: Collection[str] | None

@@ -1,5 +1,6 @@
 """Waiting for services, and one clear line when it was in vain."""
 
+import json
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -9,6 +10,7 @@ from services.launcher.processes.runner import State
 from services.launcher.processes.state import ServiceStatus
 
 PERIOD_S = 0.02  # less than the supervisor's own
+TELL_S = 1.0  # chosen: as often as people look
 
 
 class LaunchError(RuntimeError):
@@ -26,14 +28,17 @@ def require_healthy(
     logs: Path,
     other_than: int | None = None,
     stop: threading.Event | None = None,
+    told: Callable[[str], None] | None = None,
 ) -> None:
     """Wait until all of `names` are healthy (with a pid other than `other_than`), or `stop` is set.
+
+    Meanwhile `told` hears about once a second what is waited for, and what the last of it said.
 
     Raises:
         KeepsEndingError: one has crashed for good or keeps crashing.
         LaunchError: the time is up.
     """
-    deadline_s = time.monotonic() + timeout_s
+    deadline_s, tell_s = time.monotonic() + timeout_s, time.monotonic() + TELL_S
     while True:
         now = status()
         waiting = [n for n in names if now[n].state is not State.HEALTHY or now[n].pid == other_than]
@@ -47,8 +52,29 @@ def require_healthy(
         if time.monotonic() > deadline_s:
             states = ", ".join(f"{name} {now[name].state.value}" for name in waiting)
             failed = min(waiting, key=lambda n: (now[n].last_exit is None, now[n].state is State.WAITING))
-            raise LaunchError(f"not healthy after {timeout_s:.0f} s: {states}; {hint(failed, logs)}")
+            raise LaunchError(
+                f"not healthy after {timeout_s:.0f} s: {states}; {hint(failed, logs)}; "
+                "--timeout-s gives it longer"
+            )
+        if told is not None and time.monotonic() >= tell_s:
+            tell_s = time.monotonic() + TELL_S
+            told(waiting_for(waiting, now, logs))
         time.sleep(PERIOD_S)
+
+
+def waiting_for(names: Sequence[str], now: Mapping[str, ServiceStatus], logs: Path) -> str:
+    """Return what is waited for, and what the first of those that have started said last."""
+    started = [name for name in names if now[name].state is not State.WAITING]
+    said = _said(logs / f"{started[0]}.jsonl") if started else ""
+    return ", ".join(names) + (f" ({started[0]}: {said})" if said else "")
+
+
+def _said(log: Path) -> str:
+    lines = log.read_text(encoding="utf-8", errors="replace").splitlines() if log.exists() else []
+    try:
+        return str(json.loads(lines[-1])["text"])[:120]
+    except (IndexError, KeyError, TypeError, ValueError):
+        return ""
 
 
 def hint(service: str, logs: Path) -> str:

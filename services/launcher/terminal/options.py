@@ -26,6 +26,12 @@ Endpoint = Annotated[
     str | None, typer.Option(help="Join the stack whose router is here, for example tcp/127.0.0.1:7447.")
 ]
 MaxSteps = Annotated[int, typer.Option(min=1, help="Give a mission up after so many frames.")]
+TimeoutS = Annotated[
+    float,
+    typer.Option(min=1.0, envvar="TOPNAV_START_TIMEOUT_S", help="How long a start of the stack may take."),
+]
 
 DATA_DIR = Path("data")
 RUNS_DIR = Path("runs")
+START_TIMEOUT_S = 300.0
+"""Chosen: ten times what a large world takes to load on two busy cores."""

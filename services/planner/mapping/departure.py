@@ -4,12 +4,13 @@ import math
 from dataclasses import dataclass
 
 from services.planner.mapping.edges import CONFIDENCE_MIN, NewEdges, judge_edges
+from services.planner.mapping.floor_gain import gain_here
 from services.planner.mapping.nodes import add_node, is_new_node
 from services.planner.mapping.reach import distances, elsewhere, in_reach, nodes_nearby
 from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.similarity import ranked, similarity, trusted
-from services.planner.surroundings import hidden_openings, through_gap
+from services.planner.surroundings import free_ways_m, hidden_openings, through_gap
 from shared.mapgraph.frontiers import mark_explored, sector_rad
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
@@ -107,7 +108,8 @@ class Departure:
         if is_new_node(matches, self._profile) and not self._is_crowded(matches):
             return self._new_or_known(observation, {**self._candidates(), **matches})
         if self._driven_m > rules.departure_m * self._view_carries(matches.get(self.node_id)):
-            if self._is_apart(matches, rules.departure_m):
+            free_m = free_ways_m(observation.ranges, self._profile)
+            if gain_here(self._maps.graph, self.here, free_m, self._profile) >= rules.gain_min:
                 return self._new_node(observation, {**self._candidates(), **matches})
             return self._close("nothing new on the way")
         return self._straight_on(observation.ranges, s_best)
@@ -171,14 +173,10 @@ class Departure:
 
     def _is_crowded(self, matches: Matches) -> bool:
         """Whether a node that is seen lies too near for another one: where desks repeat views change fast."""
-        return not self._is_apart(matches, self._profile.mapping.node_apart_m)
-
-    def _is_apart(self, matches: Matches, apart_m: float) -> bool:
-        """Whether no node that is seen lies nearer than so much."""
-        if not apart_m:
-            return True
-        away_m = distances(self._maps.graph, self.here, matches)
-        return min(away_m.values(), default=math.inf) >= apart_m
+        if not self._profile.mapping.node_apart_m:
+            return False
+        apart_m = distances(self._maps.graph, self.here, matches)
+        return min(apart_m.values(), default=math.inf) < self._profile.mapping.node_apart_m
 
     def _credible(self, matches: Matches, edges: NewEdges) -> Matches:
         """What the robot surely sees: the node left, nodes that lie where they are seen, those of edges."""

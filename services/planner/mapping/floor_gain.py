@@ -1,7 +1,7 @@
 """How much floor a direction of a node leads to that no node around covers. Pure."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import reduce
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy.typing as npt
 from services.planner.profiles import Profile
 from shared.mapgraph.frontiers import SECTOR_RAD, frontier_sectors, mark_explored, sector_rad
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import NEAR_NODES
 from shared.mapgraph.local.relative_poses import RelativePose, relative_poses
 from shared.mapgraph.local.view_range import edge_length_m, openness
@@ -85,41 +86,74 @@ def best_sector(graph: MapGraph, node_id: int, preferred_rad: float, profile: Pr
     return max(gains, key=worth, default=None)
 
 
+def gain_here(graph: MapGraph, here: Displacement, free_m: Sequence[float], profile: Profile) -> float:
+    """Share of the floor around the robot which no node covers; 0 where every direction is to be explored.
+
+    Args:
+        graph: the map.
+        here: where the robot is.
+        free_m: how far it could go in each sector of its own frame.
+        profile: how far a node covers.
+    """
+    covers_m = _covered_m(graph, here.node_id, profile)
+    if not covers_m:
+        return 0.0
+    poses = relative_poses(graph, here.node_id, graph.nearest(here.node_id, NEAR_NODES), NEAR_NODES)
+    spot = np.array([here.x_m, here.y_m])
+    return _new_share(
+        _known_m(graph, poses, here.node_id, covers_m), spot, spot, here.yaw_rad, free_m, covers_m
+    )
+
+
 def _gains(
     graph: MapGraph, poses: Mapping[int, RelativePose], node: Node, covers_m: float
 ) -> dict[int, float]:
     sectors = frontier_sectors(node)
     if not sectors:
         return {}
-    beside = _on_this_side(graph, node.node_id, SIDE_FACTOR * covers_m)
-    known_m = np.array([poses[n].position_m for n in beside if n in poses])
-    return {sector: _gain(known_m, poses[node.node_id], node, sector, covers_m) for sector in sectors}
+    known_m, own = _known_m(graph, poses, node.node_id, covers_m), poses[node.node_id]
+    free_m = node.free_m or (covers_m,) * SECTORS
+    gains = {}
+    for sector in sectors:
+        angle_rad, ahead_m = own.yaw_rad + sector * SECTOR_RAD, min(covers_m, free_m[sector])
+        spot = own.position_m + ahead_m * np.array([math.cos(angle_rad), math.sin(angle_rad)])
+        gains[sector] = _new_share(known_m, spot, own.position_m, own.yaw_rad, free_m, covers_m)
+    return gains
 
 
-def _gain(known_m: FloatArray, own: RelativePose, node: Node, sector: int, covers_m: float) -> float:
-    """Share of the disc around the next spot in a direction which no node covers.
+def _known_m(graph: MapGraph, poses: Mapping[int, RelativePose], node_id: int, covers_m: float) -> FloatArray:
+    """(N, 2) positions of the nodes on a node's side of the walls."""
+    beside = _on_this_side(graph, node_id, SIDE_FACTOR * covers_m)
+    return np.array([poses[n].position_m for n in beside if n in poses])
+
+
+def _new_share(
+    known_m: FloatArray,
+    spot_m: FloatArray,
+    own_m: FloatArray,
+    own_yaw_rad: float,
+    free_m: Sequence[float],
+    covers_m: float,
+) -> float:
+    """Share of the disc around a spot which no node covers.
 
     Args:
         known_m: (N, 2) of the nodes on this side of the walls, in one frame.
-        own: pose of the node in that frame.
-        node: that the direction belongs to.
-        sector: the direction.
-        covers_m: radius of the disc, metres.
+        spot_m: (2,) in the same frame.
+        own_m: (2,) from where its floor was seen.
+        own_yaw_rad: yaw of the camera there.
+        free_m: how far the robot could go from there, by sector.
+        covers_m: radius of the disc.
     """
-    free_m = np.array(node.free_m or [covers_m] * SECTORS)
-    angle_rad, ahead_m = own.yaw_rad + sector * SECTOR_RAD, min(covers_m, free_m[sector])
-    floor = (
-        own.position_m + ahead_m * np.array([math.cos(angle_rad), math.sin(angle_rad)]) + covers_m * _disc()
-    )
+    floor = spot_m + covers_m * _disc()
     gaps = np.linalg.norm(floor[:, None] - known_m[None], axis=2)
     new = floor[(gaps > covers_m).all(axis=1)]
-    return float(_weights(new, own, free_m).sum()) / len(floor)
+    return float(_weights(new - own_m, own_yaw_rad, np.array(free_m)).sum()) / len(floor)
 
 
-def _weights(floor: FloatArray, own: RelativePose, free_m: FloatArray) -> FloatArray:
-    """1 for floor that the sensors saw from the node, less behind what they saw."""
-    offset = floor - own.position_m
-    bearing_rad = np.arctan2(offset[:, 1], offset[:, 0]) - own.yaw_rad
+def _weights(offset: FloatArray, own_yaw_rad: float, free_m: FloatArray) -> FloatArray:
+    """1 for floor that the sensors saw, by its offset from them; less behind what they saw."""
+    bearing_rad = np.arctan2(offset[:, 1], offset[:, 0]) - own_yaw_rad
     sector = np.rint(bearing_rad / SECTOR_RAD).astype(int) % SECTORS
     return np.where(np.linalg.norm(offset, axis=1) <= free_m[sector], 1.0, OCCLUDED)
 

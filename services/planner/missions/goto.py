@@ -1,10 +1,11 @@
 """Mission goto: drive to where a picture was taken (thesis sections 4.1 and 4.3)."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from services.planner.mapping.reach import claims
 from services.planner.mission_kinds import MissionContext, MissionError, MissionKind
 from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
 from services.planner.profiles import Profile
@@ -21,8 +22,8 @@ from services.planner.travel.states import Event, State
 from services.planner.travel.tracking import Tracker
 from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.graph import EdgeKey, edge_key
-from shared.mapgraph.local.displacement import Displacement
-from shared.mapgraph.local.hypotheses import COMPARED_NODES
+from shared.mapgraph.local.displacement import Displacement, seen_from
+from shared.mapgraph.local.hypotheses import COMPARED_NODES, SPREAD
 from shared.mapgraph.routing import GOAL
 from shared.messages.features import Features
 from shared.messages.matching import NodeMatch
@@ -84,6 +85,7 @@ class GoalDestination:
         self.places = GoalPlaces(maps, found, profile)
         self.aliased = not self.places.plain
         self.arrival_rad = profile.arrival.arrival_rad * (1.0 if self.places.plain else CLOSER_SHARE)
+        self._lies = dict(self._seen_from(found))
         self._targets = self._reachable(found)
         self._targets |= dict.fromkeys(self.places.without(self._targets), LAST_EDGE_M)
         self._avoid: dict[int, float] = {}
@@ -115,6 +117,10 @@ class GoalDestination:
     def sees(self, goal: NodeMatch, here: Displacement | None) -> None:
         """What tells places apart is looked for in every frame."""
         self.places.sees(goal, here)
+
+    def lies(self, node_id: int) -> Displacement | None:
+        """Where the picture was taken, relative to a node that it resembles."""
+        return self._lies.get(node_id)
 
     def set_out(self) -> None:
         """There is a path by the map."""
@@ -202,6 +208,12 @@ class GoalDestination:
         if ruling.failure:
             self._failure, self._targets = (ruling.failure, ruling.why), {}
         return ruling.why
+
+    def _seen_from(self, found: Matches) -> Iterator[tuple[int, Displacement]]:
+        graph = self._maps.graph
+        for node, claim in claims(graph, found, self._profile).items():
+            spread_m = SPREAD * claim.length_m
+            yield node, seen_from(node, claim.heading_rad, claim.yaw_rad, claim.length_m, spread_m)
 
     def _reachable(self, found: Matches) -> dict[int, float]:
         graph, profile = self._maps.graph, self._profile

@@ -93,6 +93,9 @@ class Destination(Protocol):
             here: where the robot is; None where nobody knows.
         """
 
+    def lies(self, node_id: int) -> Displacement | None:
+        """Where the picture was taken, relative to a node that it resembles; None where that is not known."""
+
     def set_out(self) -> None:
         """A path was found."""
 

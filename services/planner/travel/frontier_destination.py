@@ -81,6 +81,10 @@ class FrontierDestination:
     def sees(self, _goal: NodeMatch, _here: Displacement | None) -> None:
         """A frontier has no picture."""
 
+    def lies(self, _node_id: int) -> Displacement | None:
+        """A frontier has no picture."""
+        return None
+
     def set_out(self) -> None:
         """There is a path again."""
         self._cut_off = 0

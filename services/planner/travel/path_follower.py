@@ -9,6 +9,7 @@ from services.planner.similarity import heading_of, similarity
 from services.planner.surroundings import is_half_clear
 from services.planner.travel.destination import Destination
 from services.planner.travel.edge_experience import EdgeExperience
+from services.planner.travel.last_leg import reckoned_rad
 from services.planner.travel.states import Event
 from services.planner.travel.steady_heading import SteadyHeading
 from services.planner.travel.tracking import Tracker
@@ -45,6 +46,10 @@ NEAREST_STEPS = 8
 s."""
 
 
+BLIND_FRAMES = 40
+"""Frames in which a goal is headed for that does not show; chosen: 4.8 m in a room, further than any picture
+that is located in the map lies from its node."""
+
 BESIDE_GOAL = 3
 """Nodes around the robot that are compared on the last leg, where the path has none; chosen: so that it is
 known where the robot is when it arrives."""
@@ -71,7 +76,7 @@ class PathFollower:
         self._heading_rad: float | None = None
         self._steady = SteadyHeading()
         self._best_rad, self._best_s = math.inf, 0
-        self._stale = self._waiting = 0
+        self._stale = self._waiting = self._blind_frames = 0
         self.progress = Progress(via_points=tuple(path))
 
     def step(self, observation: Observation, matcher: Matcher) -> tuple[Event | None, Decision]:
@@ -90,13 +95,15 @@ class PathFollower:
             return Event.REACHED, _hold(f"arrived at {name}, S {s_cv}", notes)
         if self._next_is_unclear(match, matches, observation.ranges):
             return Event.WAY_UNCLEAR, _hold(f"no free ground seen beyond {name}", notes)
+        if self._waits_too_long(match) and not self._goes_on_blind():
+            return Event.NO_PROGRESS, _hold(f"at {name}, {_name(self.path[self.index + 1])} unseen", notes)
         found = heading_of(match, self._profile) if match is not None else None
+        if found is None and self._waiting:
+            return None, _hold(f"at {name}, S {s_cv}", notes)
         if match is None or found is None or s_cv < self._profile.travel.s_via_min:
             return self._unseen(name, s_cv, notes)
         self._unseen_frames = 0
         self._heading_rad, method = self._steadied(waypoint, found[0], s_cv), found[1]
-        if self._waits_too_long(match):
-            return Event.NO_PROGRESS, _hold(f"at {name}, {_name(self.path[self.index + 1])} unseen", notes)
         if self._no_progress(match):
             if self._near_end(match):
                 return Event.REACHED, _hold(f"as near to {name} as obstacles allow, S {s_cv}", notes)
@@ -205,12 +212,34 @@ class PathFollower:
         return self._steady.follow(waypoint, seen_rad, close=s_cv >= self._profile.mapping.s_node_max)
 
     def _unseen(self, name: str, s_cv: int, notes: tuple[Note, ...]) -> tuple[Event | None, Decision]:
-        """The waypoint is not seen: keep going for a few frames, then it is lost."""
+        """The waypoint is not seen: to a goal by the map, else on for a few frames; then it is lost."""
+        blind_rad = self._blind_rad() if self.path[self.index] == GOAL else None
+        if blind_rad is not None:
+            self._heading_rad = blind_rad
+            why = f"{name} not seen, S {s_cv}: to where the map has it"
+            return None, Decision("go", blind_rad, s_cv, 1.0, "reckoned", why, notes)
         self._unseen_frames += 1
         if self._unseen_frames >= self._profile.travel.suspend_after or self._heading_rad is None:
             return Event.WAYPOINT_LOST, _hold(f"{name} not seen, S {s_cv}", notes)
         why = f"{name} not seen for {self._unseen_frames} frames, keeping on"
         return None, Decision("go", self._heading_rad, s_cv, 1.0, "previous", why, notes)
+
+    def _goes_on_blind(self) -> bool:
+        """Whether the goal, which does not show from the last node, is headed for by where the map has it."""
+        blind = self.path[self.index + 1] == GOAL and self._blind_rad() is not None
+        if blind:
+            self.index, self._best_rad, self._best_s, self._stale = self.index + 1, math.inf, 0, 0
+            self._waiting = 0
+        return blind
+
+    def _blind_rad(self) -> float | None:
+        """Bearing of the goal by the map; None where that is not known, and after so many frames."""
+        if self._strict or len(self.path) < 2:
+            return None
+        self._blind_frames += 1
+        if self._blind_frames > BLIND_FRAMES:
+            return None
+        return reckoned_rad(self._maps.graph, self._tracker.here, self._destination.lies(self.path[-2]))
 
     def _no_progress(self, match: NodeMatch) -> bool:
         disparity = match.disparity_rad if match.disparity_rad is not None else 0.0
@@ -221,7 +250,7 @@ class PathFollower:
         self._stale = 0 if nearer or liker else self._stale + 1
         return self._stale > (NEAREST_STEPS if self._near_end(match) else STUCK_STEPS)
 
-    def _waits_too_long(self, match: NodeMatch) -> bool:
+    def _waits_too_long(self, match: NodeMatch | None) -> bool:
         """At a waypoint from which the next one does not show: what leads there is shut."""
         standing = not (self._strict or self._at_end()) and self._is_at(match)
         self._waiting = self._waiting + 1 if standing else 0

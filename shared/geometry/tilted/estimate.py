@@ -13,7 +13,7 @@ from shared.geometry.planar_model import PlanarMatches
 from shared.geometry.rotation import fit_rotation
 from shared.geometry.sphere import BoolArray, FloatArray, angle_between_rad, bearings_from_lonlat, wrap_rad
 from shared.geometry.tilted.match_evidence import NOISE_RAD, Cues, belongs, evidence, motion_ratio, turn_ratio
-from shared.geometry.tilted.poses import Bearings, Evaluated, Poses, evaluate, yaw_of
+from shared.geometry.tilted.poses import Bearings, Poses, evaluate, yaw_of
 from shared.geometry.tilted.search import search
 from shared.geometry.two_view_types import TwoViewResult, TwoViewSettings, moved, refused
 
@@ -39,7 +39,6 @@ class Motion:
 
     Attributes:
         pose: one pose.
-        seen: it against all matches.
         mask: (N,) matches that rather belong to it than not.
         score: nats of evidence, less how unlikely its tilt and climb are.
         rival: the same of the best pose with another heading, at least 0: chance.
@@ -50,7 +49,6 @@ class Motion:
     """
 
     pose: Poses
-    seen: Evaluated
     mask: BoolArray
     score: float
     rival: float
@@ -101,10 +99,9 @@ def likeliest_motion(
     other = np.abs(wrap_rad(found.poses.heading_rad - found.poses.heading_rad[0])) > SAME_HEADING_RAD
     noise = float(np.sqrt(np.sum(seen.residual[0][mask] ** 2) / max(int(mask.sum()) - 5, 1)))
     level = max(float(np.hypot(*pose.travel[0, :2])), 1e-6)
-    moving, still = _moving(seen, ratio, matches, cues)
+    moving, still = _moving(pose, ratio, matches, cues)
     return Motion(
         pose=pose,
-        seen=seen,
         mask=mask,
         score=float(found.score[0]),
         rival=max(0.0, *found.score[other].tolist()) if other.any() else 0.0,
@@ -115,9 +112,9 @@ def likeliest_motion(
     )
 
 
-def _moving(seen: Evaluated, ratio: FloatArray, matches: Bearings, cues: Cues) -> tuple[float, float]:
+def _moving(pose: Poses, ratio: FloatArray, matches: Bearings, cues: Cues) -> tuple[float, float]:
     """Evidence of a motion, part of the scene being far, and of its rotation without travel, nats."""
-    apart = _apart_rad(matches, seen.turned[0])
+    apart = _apart_rad(matches, pose.rotation[0] @ matches.target)
     far = turn_ratio(apart, matches.log_scale, NOISE_RAD)
     still = float(evidence(cues.right, far).sum())
     moving = [float(evidence(cues.right, f * far + (1.0 - f) * ratio).sum()) for f in FAR_SHARES]
@@ -161,7 +158,7 @@ def _accepted(motion: Motion, matches: Bearings, settings: TwoViewSettings) -> T
     inliers, mask, travel = int(motion.mask.sum()), motion.mask, motion.pose.travel[0]
     if inliers < settings.min_inliers or motion.score < settings.min_nats:
         return refused("inconsistent", mask)
-    apart = _apart_rad(matches, motion.seen.turned[0])[mask]
+    apart = _apart_rad(matches, motion.pose.rotation[0] @ matches.target)[mask]
     disparity = float(np.median(apart))
     heading_std = motion.heading_std_rad / parallax_share(disparity, motion.noise_rad)
     if heading_std > settings.max_heading_std_rad or float(np.hypot(travel[0], travel[1])) < MIN_LEVEL:

@@ -5,6 +5,7 @@ Engels and Nister 2006), batched: E = x E1 + y E2 + z E3 + E4 spans the null spa
 ten cubics det E = 0 and 2 E E^T E - tr(E E^T) E = 0 reduce to the eigenvectors of a 10 x 10 action matrix.
 """
 
+from functools import cache
 from itertools import combinations_with_replacement, product
 
 import numpy as np
@@ -51,27 +52,32 @@ def five_point(current: FloatArray, target: FloatArray) -> FloatArray:
     real = (np.abs(values.imag) < REAL) & (np.abs(one) > TINY)
     safe = np.where(real, one, 1.0)
     coefficients = np.stack([x / safe, y / safe, z / safe, np.ones_like(safe)], axis=-1).real
-    essential = np.einsum("hsa,haij->hsij", coefficients, basis[solvable])[real]
+    essential = (coefficients @ basis[solvable].reshape(-1, 4, 9))[real].reshape(-1, 3, 3)
     return np.asarray(essential / np.linalg.norm(essential, axis=(1, 2), keepdims=True), dtype=np.float64)
 
 
 def _constraints(basis: FloatArray) -> FloatArray:
     """Coefficients (H, 10, 20) of the ten cubics over the monomials _CUBICS + _LOWER."""
-    outer = np.einsum("haij,hbkj->habik", basis, basis)
-    trace = np.einsum("habii->hab", outer)
-    cubic = 2.0 * np.einsum("habik,hckj->habcij", outer, basis) - np.einsum("hab,hcij->habcij", trace, basis)
-    minors = np.cross(basis[:, :, None, 1, :], basis[:, None, :, 2, :])
-    determinant = np.einsum("hai,hbci->habc", basis[:, :, 0, :], minors)
-    tensor = np.concatenate([cubic.reshape(-1, 64, 9), determinant.reshape(-1, 64, 1)], axis=2)
-    return np.asarray(np.einsum("hpe,pm->hem", tensor, _collect()), dtype=np.float64)
+    count = len(basis)
+    flat = basis.reshape(count, 12, 3)
+    outer = (flat @ np.swapaxes(flat, 1, 2)).reshape(count, 4, 3, 4, 3).transpose(0, 1, 3, 2, 4)
+    trace = np.trace(outer, axis1=3, axis2=4)[..., None, None]
+    by_columns = basis.transpose(0, 2, 1, 3).reshape(count, 3, 12)
+    cubic = (2.0 * outer - trace * np.eye(3)).reshape(count, 48, 3) @ by_columns
+    cubic = cubic.reshape(count, 16, 3, 4, 3).transpose(0, 2, 4, 1, 3).reshape(count, 9, 64)
+    minors = np.cross(basis[:, :, None, 1, :], basis[:, None, :, 2, :]).reshape(count, 16, 3)
+    determinant = basis[:, :, 0, :] @ np.swapaxes(minors, 1, 2)
+    return np.concatenate([cubic, determinant.reshape(count, 1, 64)], axis=1) @ _collect()
 
 
+@cache
 def _collect() -> FloatArray:
-    """(64, 20) matrix that adds up the coefficients of equal monomials."""
+    """(64, 20) matrix that adds up the coefficients of equal monomials; read only."""
     table = np.zeros((64, 20))
     monomials = _CUBICS + _LOWER
     for row, triple in enumerate(product(range(4), repeat=3)):
         table[row, monomials.index(_sorted(triple))] = 1.0
+    table.flags.writeable = False
     return table
 
 
@@ -95,11 +101,10 @@ def _sorted(triple: tuple[int, ...]) -> tuple[int, int, int]:
 
 
 def poses_of(essentials: FloatArray) -> Poses:
-    """The four poses of each of (M, 3, 3) essential matrices (Hartley and Zisserman, 9.6.2), 4 M of them."""
+    """One of the four poses of each of (M, 3, 3) essential matrices (Hartley and Zisserman, 9.6.2).
+
+    The others are its opposites, see Poses.opposite.
+    """
     u, _, vt = np.linalg.svd(essentials)
-    u = u * np.linalg.det(u)[:, None, None]
-    vt = vt * np.linalg.det(vt)[:, None, None]
-    w = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    rotation = np.concatenate([u @ turn @ vt for turn in (w, w, w.T, w.T)])
-    travel = np.concatenate([sign * u[:, :, 2] for sign in (1.0, -1.0, 1.0, -1.0)])
-    return Poses(rotation, travel)
+    rotation = u @ np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]) @ vt
+    return Poses(rotation * np.linalg.det(rotation)[:, None, None], u[:, :, 2])

@@ -60,11 +60,19 @@ class Cues:
 
 def motion_ratio(seen: Evaluated, noise_rad: float) -> FloatArray:
     """L (K, N) of a motion: how much better it explains each match than chance does."""
-    ratio = _tailed(seen.residual, noise_rad) / CHANCE_PER_RAD
-    if seen.scale_error is not None:
-        ratio *= _size_ratio(seen.scale_error)
-    reach = BEHIND * noise_rad
-    return ratio * ((seen.forward >= -reach) & (seen.same_side >= -reach))
+    return plane_ratio(seen, noise_rad) * in_front(seen, noise_rad)
+
+
+def plane_ratio(seen: Evaluated, noise_rad: float) -> FloatArray:
+    """The same, wherever a match lies on its epipolar plane."""
+    ratio = _tailed(seen.residual, noise_rad, CHANCE_PER_RAD)
+    return ratio if seen.scale_error is None else ratio * _size_ratio(seen.scale_error)
+
+
+def in_front(seen: Evaluated, noise_rad: float, way: float = 1.0, side: float = 1.0) -> BoolArray:
+    """Whether each match can be seen by both cameras, (K, N); the signs are those of Poses.opposite."""
+    reach = -BEHIND * noise_rad
+    return np.asarray((way * seen.forward >= reach) & (side * seen.same_side >= reach), dtype=np.bool_)
 
 
 def turn_ratio(apart_rad: FloatArray, log_scale: FloatArray | None, noise_rad: float) -> FloatArray:
@@ -98,12 +106,18 @@ def unlikely(poses: Poses) -> FloatArray:
 
 def _size_ratio(error: FloatArray) -> FloatArray:
     """L of changes of size that are so far, ln, from the foretold ones."""
-    return np.asarray(_tailed(error, SCALE_NOISE) * CHANCE_SCALE * np.sqrt(2.0 * np.pi), dtype=np.float64)
+    return _tailed(error, SCALE_NOISE, 1.0 / (CHANCE_SCALE * np.sqrt(2.0 * np.pi)))
 
 
-def _tailed(error: FloatArray, width: float) -> FloatArray:
-    """Density of a normal variable with a wide tail."""
-    size2 = (error / width) ** 2
-    dense = (1.0 - TAIL_SHARE) * np.exp(-0.5 * size2)
-    dense += TAIL_SHARE / TAIL_WIDTH * np.exp(size2 * (-0.5 / TAIL_WIDTH**2))
-    return np.asarray(dense / (width * np.sqrt(2.0 * np.pi)), dtype=np.float64)
+def _tailed(error: FloatArray, width: float, chance: float) -> FloatArray:
+    """Density of a normal variable with a wide tail, over that of chance."""
+    peak = 1.0 / (chance * width * np.sqrt(2.0 * np.pi))
+    exponent = np.square(error)
+    exponent *= -0.5 / width**2
+    dense = np.exp(exponent)
+    dense *= (1.0 - TAIL_SHARE) * peak
+    exponent *= TAIL_WIDTH**-2
+    tail = np.exp(exponent)
+    tail *= TAIL_SHARE / TAIL_WIDTH * peak
+    dense += tail
+    return np.asarray(dense, dtype=np.float64)

@@ -8,9 +8,13 @@ an angle. The triangle of both cameras and the point gives a second equation, by
 
 where d is the distance from each camera. What is seen from nearer is larger by that much, so the sizes of two
 keypoints that match tell which of them is nearer, whatever the scene.
+
+Whatever is a form b^T M b_t, as b . (t x w) with M = [t]x R and b . w with M = R, is linear in the nine
+products of both bearings: one matrix product evaluates it for all poses and matches.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -20,6 +24,14 @@ TINY = 1e-12
 """Keeps a division from zero; far below any bearing that a keypoint resolves."""
 NEAREST_SIN = 0.03
 """Least sine in equation (1): within 2 degrees of the line of travel the ratio is noise."""
+AXES = np.array(
+    [
+        [[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]],
+        [[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]],
+        [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+    ]
+)
+"""[x]x, [y]x and [z]x: matrices of the cross products with the axes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +44,15 @@ class Bearings:
 
     def __len__(self) -> int:
         return int(self.current.shape[1])
+
+    @cached_property
+    def products(self) -> FloatArray:
+        """(9, N) products of the coordinates of both bearings, in the order of a matrix (3, 3)."""
+        return (self.current[:, None] * self.target).reshape(9, len(self))
+
+    def forms(self, matrices: FloatArray) -> FloatArray:
+        """b^T M b_t for matrices (..., 3, 3) of each match, (..., N)."""
+        return np.asarray(matrices.reshape(*matrices.shape[:-2], 9) @ self.products, dtype=np.float64)
 
     def of(self, chosen: IndexArray) -> "Bearings":
         """Those matches only."""
@@ -52,6 +73,15 @@ class Poses:
     def of(self, chosen: IndexArray) -> "Poses":
         """Those poses only."""
         return Poses(self.rotation[chosen], self.travel[chosen])
+
+    def opposite(self, way: FloatArray, side: FloatArray) -> "Poses":
+        """Poses on the same epipolar planes, by signs (K,): the way back, half a turn about the way, or both.
+
+        All that differs is that `forward` changes its sign with the way, `same_side` with the half turn.
+        """
+        half_turn = 2.0 * self.travel[:, :, None] * self.travel[:, None] - np.eye(3)
+        rotation = np.where(side[:, None, None] > 0.0, self.rotation, half_turn @ self.rotation)
+        return Poses(rotation, way[:, None] * self.travel)
 
     @property
     def heading_rad(self) -> FloatArray:
@@ -93,7 +123,6 @@ class Evaluated:
     """K poses against N matches.
 
     Attributes:
-        turned: (K, 3, N) target bearings in the current frame.
         norm: (K, N) denominator n of the residual.
         residual: (K, N) signed angle off the epipolar plane, radians.
         forward: (K, N) normalised displacement away from t; positive where the depth is positive.
@@ -101,7 +130,6 @@ class Evaluated:
         scale_error: (K, N) ln of the size ratio less what equation (1) predicts; None without sizes.
     """
 
-    turned: FloatArray
     norm: FloatArray
     residual: FloatArray
     forward: FloatArray
@@ -111,37 +139,27 @@ class Evaluated:
 
 def evaluate(poses: Poses, matches: Bearings) -> Evaluated:
     """Evaluate every pose on every match."""
-    b, t = matches.current, poses.travel
-    turned = (poses.rotation.reshape(-1, 3) @ matches.target).reshape(len(poses), 3, -1)
-    along = t @ b
-    along_turned = np.matmul(t[:, None, :], turned)[:, 0]
-    norm = np.sqrt(np.maximum(2.0 - along * along - along_turned * along_turned, TINY))
+    along = poses.travel @ matches.current
+    along_turned = np.matmul(poses.travel[:, None], poses.rotation)[:, 0] @ matches.target
+    sine2, sine2_turned = 1.0 - along * along, 1.0 - along_turned * along_turned
+    norm = np.sqrt(np.maximum(sine2 + sine2_turned, TINY))
     inverse = 1.0 / norm
-    plane = cross(t[:, :, None], turned)
-    residual = (b[0] * plane[:, 0] + b[1] * plane[:, 1] + b[2] * plane[:, 2]) * inverse
-    dot = b[0] * turned[:, 0] + b[1] * turned[:, 1] + b[2] * turned[:, 2]
     return Evaluated(
-        turned,
         norm,
-        residual,
+        matches.forms(crossing(poses.travel) @ poses.rotation) * inverse,
         (along - along_turned) * inverse,
-        (dot - along * along_turned) * inverse,
-        None if matches.log_scale is None else matches.log_scale - _log_nearer(along, along_turned),
+        (matches.forms(poses.rotation) - along * along_turned) * inverse,
+        None if matches.log_scale is None else matches.log_scale - _log_nearer(sine2, sine2_turned),
     )
 
 
-def _log_nearer(along: FloatArray, along_turned: FloatArray) -> FloatArray:
-    """ln(d_t / d_c) of equation (1), from the cosines (K, N) of both bearings to the travel."""
-    sine2 = np.maximum(1.0 - along * along, NEAREST_SIN**2)
-    sine2_turned = np.maximum(1.0 - along_turned * along_turned, NEAREST_SIN**2)
-    return np.asarray(0.5 * np.log(sine2 / sine2_turned), dtype=np.float64)
+def _log_nearer(sine2: FloatArray, sine2_turned: FloatArray) -> FloatArray:
+    """ln(d_t / d_c) of equation (1), from the squared sines (K, N) of both bearings to the travel."""
+    least = NEAREST_SIN**2
+    nearer = np.maximum(sine2, least) / np.maximum(sine2_turned, least)
+    return np.asarray(0.5 * np.log(nearer), dtype=np.float64)
 
 
-def cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Cross product along axis 1 of (K, 3, N) arrays that broadcast; thrice as fast as numpy's own."""
-    x = a[:, 1] * b[:, 2] - a[:, 2] * b[:, 1]
-    out = np.empty((len(x), 3, *x.shape[1:]))
-    out[:, 0] = x
-    out[:, 1] = a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2]
-    out[:, 2] = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    return out
+def crossing(vectors: FloatArray) -> FloatArray:
+    """Matrices (..., 3, 3) of the cross products with (..., 3) vectors."""
+    return np.asarray((vectors @ AXES.reshape(3, 9)).reshape(*vectors.shape, 3), dtype=np.float64)

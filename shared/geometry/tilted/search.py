@@ -7,7 +7,14 @@ import numpy as np
 from shared.geometry.planar_model import PlanarMatches, line_scores, solve_pairs
 from shared.geometry.sphere import FloatArray
 from shared.geometry.tilted.five_point import five_point, poses_of
-from shared.geometry.tilted.match_evidence import Cues, evidence, motion_ratio, unlikely
+from shared.geometry.tilted.match_evidence import (
+    Cues,
+    evidence,
+    in_front,
+    motion_ratio,
+    plane_ratio,
+    unlikely,
+)
 from shared.geometry.tilted.poses import Bearings, Poses, evaluate, upright
 from shared.geometry.tilted.refine import refine
 
@@ -24,6 +31,9 @@ COARSE_RAD = tuple(np.deg2rad([2.0, 1.4]).tolist())
 ANNEALED_RAD = tuple(np.deg2rad([1.0, 0.6, 0.45]).tolist())
 FINAL_RAD = tuple(np.deg2rad([0.6, 0.45, 0.3]).tolist())
 """Noise assumed step by step, down to that of match_evidence."""
+EITHER_WAY = np.array([[1.0, 1.0], [-1.0, 1.0]])
+ALL_FOUR = np.array([[1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]])
+"""Signs, see Poses.opposite, of what a line of travel and an essential matrix stand for."""
 APART_RAD, TURNED_RAD = float(np.deg2rad(8.0)), float(np.deg2rad(4.0))
 """Poses that differ by less in travel and in rotation are one."""
 FIVES = 60
@@ -41,7 +51,7 @@ class Found:
     Attributes:
         poses: K of them, all different.
         score: (K,) nats: evidence of all matches less how unlikely tilt and climb are.
-        covariance: (K, 5, 5) of refine.
+        covariance: (K, 5, 5) of the parameters of refine.
     """
 
     poses: Poses
@@ -63,19 +73,22 @@ def search(matches: Bearings, planar: PlanarMatches, cues: Cues, rng: np.random.
     starts = _level(near, planar.of(first), right, rng)
     if starts is None:
         return None
-    poses, score = _refined(starts, near, right)
-    if _unexplained(poses, near, right):
+    poses = _refined(starts, near, right)
+    ratio = _final_ratio(poses, near)
+    if _unexplained(ratio, right):
         others = _of_five(near, right, rng)
         if others is not None:
-            more, more_score = _refined(others, near, right)
-            poses, score = _joined(poses, more), np.concatenate([score, more_score])
+            more = _refined(others, near, right)
+            poses, ratio = _joined(poses, more), np.concatenate([ratio, _final_ratio(more, near)])
+    score = _score(poses, ratio, right)
     if float(score.max()) < HOPELESS:
         return None
     kept = poses.of(np.array(_different(poses, score)))
-    kept, covariance = refine(kept, matches, cues.right, FINAL_RAD, measured=2)
-    score = _score(kept, matches, cues.right)
+    kept, information = refine(kept, matches, cues.right, FINAL_RAD, measured=2)
+    score = _score(kept, _final_ratio(kept, matches), cues.right)
     order = np.argsort(-score, kind="stable")
-    return Found(kept.of(order), score[order], covariance[order])
+    covariance = np.asarray(np.linalg.inv(information[order]), dtype=np.float64)
+    return Found(kept.of(order), score[order], covariance)
 
 
 def _level(
@@ -84,14 +97,12 @@ def _level(
     """Starts from pairs of matches of level cameras, drawn by how likely they are right."""
     share = right / right.sum()
     pairs = rng.choice(len(right), (PAIRS, 2), p=share)
-    heading, heading_target = solve_pairs(planar.rows, pairs[pairs[:, 0] != pairs[:, 1]])
-    if len(heading) == 0:
+    directions = solve_pairs(planar.rows, pairs[pairs[:, 0] != pairs[:, 1]])
+    if directions.size == 0:
         return None
-    lines = np.argsort(-line_scores(planar, heading, heading_target, WIDE_RAD), kind="stable")[:LINES]
-    heading, heading_target = heading[lines], heading_target[lines]
-    both = np.concatenate([heading, heading + np.pi])
-    poses = upright(both, np.concatenate([heading - heading_target] * 2))
-    return _best(poses, matches, right, 0.5 * WIDE_RAD, STARTS)
+    lines = np.argsort(-line_scores(planar, directions, WIDE_RAD), kind="stable")[:LINES]
+    heading, heading_target = directions[:, lines]
+    return _starts(upright(heading, heading - heading_target), matches, right, EITHER_WAY)
 
 
 def _of_five(matches: Bearings, right: FloatArray, rng: np.random.Generator) -> Poses | None:
@@ -101,14 +112,25 @@ def _of_five(matches: Bearings, right: FloatArray, rng: np.random.Generator) -> 
     essentials = five_point(matches.current.T[samples], matches.target.T[samples])
     if len(essentials) == 0:
         return None
-    poses = poses_of(essentials)
-    return _best(poses, matches, right, 0.5 * WIDE_RAD, STARTS)
+    return _starts(poses_of(essentials), matches, right, ALL_FOUR)
 
 
-def _refined(starts: Poses, matches: Bearings, right: FloatArray) -> tuple[Poses, FloatArray]:
+def _starts(poses: Poses, matches: Bearings, right: FloatArray, signs: FloatArray) -> Poses:
+    """The best of these poses and of their opposites by (S, 2) signs of way and side."""
+    noise_rad = 0.5 * WIDE_RAD
+    seen = evaluate(poses, matches)
+    behind = evidence(right, np.zeros(len(right)))
+    gain = evidence(right, plane_ratio(seen, noise_rad)) - behind
+    score = [np.sum(gain * in_front(seen, noise_rad, way, side), axis=1) for way, side in signs]
+    best = np.argsort(-np.concatenate(score), kind="stable")[:STARTS]
+    sign, pose = np.divmod(best, len(poses))
+    return poses.of(pose).opposite(*signs[sign].T)
+
+
+def _refined(starts: Poses, matches: Bearings, right: FloatArray) -> Poses:
     poses, _ = refine(starts, matches, right, COARSE_RAD)
     poses, _ = refine(_best(poses, matches, right, COARSE_RAD[-1], LEFT), matches, right, ANNEALED_RAD)
-    return poses, _score(poses, matches, right)
+    return poses
 
 
 def _best(poses: Poses, matches: Bearings, right: FloatArray, noise_rad: float, count: int) -> Poses:
@@ -117,28 +139,30 @@ def _best(poses: Poses, matches: Bearings, right: FloatArray, noise_rad: float, 
     return poses.of(np.argsort(-evidence(right, ratio).sum(axis=1), kind="stable")[:count])
 
 
-def _score(poses: Poses, matches: Bearings, right: FloatArray) -> FloatArray:
-    ratio = motion_ratio(evaluate(poses, matches), FINAL_RAD[-1])
+def _final_ratio(poses: Poses, matches: Bearings) -> FloatArray:
+    return motion_ratio(evaluate(poses, matches), FINAL_RAD[-1])
+
+
+def _score(poses: Poses, ratio: FloatArray, right: FloatArray) -> FloatArray:
     return np.asarray(evidence(right, ratio).sum(axis=1) - unlikely(poses), dtype=np.float64)
 
 
-def _unexplained(poses: Poses, matches: Bearings, right: FloatArray) -> bool:
+def _unexplained(ratio: FloatArray, right: FloatArray) -> bool:
     """Whether many likely matches fit no pose so far: the cameras may lean far from each other."""
     sure = right >= SURE
     if sure.sum() < SURE_COUNT:
         return False
-    fit = motion_ratio(evaluate(poses, matches), FINAL_RAD[-1])[:, sure] > 1.0
-    return bool(fit.mean(axis=1).max() < EXPLAINED)
+    return bool((ratio[:, sure] > 1.0).mean(axis=1).max() < EXPLAINED)
 
 
 def _different(poses: Poses, score: FloatArray) -> list[int]:
     """Indices of the best poses that differ from each other."""
+    rotation = poses.rotation.reshape(len(poses), 9)
+    turn = (rotation @ rotation.T - 1.0) / 2.0  # cosines
+    same = (poses.travel @ poses.travel.T > np.cos(APART_RAD)) & (turn > np.cos(TURNED_RAD))
     kept: list[int] = []
     for k in np.argsort(-score, kind="stable").tolist():
-        travel = poses.travel[kept] @ poses.travel[k]
-        turn = np.einsum("kij,ij->k", poses.rotation[kept], poses.rotation[k])
-        same = (travel > np.cos(APART_RAD)) & ((turn - 1.0) / 2.0 > np.cos(TURNED_RAD))
-        if not same.any():
+        if not same[k, kept].any():
             kept.append(k)
         if len(kept) == RIVALS:
             break

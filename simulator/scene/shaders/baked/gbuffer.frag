@@ -1,5 +1,5 @@
 #version 450
-// Texture times light. Both are gamma-encoded, so the product is what a gamma-correct renderer would show.
+// Texture times light, with the holes of the texture. Both are gamma-encoded, so the product is what a gamma-correct renderer would show.
 // Then fog by distance. SAPIEN has no uniform for it: the scene's ambient light, which nothing else uses here,
 // carries the extinction per metre (red) and the fog's own light (green), see simulator/disturbances/fog.py.
 
@@ -74,7 +74,9 @@ layout(location = 2) in vec3 inView;
 layout(location = 0) out vec4 outColor;
 
 void main() {
-  vec3 colour = texture(colorTexture, inUV).rgb * inLight;
+  vec4 texel = texture(colorTexture, inUV);
+  if (texel.a < 0.5) discard;
+  vec3 colour = texel.rgb * inLight;
   if (sceneBuffer.ambientLight.r > 0.0) {
     float clear = exp(-sceneBuffer.ambientLight.r * length(inView));
     colour = mix(vec3(sceneBuffer.ambientLight.g), min(colour, vec3(1)), clear);

@@ -60,6 +60,20 @@ def test_round_pot_is_seen_at_its_rim():
     assert read((pot,))[0] == pytest.approx(0.8)
 
 
+@pytest.mark.parametrize(
+    "large",
+    [
+        pytest.param(box((2.0, 2.1), (-3.0, 37.0), (0.0, 2.5), STUFF), id="wall"),
+        pytest.param(Part("cylinder", (12.0, 0.0, 0.2), (20.0, 20.0, 0.4), STUFF), id="disc"),
+        pytest.param(
+            Part("box", (12.0, 0.0, 0.2), (0.1, 20.0, 0.4), STUFF, yaw_rad=math.pi / 2), id="turned"
+        ),
+    ],
+)
+def test_large_thing_with_its_middle_out_of_range_is_seen_where_it_is_near(large):
+    assert read((large,))[0] == pytest.approx(2.0)
+
+
 def test_noise_depends_on_the_generator_only():
     noisy = RangeSettings(noise_m=0.05)
     np.testing.assert_array_equal(

@@ -1,11 +1,15 @@
 """Free floor: what fits where, shortest ways, lines of sight, random poses."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from simulator.scene.parts import Material
+from simulator.scene.prisms import Prism
+from simulator.scene.shapes import hull_part
 from simulator.world.freespace import free_space
 from simulator.world.world_file import WorldFile, load_world
 
@@ -59,6 +63,26 @@ def test_wall_hides_and_table_does_not(plain, apartment):
     assert plain.line_of_sight((4.2, 3.0), (5.8, 3.6))
     assert not apartment.line_of_sight((6.0, 1.2), (6.0, -0.9))
     assert apartment.line_of_sight((1.7, 1.5), (1.6, -0.9))
+
+
+def test_low_partition_is_looked_over_and_a_high_one_is_not(room_data):
+    def between(high_m):
+        item = {"kind": "partition", "at_m": [3.0, 2.0], "options": {"low_m": 0.6, "high_m": high_m}}
+        return free_space(WorldFile.model_validate({**room_data, "furniture": [item]}))
+
+    ends = (2.0, 2.0), (4.0, 2.0)
+    assert not between(1.0).line_of_sight(*ends)
+    assert between(1.0).in_view(*ends)
+    assert not between(1.6).in_view(*ends)
+
+
+def test_line_passes_beside_a_slanted_sheet_through_the_box_round_it(plain):
+    corners = np.array([(2.0, 1.0), (2.1, 1.0), (4.1, 3.0), (4.0, 3.0)])
+    sheet = hull_part(Prism(0.0, 2.0, corners), Material("plaster"))
+    space = replace(plain, parts=(sheet,))
+    assert space.line_of_sight((1.0, 1.5), (2.4, 2.9))
+    assert not space.line_of_sight((2.4, 2.9), (3.6, 1.2))
+    assert not space.line_of_sight((2.9, 1.0), (2.9, 3.0))
 
 
 def test_random_poses_are_free_repeatable_and_spread(apartment):

@@ -55,6 +55,17 @@ def test_heading_and_yaw_of_another_place(room, pipeline):
     assert found.model_dump() == answers[1].model_dump()
 
 
+def test_a_node_that_was_verified_for_this_frame_is_not_verified_again(room, pipeline):
+    here = features(pipeline, room(0.0, 0.0, 0.0, 400))
+    there = features(pipeline, room(*STEP_M, YAW_RAD, 400))
+    kept, known = nodes(pipeline, n8=there, n9=there), {}
+    first, second = (MatchRequest(map="flat", node_ids=(8,)), MatchRequest(map="flat", best_k=2))
+    (match,) = verify_candidates(pipeline, first, match_candidates(pipeline, first, here, kept), known)
+    found = verify_candidates(pipeline, second, match_candidates(pipeline, second, here, kept), known)
+    assert {m.node_id for m in found} == known.keys() == {8, 9}
+    assert next(m for m in found if m.node_id == 8) is match
+
+
 def test_a_node_of_another_pipeline_is_refused_naming_both(pipeline, room):
     here = features(pipeline, room(0.0, 0.0, 0.0, 400))
     other = nodes(pipeline, n8=here.model_copy(update={"pipeline": "superpoint-tangent-150"}))

@@ -2,6 +2,7 @@
 
 import copy
 import json
+from pathlib import Path
 
 import pytest
 import yaml
@@ -10,6 +11,8 @@ from typer.testing import CliRunner
 from services.launcher.commands.world import app
 from simulator.world.world_file import WorldFileError, load_world
 
+GAZEBO = Path(__file__).resolve().parents[5] / "deploy/examples/gazebo/two_rooms.world"
+MODELS = GAZEBO.parent / "models"
 PAINT = {"texture": "lacquer", "colour": [200, 200, 200]}
 WORLD = {
     "format": "topnav-world/1",
@@ -92,3 +95,27 @@ def test_a_kind_that_there_is_not_leaves_no_file(tmp_path):
 def test_a_generated_world_needs_the_name_of_a_world_file(tmp_path):
     result = generate("--kind", "flat", "--seed", 1, "--into", tmp_path / "flat.txt")
     assert "--into must end in .yaml" in str(result.exception)
+
+
+def test_world_of_others_is_imported_described_and_ready_to_explore(tmp_path):
+    into = tmp_path / "house"
+    result = CliRunner().invoke(
+        app, ["import", str(GAZEBO), "--into", str(into), "--start", "1", "1.2", "90"]
+    )
+    assert result.exit_code == 0
+    said = " ".join(result.output.split())
+    assert "world two_rooms" in said
+    assert f"next: topnav explore --world {into}/house.yaml --map house" in said
+    start = load_world(str(into / "house.yaml")).start
+    assert (start.x_m, start.y_m, start.yaw_deg) == (1.0, 1.2, 90.0)
+
+
+def test_what_could_not_be_shown_of_an_imported_world_is_said(tmp_path):
+    text = GAZEBO.read_text(encoding="utf-8").replace("model://chair<", "model://stool<")
+    (tmp_path / "w.world").write_text(text, encoding="utf-8")
+    arguments = ["import", str(tmp_path / "w.world"), "--into", str(tmp_path / "w"), "--models", str(MODELS)]
+    assert "model://stool" in str(CliRunner().invoke(app, arguments).exception)
+    result = CliRunner().invoke(app, [*arguments, "--leave-out"])
+    assert result.exit_code == 0
+    assert "note" in result.output
+    assert "model://stool" in result.output

@@ -12,6 +12,7 @@ from services.planner.travel.path_follower import NEAREST_STEPS, PathFollower
 from services.planner.travel.states import Event
 from services.planner.travel.tracking import Tracker
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.routing import GOAL
 from shared.messages.base import SECTORS
 from shared.messages.maps import Node
@@ -82,3 +83,23 @@ def test_a_leg_seen_free_before_that_is_shut_now_is_doubted_again():
 
 def test_any_leg_that_is_seen_free_is_driven_on():
     assert event_before(3.0) == (None, 1)
+
+
+def test_a_goal_that_does_not_show_from_the_last_node_is_headed_for_by_the_map():
+    """It lies two metres to the left of the node, hidden there by what stands beside it."""
+    maps = Maps(MapGraph([Node(node_id=0), Node(node_id=1)], [edge(0, 1, 2)]))
+    tracker = Tracker(DEFAULT, maps, Seen(), certain=False)
+    tracker.stand_at(Displacement(0, spread_m=0.1))
+    goal = SimpleNamespace(
+        picture=features(), arrival_rad=0.01, aliased=False, sees=lambda *_: None,
+        lies=lambda _: Displacement(0, y_m=2.0),
+    )  # fmt: skip
+    experience, unclear = EdgeExperience(DEFAULT, maps), {(GOAL, 0)}
+    follower = PathFollower(DEFAULT, maps, [0, GOAL], goal, unclear, experience, tracker)
+    ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(3.0,) * SECTORS, max_range_m=4.0)
+    seen = SimpleNamespace(match=lambda *_, **__: by_node(match(0, 0.0, 0.0, 200), match(GOAL, 0.0, 2.0, 8)))
+    found = [follower.step(Observation(features(), ranges), seen) for _ in range(20)]
+    blind = [decision for _, decision in found if decision.method == "reckoned"]
+    assert blind
+    assert math.degrees(blind[0].heading_rad) == pytest.approx(90.0, abs=1.0)
+    assert all(event is None for event, _ in found)

@@ -5,13 +5,21 @@ import pytest
 
 from shared.geometry.perspective import rotation_y, rotation_z
 from shared.geometry.tilted.five_point import five_point, poses_of
-from shared.geometry.tilted.match_evidence import NOISE_RAD, evidence, motion_ratio, turn_ratio, unlikely
+from shared.geometry.tilted.match_evidence import (
+    NOISE_RAD,
+    evidence,
+    in_front,
+    motion_ratio,
+    turn_ratio,
+    unlikely,
+)
 from shared.geometry.tilted.poses import Bearings, Poses, evaluate, upright
 from shared.geometry.tilted.refine import exponential, refine
 from tests.unit.shared.geometry.synthetic_room import rotation_x
 
 ROTATION = rotation_z(0.8) @ rotation_y(0.05) @ rotation_x(-0.04)
 TRAVEL = np.array([0.6, 0.7, 0.1]) / np.linalg.norm([0.6, 0.7, 0.1])
+SIGNS = np.array([[1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]])
 TRUTH = Poses(ROTATION[None], TRAVEL[None])
 
 
@@ -59,14 +67,31 @@ def test_five_exact_matches_contain_the_true_essential_matrix():
     assert min(min(np.abs(e - truth).max(), np.abs(e + truth).max()) for e in found) < 1e-7
 
 
-def test_one_of_the_four_poses_is_in_front_of_both_cameras():
+def four_poses():
     x, y, z = TRAVEL
-    poses = poses_of((np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) @ ROTATION)[None])
+    one = poses_of((np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) @ ROTATION)[None])
+    return one, one.of(np.zeros(4, dtype=int)).opposite(*SIGNS.T)
+
+
+def test_one_of_the_four_poses_is_in_front_of_both_cameras():
+    _, poses = four_poses()
     found = evaluate(poses, seen())
     ahead = ((found.forward > 0.0) & (found.same_side > 0.0)).all(axis=1)
     assert ahead.tolist().count(True) == 1
     np.testing.assert_allclose(poses.travel[ahead][0], TRAVEL, atol=1e-9)
     np.testing.assert_allclose(poses.rotation[ahead][0], ROTATION, atol=1e-9)
+    np.testing.assert_allclose(np.linalg.det(poses.rotation), 1.0)
+
+
+def test_opposite_poses_differ_by_the_signs_of_what_lies_in_front():
+    one, poses = four_poses()
+    first, found = evaluate(one, seen()), evaluate(poses, seen())
+    np.testing.assert_allclose(np.abs(found.residual), np.abs(first.residual).repeat(4, axis=0), atol=1e-12)
+    np.testing.assert_allclose(found.scale_error, first.scale_error.repeat(4, axis=0), atol=1e-9)
+    np.testing.assert_allclose(found.forward, SIGNS[:, :1] * first.forward, atol=1e-12)
+    np.testing.assert_allclose(found.same_side, SIGNS[:, 1:] * first.same_side, atol=1e-12)
+    for (way, side), mask in zip(SIGNS, in_front(found, NOISE_RAD), strict=True):
+        np.testing.assert_array_equal(in_front(first, NOISE_RAD, way, side)[0], mask)
 
 
 @pytest.mark.parametrize("sized", [True, False])
@@ -75,10 +100,10 @@ def test_refinement_reaches_the_truth_from_level_cameras(sized):
     start = upright(np.array([np.arctan2(0.7, 0.6) + 0.1]), np.array([0.75]))
     right = np.full(len(matches), 0.8)
     noises = np.deg2rad([3.0, 2.0, 1.0, 0.5]).tolist()
-    poses, covariance = refine(start, matches, right, noises, measured=2)
+    poses, information = refine(start, matches, right, noises, measured=2)
     heading_error = abs(float(poses.heading_rad[0]) - np.arctan2(0.7, 0.6))
     assert heading_error < np.deg2rad(0.3)
-    assert heading_error < 4.0 * np.sqrt(covariance[0, 3, 3])
+    assert heading_error < 4.0 * np.sqrt(np.linalg.inv(information[0])[3, 3])
     np.testing.assert_allclose(poses.rotation[0], ROTATION, atol=0.01)
 
 

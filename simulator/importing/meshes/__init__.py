@@ -1,0 +1,1 @@
+"""Reading of meshes in other formats, and writing of our models."""

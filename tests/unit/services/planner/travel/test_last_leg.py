@@ -1,0 +1,41 @@
+"""A goal that does not show is headed for by where the map has it."""
+
+import math
+
+import pytest
+
+from services.planner.travel.last_leg import reckoned_rad
+from shared.mapgraph.local.displacement import Displacement
+from tests.unit.shared.mapgraph.local.grid import grid
+
+GRAPH = grid(4, 2)
+
+
+def degrees(here, goal):
+    found = reckoned_rad(GRAPH, here, goal)
+    return None if found is None else math.degrees(found)
+
+
+def test_it_lies_where_its_node_lies_and_so_far_from_it():
+    goal = Displacement(1, x_m=0.0, y_m=1.5)
+    assert degrees(Displacement(1), goal) == pytest.approx(90.0)
+    assert degrees(Displacement(0, x_m=-0.5), goal) == pytest.approx(45.0, abs=1.0)
+
+
+def test_the_bearing_is_that_in_the_frame_of_the_robot():
+    goal = Displacement(1, x_m=2.0)
+    assert degrees(Displacement(0, yaw_rad=math.pi / 2), goal) == pytest.approx(-90.0, abs=1.0)
+
+
+@pytest.mark.parametrize(
+    ("here", "goal"),
+    [
+        (Displacement(1, x_m=0.9), Displacement(1, x_m=1.0)),
+        (None, Displacement(1, x_m=1.0)),
+        (Displacement(0), None),
+        (Displacement(99), Displacement(1, x_m=1.0)),
+        (Displacement(0), Displacement(99, x_m=1.0)),
+    ],
+)
+def test_at_the_spot_or_where_nobody_knows_there_is_no_bearing(here, goal):
+    assert reckoned_rad(GRAPH, here, goal) is None
