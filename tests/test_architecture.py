@@ -22,6 +22,8 @@ PURE = (
     "services/**/core/**/*.py",
     "services/**/graph.py",
     "services/**/comparison.py",
+    "services/camera/calibration/calibrating.py",
+    "services/camera/calibration/fitting.py",
     "services/camera/mount/*.py",
     "services/features/matching/*.py",
     "services/features/pipeline/*.py",
@@ -74,6 +76,7 @@ SHELL = ("terminal", "client", "drawing", "evaluation", "commands", "cli.py", "_
 
 JOINS = {
     "client/environments.py": {"simulator"},
+    "commands/camera.py": {"camera"},
     "commands/demo.py": {"simulator"},
     "commands/explore.py": {"simulator"},
     "commands/foxglove.py": {"recorder"},
