@@ -4,7 +4,18 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Generic, TypeVar
 
-from shared.messages import body, drive, estop, features, maps, matching, missions, sensors, simulation
+from shared.messages import (
+    body,
+    camera,
+    drive,
+    estop,
+    features,
+    maps,
+    matching,
+    missions,
+    sensors,
+    simulation,
+)
 from shared.messages.base import Message
 from shared.transport.keys import fill
 
@@ -59,6 +70,7 @@ class Query(Generic[Q, R]):
 
 
 FRAME = Topic("topnav/{robot}/frame", sensors.Frame, Delivery.DATA, 64 * MB)
+CAMERA_STATE = Topic("topnav/{robot}/camera", camera.CameraState, Delivery.DATA, 10_000)
 RANGES = Topic("topnav/{robot}/ranges", sensors.Ranges, Delivery.DATA, 10_000)
 FEATURES = Topic("topnav/{robot}/features", features.Features, Delivery.DATA, 8 * MB)
 HEADING = Topic("topnav/{robot}/heading", drive.Heading, Delivery.COMMAND, 10_000)

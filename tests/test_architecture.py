@@ -9,7 +9,7 @@ import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 PACKAGES = ("services", "shared", "simulator", "experiments")
-SERVICES = ("features", "map_store", "planner", "drive", "gateway", "recorder", "launcher", "ros")
+SERVICES = ("camera", "features", "map_store", "planner", "drive", "gateway", "recorder", "launcher", "ros")
 
 # Pure code: the same input gives the same output, whatever the clock, the bus and the environment say.
 PURE = (
@@ -22,6 +22,9 @@ PURE = (
     "services/**/core/**/*.py",
     "services/**/graph.py",
     "services/**/comparison.py",
+    "services/camera/calibration/calibrating.py",
+    "services/camera/calibration/fitting.py",
+    "services/camera/mount/*.py",
     "services/features/matching/*.py",
     "services/features/pipeline/*.py",
     "services/features/retrieval/*.py",
@@ -65,6 +68,7 @@ IMPURE_OURS = {
 FORBIDDEN = {
     "planner": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
     "drive": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
+    "camera": {"torch", "kornia", "sapien", "fastapi", "sqlalchemy"},
     "gateway": {"torch", "kornia", "sapien", "sqlalchemy"},
     "map_store": {"torch", "kornia", "cv2", "sapien"},
     "features": {"sapien", "fastapi", "sqlalchemy"},
@@ -80,6 +84,7 @@ SHELL = ("terminal", "client", "drawing", "evaluation", "commands", "cli.py", "_
 
 JOINS = {
     "client/environments.py": {"simulator"},
+    "commands/camera.py": {"camera"},
     "commands/demo.py": {"simulator"},
     "commands/explore.py": {"simulator"},
     "commands/foxglove.py": {"recorder"},

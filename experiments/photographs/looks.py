@@ -10,10 +10,10 @@ import numpy as np
 
 from experiments.photographs.tilting import tilt
 from services.features.matching.verification import feature_set
-from services.features.pipeline.decoding import BadPictureError, jpeg_size
 from services.features.pipeline.interfaces import FeatureSet, Image
 from services.features.pipeline.pipeline import Pipeline
 from services.launcher.client.failure import ExperimentError
+from shared.jpeg import BadPictureError, jpeg_size
 from shared.messages.sensors import Frame
 
 TILTED_JPEG_QUALITY = 95

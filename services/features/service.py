@@ -17,11 +17,11 @@ from services.features.matching.requests import (
     match_candidates,
     verify_candidates,
 )
-from services.features.pipeline.decoding import BadPictureError
 from services.features.pipeline.pipeline import Pipeline
 from services.features.robot_streams import RobotStreams
 from services.features.settings import FeaturesSettings
 from shared.bus import Bus, Request
+from shared.jpeg import BadPictureError
 from shared.messages.features import ExtractRequest, Features
 from shared.messages.matching import MatchReply, MatchRequest
 from shared.messages.sensors import Frame

@@ -11,6 +11,7 @@ from importlib.metadata import EntryPoint, entry_points
 import typer
 
 from services.launcher.commands import (
+    camera,
     certs,
     demo,
     doctor,
@@ -46,7 +47,7 @@ app = typer.Typer(
 )
 for command in (demo, explore, goto, estop, world, models, record, replay, recover, foxglove):
     app.add_typer(command.app)
-for command in (map, mission, certs, token, up, down, status, doctor):
+for command in (map, mission, camera, certs, token, up, down, status, doctor):
     app.add_typer(command.app)
 
 

@@ -19,6 +19,7 @@ class Role(Enum):
     ROUTER = "router"
     ROBOT = "robot"
     SIMULATOR = "simulator"
+    CAMERA = "camera"
     FEATURES = "features"
     MAP_STORE = "map_store"
     PLANNER = "planner"
@@ -31,7 +32,7 @@ class Role(Enum):
     @property
     def of_one_robot(self) -> bool:
         """Whether such a service belongs to one robot and may touch the keys of no other."""
-        return self in (Role.ROBOT, Role.SIMULATOR, Role.FEATURES, Role.PLANNER, Role.DRIVE)
+        return self in (Role.ROBOT, Role.SIMULATOR, Role.CAMERA, Role.FEATURES, Role.PLANNER, Role.DRIVE)
 
     def common_name(self, robot: str) -> str:
         """Common name of a certificate, "drive.r1" or "map_store".
@@ -86,9 +87,11 @@ ASKERS = (*PEOPLE, Role.ROBOT)
 """A robot whose body is in ROS passes on what people wish there: of itself only (services/ros)."""
 
 STREAMS: dict[Topic[Any], Grant] = {
-    topics.FRAME: _grant(BODIES, [Role.ROBOT, Role.FEATURES, *WATCHERS]),
+    topics.FRAME: _grant([*BODIES, Role.CAMERA], [Role.ROBOT, Role.FEATURES, *WATCHERS]),
+    topics.CAMERA_STATE: _grant([Role.CAMERA], WATCHERS),
     topics.RANGES: _grant(BODIES, [Role.DRIVE, Role.PLANNER, *WATCHERS]),
-    topics.FEATURES: _grant([Role.FEATURES], [Role.PLANNER, *WATCHERS]),
+    # A camera that replays pictures one step at a time waits for the features of each.
+    topics.FEATURES: _grant([Role.FEATURES], [Role.PLANNER, Role.CAMERA, *WATCHERS]),
     topics.HEADING: _grant([Role.PLANNER], [Role.DRIVE, *WATCHERS]),
     topics.VELOCITY: _grant([Role.DRIVE], [*BODIES, Role.PLANNER, *WATCHERS]),
     topics.MANUAL: _grant(PEOPLE, [Role.DRIVE, Role.PLANNER, *WATCHERS]),

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from shared.messages import body, drive, estop, maps, matching, sensors, simulation
+from shared.messages import body, camera, drive, estop, maps, matching, sensors, simulation
 from shared.messages import features as looks
 from shared.messages import missions as orders
 from shared.messages.base import Message
@@ -160,6 +160,19 @@ def seen() -> tuple[Message, ...]:
     """What robots sense and the feature service makes of it."""
     return (
         frame(),
+        camera.CameraState(
+            **AT,
+            robot="r1",
+            source="osc://192.168.1.1",
+            problem="no connection: timed out",
+            model="RICOH THETA Z1",
+            mode="image",
+            battery_fraction=0.5,
+            rate_hz=8.0,
+            delay_s=0.4,
+            width_px=1024,
+            height_px=512,
+        ),
         sensors.Ranges(
             **AT,
             robot="r1",

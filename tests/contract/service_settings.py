@@ -16,6 +16,7 @@ FILE = ROOT / "deploy/compose.settings.yml"
 MODULES = {
     "map-store": "services.map_store.settings",
     "simulator": "simulator.service_settings",
+    "camera": "services.camera.settings",
     "features": "services.features.settings",
     "planner": "services.planner.settings",
     "drive": "services.drive.settings",

@@ -22,7 +22,7 @@ from tests.contract.service_settings import MODULES, settings_class
 RAW = yaml.safe_load(COMPOSE_FILE.read_text(encoding="utf-8"))
 TOKENS = yaml.safe_load(COMPOSE_FILE.with_name("deploy").joinpath("compose.tokens.yml").read_text("utf-8"))
 EVERYTHING = RAW["services"]
-SERVICES = {name: service for name, service in EVERYTHING.items() if "profiles" not in service}
+SERVICES = {name: service for name, service in EVERYTHING.items() if service.get("profiles") != ["secure"]}
 VARIABLE = re.compile(r"\$\{(\w+)")
 
 
@@ -41,7 +41,14 @@ def schema(repository):
 
 @pytest.fixture
 def stack(tmp_path):
-    return StackSettings(tmp_path, world="apartment", lockstep=True, seed=5, ports=Ports(17447, 18000, 18001))
+    return StackSettings(
+        tmp_path,
+        world="apartment",
+        lockstep=True,
+        seed=5,
+        ports=Ports(17447, 18000, 18001),
+        camera="osc://192.168.1.1",
+    )
 
 
 @pytest.fixture
@@ -80,7 +87,9 @@ def test_the_schema_would_notice_a_misspelt_key(schema):
 
 
 def test_every_process_of_the_architecture_is_there():
-    assert set(SERVICES) == {"router", "map-store", "simulator", "features", "planner", "drive", "gateway"}
+    assert set(SERVICES) == {
+        "router", "map-store", "simulator", "camera", "features", "planner", "drive", "gateway",
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", SERVICES)
@@ -141,8 +150,11 @@ def test_every_other_setting_reaches_its_container_where_somebody_sets_it():
         assert SERVICES[name]["extends"] == {"file": "deploy/compose.settings.yml", "service": name}
 
 
-def test_only_the_certificates_belong_to_a_profile_and_no_service_needs_them():
-    assert {name: s["profiles"] for name, s in EVERYTHING.items() if "profiles" in s} == {"certs": ["secure"]}
+def test_certificates_and_a_real_camera_belong_to_profiles_and_no_service_needs_the_certificates():
+    assert {name: s["profiles"] for name, s in EVERYTHING.items() if "profiles" in s} == {
+        "certs": ["secure"],
+        "camera": ["camera"],
+    }
     for name, service in SERVICES.items():
         need = service["depends_on"]["certs"]
         assert need == {"condition": "service_completed_successfully", "required": False}, name

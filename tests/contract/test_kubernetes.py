@@ -118,8 +118,8 @@ def test_every_file_is_a_resource_or_a_patch_of_its_folder():
         assert files <= set(named), path
 
 
-def test_all_processes_but_the_simulator_are_there():
-    assert set(DEPLOYMENTS) == SERVICES == set(COMPOSE) - {"simulator", "certs"}
+def test_all_processes_but_those_that_are_with_the_robot_are_there():
+    assert set(DEPLOYMENTS) == SERVICES == set(COMPOSE) - {"simulator", "camera", "certs"}
 
 
 @pytest.mark.parametrize("name", sorted(SERVICES))

@@ -11,9 +11,9 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from services.features.pipeline.decoding import BadPictureError, jpeg_size
 from shared.geometry.perspective import pixel_centres
 from shared.geometry.sphere import EquirectGrid, FloatArray
+from shared.jpeg import BadPictureError, jpeg_size
 
 WIDTH_PX, HEIGHT_PX = 256, 128
 """Pixels compared; chosen: 1.4 degrees each, a hundredth of a picture's area is a rug 2 m away."""

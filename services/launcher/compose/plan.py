@@ -5,6 +5,11 @@ from graphlib import CycleError, TopologicalSorter
 
 from services.launcher.compose.compose_file import Dependency, Service
 
+CAMERA = "camera"
+"""Profile of what runs where there is a real camera."""
+SIMULATOR = ("-m", "simulator")
+"""Command of the process that has a camera of its own; a robot's own under that name is kept."""
+
 
 def active_services(
     services: Mapping[str, Service], profiles: Collection[str] = (), only: Collection[str] | None = None
@@ -29,6 +34,17 @@ def active_services(
             needs = services[name].depends_on.items()
             queue.extend(other for other, need in needs if need.required or other in chosen)
     return _without_absent({name: service for name, service in services.items() if name in wanted})
+
+
+def with_camera(services: Mapping[str, Service], variables: Mapping[str, str]) -> dict[str, Service]:
+    """Where TOPNAV_CAMERA names a camera, its process belongs to the stack and the simulator does not."""
+    if not variables.get("TOPNAV_CAMERA"):
+        return dict(services)
+    kept = {name: service for name, service in services.items() if service.command[1:3] != SIMULATOR}
+    return {
+        name: service.model_copy(update={"profiles": ()}) if CAMERA in service.profiles else service
+        for name, service in kept.items()
+    }
 
 
 def _without_absent(services: Mapping[str, Service]) -> dict[str, Service]:

@@ -65,6 +65,7 @@ def run_foreground(
         compose_file=compose_file,
         watch=watch,
         secure=settings.secure,
+        camera=settings.camera,
         told=told,
     )
     _log_to(launcher.logs / "launcher.jsonl")
@@ -166,7 +167,7 @@ def _log_to(path: Path) -> None:
 def _arguments(settings: StackSettings, compose_file: Path, timeout_s: float) -> list[str]:
     arguments = ["up", "--foreground", "--data-dir", str(settings.data_dir), "--timeout-s", str(timeout_s)]
     arguments += ["--file", str(compose_file)]
-    for name in ("world", "seed", "profile"):
+    for name in ("world", "seed", "profile", "camera"):
         value = located(settings.world) if name == "world" else getattr(settings, name)
         arguments += [f"--{name}", str(value)] if value is not None else []
     if settings.lockstep is not None:

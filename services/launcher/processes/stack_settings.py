@@ -52,6 +52,7 @@ class StackSettings:
         ports: where the services listen.
         environment: set in every service last of all, for example {"FEATURES_KEYPOINTS": "300"}.
         secure: certificates for everybody, and a router that lets pass only what the access rules allow.
+        camera: URL of a real camera, deploy/CAMERAS.md: its process runs, and the simulator does not.
     """
 
     data_dir: Path
@@ -62,6 +63,7 @@ class StackSettings:
     ports: Ports = field(default_factory=Ports)
     environment: Mapping[str, str] = field(default_factory=dict)
     secure: bool = False
+    camera: str | None = None
 
     @property
     def protocol(self) -> str:
@@ -85,6 +87,7 @@ class StackSettings:
             "TOPNAV_WORLD": located(self.world),
             "TOPNAV_LOCKSTEP": None if self.lockstep is None else str(self.lockstep).lower(),
             "TOPNAV_SEED": None if self.seed is None else str(self.seed),
+            "TOPNAV_CAMERA": self.camera,
             **profile_variables(self.profile),
             "TOPNAV_BIND": HOST,
             "TOPNAV_BUS": self.protocol,

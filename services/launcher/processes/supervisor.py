@@ -19,7 +19,7 @@ from typing import Self
 
 from services.launcher.compose.compose_file import COMPOSE_FILE, load_compose
 from services.launcher.compose.local import LocalMachine, ProcessSpec, certificate_folder, local_process
-from services.launcher.compose.plan import active_services, start_stages
+from services.launcher.compose.plan import active_services, start_stages, with_camera
 from services.launcher.processes.free_ports import HOST
 from services.launcher.processes.health import CommandHealth, Health, Liveliness, always_ready
 from services.launcher.processes.loop import SupervisorLoop
@@ -48,6 +48,7 @@ class Launcher:
         ports: default: free ones, so that stacks run side by side.
         environment: set in every service last of all.
         secure: certificates, mTLS and access rules on the bus.
+        camera: URL of a real camera in place of the simulator.
         only: run these services and what they depend on.
         variables: what the Compose file interpolates, and services are told beside what it says; by default
             this process's environment.
@@ -74,11 +75,13 @@ class Launcher:
         policy: RestartPolicy | None = None,
         watch: Callable[[Mapping[str, ServiceStatus]], None] | None = None,
         secure: bool = False,
+        camera: str | None = None,
         told: Callable[[str], None] | None = None,
     ) -> None:
         folder = Path(data_dir).resolve()
+        ports, environment = ports or Ports.free(), dict(environment or {})
         self.settings = StackSettings(
-            folder, world, lockstep, seed, profile, ports or Ports.free(), dict(environment or {}), secure
+            folder, world, lockstep, seed, profile, ports, environment, secure, camera
         )
         self._root, self._timeout_s, self._watch = compose_file.resolve().parent, timeout_s, watch
         self._told = told
@@ -208,7 +211,7 @@ class Launcher:
         given = self.settings.variables(variables)
         self._robots = robot_names(given)
         compose = load_compose(compose_file, given)
-        services = active_services(compose.services, only=only)
+        services = active_services(with_camera(compose.services, given), only=only)
         self._stages = start_stages(services)
         machine = LocalMachine(sys.executable, self.settings.data_dir, self.settings.certs, self._root)
         return [local_process(name, service, compose.services, machine) for name, service in services.items()]

@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from services.features.pipeline.decoding import BadPictureError, decode_picture
+from services.features.pipeline.decoding import decode_picture
 from services.gateway.uploads.picture import check_header, decode_bgr
 from services.gateway.uploads.picture_header import HeaderError, read_header
+from shared.jpeg import BadPictureError
 from shared.messages.sensors import Frame
 from shared.web.problems import ProblemError
 from simulator.assets.model import AssetError

@@ -91,8 +91,9 @@ def test_one_role_each_moves_the_robot_and_decides_where_to():
 
 
 def test_only_bodies_say_what_a_robot_senses_and_only_the_simulator_where_it_is():
-    for stream in (topics.FRAME, topics.RANGES, topics.ROBOT_ESTOP_STATE):
+    for stream in (topics.RANGES, topics.ROBOT_ESTOP_STATE):
         assert STREAMS[stream].speakers == set(BODIES)
+    assert STREAMS[topics.FRAME].speakers == {*BODIES, Role.CAMERA}
     assert STREAMS[topics.TRUTH].speakers == {Role.SIMULATOR}
 
 

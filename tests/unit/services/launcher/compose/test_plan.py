@@ -3,7 +3,7 @@
 import pytest
 
 from services.launcher.compose.compose_file import COMPOSE_FILE, Service, load_compose
-from services.launcher.compose.plan import active_services, start_stages
+from services.launcher.compose.plan import active_services, start_stages, with_camera
 
 
 def service(*needs, profiles=()):
@@ -55,3 +55,14 @@ def test_choosing_services_brings_what_they_need():
     assert list(active_services(services, only=["c"])) == ["a", "b", "c"]
     with pytest.raises(ValueError, match="no service 'z'"):
         active_services(services, only=["z"])
+
+
+def test_a_real_camera_takes_the_place_of_the_simulator_and_of_no_other_body():
+    simulator = Service(command=("python", "-m", "simulator"))
+    services = {"simulator": simulator, "camera": service(profiles=("camera",)), "a": service()}
+    assert list(active_services(with_camera(services, {}))) == ["simulator", "a"]
+    assert list(active_services(with_camera(services, {"TOPNAV_CAMERA": ""}))) == ["simulator", "a"]
+    given = {"TOPNAV_CAMERA": "osc://192.168.1.1"}
+    assert list(active_services(with_camera(services, given))) == ["camera", "a"]
+    robot = services | {"simulator": Service(command=("python", "robot.py"))}
+    assert list(active_services(with_camera(robot, given))) == ["simulator", "camera", "a"]

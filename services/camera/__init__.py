@@ -1,0 +1,1 @@
+"""Camera service: one 360-degree camera, found by URL, to frames on the bus."""
