@@ -1,1 +1,1 @@
-"""Drive service: from a heading and 12 distances to wheel commands."""
+"""Drive service: from a heading and 12 distances to the velocity of the robot."""
