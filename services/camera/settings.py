@@ -18,12 +18,13 @@ class CameraSettings(ServiceSettings):
 
     Attributes:
         url: of the camera, deploy/CAMERAS.md.
-        roll_deg: how far the mount lifts the camera's left side; 180 hangs upside-down. As the two below
-            written by `topnav camera check`.
+        roll_deg: how far the mount lifts the camera's left side; 180 hangs upside-down. This one and the
+            next are told by `topnav camera check`, from upright edges in sight.
         pitch_deg: how far it puts the camera's nose down.
         heading_deg: how far to the robot's left the picture's centre looks.
         mirrored: the camera swaps left and right.
-        delay_ms: from exposure to arrival; none: what is usual for such a camera.
+        delay_ms: from exposure to arrival, measured by `topnav camera check --flash`; none: what is usual for
+            such a camera.
         rate_hz: most frames a second; newer pictures take the place of older ones.
         width_px: most columns of a frame: wider pictures are scaled down.
         encoding: jpeg passes a camera's own pictures on where it can; bgr8 is exact and ten times as long.

@@ -75,6 +75,28 @@ def from_fisheyes(
         orientation: of the camera on the robot.
         mask_rad: half the width of the band along the seam that is blurred; 0 blurs nothing.
     """
+    places, shares = _in_lenses(width_px, calibration, orientation)
+    pixels = np.where((shares[0] <= shares[1])[..., None], places[0], places[1])
+    fixed, fraction = _fixed_point(pixels[..., 0] - 0.5, pixels[..., 1] - 0.5)
+    mask = None
+    if mask_rad > 0.0:
+        wider = np.deg2rad((calibration.lenses[0].sees_deg + calibration.lenses[1].sees_deg) / 2.0)
+        mask = SeamMask.along(np.abs(shares[0] - shares[1]) / 2.0 * wider, mask_rad)
+    return PanoramaTable(fixed, fraction, wraps=False, mask=mask)
+
+
+def first_lens_sees(
+    width_px: int, calibration: FisheyeCalibration, orientation: Orientation
+) -> npt.NDArray[np.bool_]:
+    """Which pixels (H, W) of such a panorama are of the first lens."""
+    _, shares = _in_lenses(width_px, calibration, orientation)
+    return np.asarray(shares[0] <= shares[1], dtype=np.bool_)
+
+
+def _in_lenses(
+    width_px: int, calibration: FisheyeCalibration, orientation: Orientation
+) -> tuple[list[FloatArray], list[FloatArray]]:
+    """Pixels (H, W, 2) of each lens, and at which share (H, W) of how far it sees they lie."""
     bearings = _camera_bearings(width_px, orientation)
     if orientation.mirrored:
         bearings = bearings * np.array([1.0, -1.0, 1.0])
@@ -83,14 +105,7 @@ def from_fisheyes(
         pixels, theta = one.lens.pixels(bearings @ one.rotation_camera_lens)
         shares.append(theta / np.deg2rad(one.sees_deg))
         places.append(np.where(shares[-1][..., None] <= 1.0, pixels, -1e4))
-    first = shares[0] <= shares[1]
-    pixels = np.where(first[..., None], places[0], places[1])
-    fixed, fraction = _fixed_point(pixels[..., 0] - 0.5, pixels[..., 1] - 0.5)
-    mask = None
-    if mask_rad > 0.0:
-        wider = np.deg2rad((calibration.lenses[0].sees_deg + calibration.lenses[1].sees_deg) / 2.0)
-        mask = SeamMask.along(np.abs(shares[0] - shares[1]) / 2.0 * wider, mask_rad)
-    return PanoramaTable(fixed, fraction, wraps=False, mask=mask)
+    return places, shares
 
 
 def _camera_bearings(width_px: int, orientation: Orientation) -> FloatArray:
