@@ -95,9 +95,7 @@ def _keys(role: Role, robot: str, table: Any, side: str) -> Iterator[str]:
 
 def _tokens(role: Role, robot: str) -> tuple[str, ...]:
     """A robot's body says beside its service which robot it is. People and watchers are no service."""
-    if role is Role.ROBOT:
-        return (robot_key(robot, "*"),)
-    own = (alive_key(role.value, "*"),)
+    own = (alive_key("ros" if role is Role.ROBOT else role.value, "*"),)
     return (*own, robot_key(robot, "*")) if role in BODIES else own
 
 

@@ -32,12 +32,14 @@ class Holder:
 
 
 def everyone(robot: str, *others: str) -> tuple[Holder, ...]:
-    """One holder per service of a stack with one simulated robot and per kind of person; and `others`' own.
+    """One holder per service of a stack with one robot and per kind of person; and `others`' own.
+
+    A robot of role "robot" in the stack is that in ROS, and its folder is named for its service.
 
     Raises:
         ValueError: not a robot's name.
     """
-    stack = (Holder(role.value, role, robot) for role in Role if role is not Role.ROBOT)
+    stack = (Holder("ros" if role is Role.ROBOT else role.value, role, robot) for role in Role)
     return (*stack, *(holder for other in others for holder in another_robot(other)))
 
 

@@ -17,6 +17,7 @@ MODULES = {
     "map-store": "services.map_store.settings",
     "simulator": "simulator.service_settings",
     "camera": "services.camera.settings",
+    "ros": "services.ros.settings",
     "features": "services.features.settings",
     "planner": "services.planner.settings",
     "drive": "services.drive.settings",

@@ -48,6 +48,7 @@ def stack(tmp_path):
         seed=5,
         ports=Ports(17447, 18000, 18001),
         camera="osc://192.168.1.1",
+        ros="deploy/robots/omni.yaml",
     )
 
 
@@ -88,7 +89,7 @@ def test_the_schema_would_notice_a_misspelt_key(schema):
 
 def test_every_process_of_the_architecture_is_there():
     assert set(SERVICES) == {
-        "router", "map-store", "simulator", "camera", "features", "planner", "drive", "gateway",
+        "router", "map-store", "simulator", "camera", "ros", "features", "planner", "drive", "gateway",
     }  # fmt: skip
 
 
@@ -150,10 +151,11 @@ def test_every_other_setting_reaches_its_container_where_somebody_sets_it():
         assert SERVICES[name]["extends"] == {"file": "deploy/compose.settings.yml", "service": name}
 
 
-def test_certificates_and_a_real_camera_belong_to_profiles_and_no_service_needs_the_certificates():
+def test_certificates_and_what_is_real_belong_to_profiles_and_no_service_needs_the_certificates():
     assert {name: s["profiles"] for name, s in EVERYTHING.items() if "profiles" in s} == {
         "certs": ["secure"],
         "camera": ["camera"],
+        "ros": ["ros"],
     }
     for name, service in SERVICES.items():
         need = service["depends_on"]["certs"]

@@ -23,10 +23,8 @@ def up(
         bool | None, typer.Option(help="As fast as the machine allows; same seed, same path.")
     ] = None,
     seed: Annotated[int | None, typer.Option(help="Of every random draw.")] = None,
-    camera: Annotated[
-        str | None,
-        typer.Option(help="A real camera's URL (osc://192.168.1.1); no simulator runs then."),
-    ] = None,
+    camera: Annotated[str | None, typer.Option(help="A real camera's URL; no simulator runs then.")] = None,
+    ros: Annotated[str | None, typer.Option(help="A ROS 2 robot's file; no simulator runs then.")] = None,
     profile: Annotated[
         str | None, typer.Option(help="Rules of planner and drive: default or thesis.")
     ] = None,
@@ -53,7 +51,7 @@ def up(
     from services.launcher.terminal.services import Changes, status_table
 
     choices: dict[str, Any] = {"world": world, "lockstep": lockstep, "seed": seed, "profile": profile}
-    choices["camera"] = camera
+    choices |= {"camera": camera, "ros": ros}
     settings = StackSettings(data_dir.resolve(), **choices, secure=secure)
     compose_file, console = (file or COMPOSE_FILE).resolve(), Console()
     if detach:

@@ -5,10 +5,10 @@ from graphlib import CycleError, TopologicalSorter
 
 from services.launcher.compose.compose_file import Dependency, Service
 
-CAMERA = "camera"
-"""Profile of what runs where there is a real camera."""
+REAL = {"TOPNAV_CAMERA": "camera", "TOPNAV_ROS": "ros"}
+"""Variables that name a real camera and a robot in ROS, and the profile of what runs then."""
 SIMULATOR = ("-m", "simulator")
-"""Command of the process that has a camera of its own; a robot's own under that name is kept."""
+"""Command of the process that is camera and robot otherwise; a robot's own under that name is kept."""
 
 
 def active_services(
@@ -36,13 +36,14 @@ def active_services(
     return _without_absent({name: service for name, service in services.items() if name in wanted})
 
 
-def with_camera(services: Mapping[str, Service], variables: Mapping[str, str]) -> dict[str, Service]:
-    """Where TOPNAV_CAMERA names a camera, its process belongs to the stack and the simulator does not."""
-    if not variables.get("TOPNAV_CAMERA"):
+def with_real(services: Mapping[str, Service], variables: Mapping[str, str]) -> dict[str, Service]:
+    """Where a variable of REAL is set, what is of its profile is in the stack, and the simulator is not."""
+    chosen = {profile for variable, profile in REAL.items() if variables.get(variable)}
+    if not chosen:
         return dict(services)
     kept = {name: service for name, service in services.items() if service.command[1:3] != SIMULATOR}
     return {
-        name: service.model_copy(update={"profiles": ()}) if CAMERA in service.profiles else service
+        name: service.model_copy(update={"profiles": ()}) if chosen & set(service.profiles) else service
         for name, service in kept.items()
     }
 

@@ -66,6 +66,7 @@ def run_foreground(
         watch=watch,
         secure=settings.secure,
         camera=settings.camera,
+        ros=settings.ros,
         told=told,
     )
     _log_to(launcher.logs / "launcher.jsonl")
@@ -167,8 +168,9 @@ def _log_to(path: Path) -> None:
 def _arguments(settings: StackSettings, compose_file: Path, timeout_s: float) -> list[str]:
     arguments = ["up", "--foreground", "--data-dir", str(settings.data_dir), "--timeout-s", str(timeout_s)]
     arguments += ["--file", str(compose_file)]
-    for name in ("world", "seed", "profile", "camera"):
-        value = located(settings.world) if name == "world" else getattr(settings, name)
+    for name in ("world", "seed", "profile", "camera", "ros"):
+        value = getattr(settings, name)
+        value = located(value) if name in ("world", "ros") else value
         arguments += [f"--{name}", str(value)] if value is not None else []
     if settings.lockstep is not None:
         arguments.append("--lockstep" if settings.lockstep else "--no-lockstep")

@@ -53,6 +53,7 @@ class StackSettings:
         environment: set in every service last of all, for example {"FEATURES_KEYPOINTS": "300"}.
         secure: certificates for everybody, and a router that lets pass only what the access rules allow.
         camera: URL of a real camera, deploy/CAMERAS.md: its process runs, and the simulator does not.
+        ros: file of a robot in ROS 2, deploy/ROBOTS.md: likewise.
     """
 
     data_dir: Path
@@ -64,6 +65,7 @@ class StackSettings:
     environment: Mapping[str, str] = field(default_factory=dict)
     secure: bool = False
     camera: str | None = None
+    ros: str | None = None
 
     @property
     def protocol(self) -> str:
@@ -88,6 +90,7 @@ class StackSettings:
             "TOPNAV_LOCKSTEP": None if self.lockstep is None else str(self.lockstep).lower(),
             "TOPNAV_SEED": None if self.seed is None else str(self.seed),
             "TOPNAV_CAMERA": self.camera,
+            "TOPNAV_ROS": located(self.ros),
             **profile_variables(self.profile),
             "TOPNAV_BIND": HOST,
             "TOPNAV_BUS": self.protocol,
@@ -120,8 +123,8 @@ def profile_variables(profile: str | None) -> dict[str, str | None]:
     return {"TOPNAV_PROFILE": str(base), "TOPNAV_PROFILE_FILE": str(Path(profile).absolute())}
 
 
-def located(world: str | None) -> str | None:
-    """A world's name as it is, a world file's path made absolute: the services run in another folder."""
-    if world is None or Path(world).suffix not in {".yaml", ".yml"}:
-        return world
-    return str(Path(world).absolute())
+def located(file: str | None) -> str | None:
+    """A world's name as it is, a YAML file's path made absolute: the services run in another folder."""
+    if file is None or Path(file).suffix not in {".yaml", ".yml"}:
+        return file
+    return str(Path(file).absolute())

@@ -19,7 +19,7 @@ from typing import Self
 
 from services.launcher.compose.compose_file import COMPOSE_FILE, load_compose
 from services.launcher.compose.local import LocalMachine, ProcessSpec, certificate_folder, local_process
-from services.launcher.compose.plan import active_services, start_stages, with_camera
+from services.launcher.compose.plan import active_services, start_stages, with_real
 from services.launcher.processes.free_ports import HOST
 from services.launcher.processes.health import CommandHealth, Health, Liveliness, always_ready
 from services.launcher.processes.loop import SupervisorLoop
@@ -48,7 +48,7 @@ class Launcher:
         ports: default: free ones, so that stacks run side by side.
         environment: set in every service last of all.
         secure: certificates, mTLS and access rules on the bus.
-        camera: URL of a real camera in place of the simulator.
+        camera: URL of a real camera, and ros: file of a robot in ROS 2, in place of the simulator.
         only: run these services and what they depend on.
         variables: what the Compose file interpolates, and services are told beside what it says; by default
             this process's environment.
@@ -76,12 +76,13 @@ class Launcher:
         watch: Callable[[Mapping[str, ServiceStatus]], None] | None = None,
         secure: bool = False,
         camera: str | None = None,
+        ros: str | None = None,
         told: Callable[[str], None] | None = None,
     ) -> None:
         folder = Path(data_dir).resolve()
         ports, environment = ports or Ports.free(), dict(environment or {})
         self.settings = StackSettings(
-            folder, world, lockstep, seed, profile, ports, environment, secure, camera
+            folder, world, lockstep, seed, profile, ports, environment, secure, camera, ros
         )
         self._root, self._timeout_s, self._watch = compose_file.resolve().parent, timeout_s, watch
         self._told = told
@@ -211,7 +212,7 @@ class Launcher:
         given = self.settings.variables(variables)
         self._robots = robot_names(given)
         compose = load_compose(compose_file, given)
-        services = active_services(with_camera(compose.services, given), only=only)
+        services = active_services(with_real(compose.services, given), only=only)
         self._stages = start_stages(services)
         machine = LocalMachine(sys.executable, self.settings.data_dir, self.settings.certs, self._root)
         return [local_process(name, service, compose.services, machine) for name, service in services.items()]

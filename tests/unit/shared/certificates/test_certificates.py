@@ -46,7 +46,8 @@ def test_everybody_gets_a_certificate_with_the_name_that_the_rules_know(folder):
     names = {found.name: found.common_name for found in check(folder, NOW)}
     assert names["drive"] == "drive.r1"
     assert names["map_store"] == "map_store"
-    assert set(names) == {role.value for role in Role} - {"robot"}
+    assert names["ros"] == "robot.r1"
+    assert set(names) == {role.value for role in Role} - {"robot"} | {"ros"}
 
 
 def test_keys_are_for_their_owner_only_and_the_authoritys_is_apart(folder):
@@ -189,5 +190,5 @@ def test_the_one_shot_of_the_compose_file_may_run_again_and_starts_in_empty_volu
         )
         for _ in range(2)
     )
-    assert first.stdout.startswith("16 made, 0 kept")
-    assert second.stdout.startswith("0 made, 16 kept")
+    assert first.stdout.startswith("17 made, 0 kept")
+    assert second.stdout.startswith("0 made, 17 kept")

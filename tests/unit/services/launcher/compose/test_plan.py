@@ -3,7 +3,7 @@
 import pytest
 
 from services.launcher.compose.compose_file import COMPOSE_FILE, Service, load_compose
-from services.launcher.compose.plan import active_services, start_stages, with_camera
+from services.launcher.compose.plan import active_services, start_stages, with_real
 
 
 def service(*needs, profiles=()):
@@ -60,9 +60,24 @@ def test_choosing_services_brings_what_they_need():
 def test_a_real_camera_takes_the_place_of_the_simulator_and_of_no_other_body():
     simulator = Service(command=("python", "-m", "simulator"))
     services = {"simulator": simulator, "camera": service(profiles=("camera",)), "a": service()}
-    assert list(active_services(with_camera(services, {}))) == ["simulator", "a"]
-    assert list(active_services(with_camera(services, {"TOPNAV_CAMERA": ""}))) == ["simulator", "a"]
+    assert list(active_services(with_real(services, {}))) == ["simulator", "a"]
+    assert list(active_services(with_real(services, {"TOPNAV_CAMERA": ""}))) == ["simulator", "a"]
     given = {"TOPNAV_CAMERA": "osc://192.168.1.1"}
-    assert list(active_services(with_camera(services, given))) == ["camera", "a"]
+    assert list(active_services(with_real(services, given))) == ["camera", "a"]
     robot = services | {"simulator": Service(command=("python", "robot.py"))}
-    assert list(active_services(with_camera(robot, given))) == ["simulator", "camera", "a"]
+    assert list(active_services(with_real(robot, given))) == ["simulator", "camera", "a"]
+
+
+def test_a_robot_in_ros_does_so_with_a_camera_of_its_own_or_of_topnav():
+    simulator = Service(command=("python", "-m", "simulator"))
+    services = {
+        "simulator": simulator,
+        "camera": service(profiles=("camera",)),
+        "ros": service(profiles=("ros",)),
+        "a": service(),
+    }
+    robot = {"TOPNAV_ROS": "robot.yaml"}
+    assert list(active_services(with_real(services, {"TOPNAV_ROS": ""}))) == ["simulator", "a"]
+    assert list(active_services(with_real(services, robot))) == ["ros", "a"]
+    both = robot | {"TOPNAV_CAMERA": "osc://192.168.1.1"}
+    assert list(active_services(with_real(services, both))) == ["camera", "ros", "a"]
