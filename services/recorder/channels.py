@@ -16,7 +16,7 @@ class RecordingError(ValueError):
 
 
 def name_of(topic: Topic[Message]) -> str:
-    """Short name of a topic: "frame", "command", "delta"."""
+    """Short name of a topic: "frame", "velocity", "delta"."""
     return topic.template.rpartition("/")[2]
 
 

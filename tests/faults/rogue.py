@@ -8,7 +8,10 @@ import zenoh
 from shared.transport.session_config import peer_config
 
 JUNK = bytes(range(256)) * 200
-KEYS = ("heading", "ranges", "standing", "command", "frame", "features", "status", "event", "stopped")
+KEYS = (
+    "heading", "ranges", "standing", "velocity", "manual", "frame", "camera", "features", "odometry", "imu",
+    "battery", "status", "event", "stopped",
+)  # fmt: skip
 NAP_S = 0.5
 
 

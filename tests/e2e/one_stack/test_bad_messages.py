@@ -57,15 +57,15 @@ STREAMS = [
     pytest.param(
         "ranges", altered(RANGES, distances_m=[1.0] * 11), "drive", "distances_m", id="11 distances"
     ),
-    pytest.param("command", bytes(20_000), "simulator", "at most 10000 bytes", id="huge command"),
+    pytest.param("velocity", bytes(20_000), "simulator", "at most 10000 bytes", id="huge velocity"),
     pytest.param(
-        "command",
+        "velocity",
         altered(Velocity(robot="r1"), forward_mps=1e9),
         "simulator",
         "forward_mps",
-        id="command beyond all limits",
+        id="velocity beyond all limits",
     ),
-    pytest.param("command", b"\x81" * 5_000, "simulator", "velocity.v1", id="nested too deeply"),
+    pytest.param("velocity", b"\x81" * 5_000, "simulator", "velocity.v1", id="nested too deeply"),
 ]
 
 QUESTIONS = [
