@@ -43,9 +43,11 @@ def check(
     if url is not None:
         os.environ["CAMERA_URL"] = url
     usual_s = 10.0 if flash else 3.0
-    report, marked = check_camera(seconds or usual_s, _paint if flash else None, seed)
-    if flash:
-        typer.echo("\x1b[0m\x1b[2J\x1b[H", nl=False)
+    try:
+        report, marked = check_camera(seconds or usual_s, _paint if flash else None, seed)
+    finally:
+        if flash:
+            typer.echo("\x1b[0m\x1b[2J\x1b[H", nl=False)
     if marked is not None:
         picture.write_bytes(marked(picture.suffix))
     write_json(json_file, report.figures())
