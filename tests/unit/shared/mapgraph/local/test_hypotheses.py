@@ -30,8 +30,8 @@ def test_the_place_with_most_support_comes_first_though_one_node_resembles_more(
 
 
 def test_a_rival_makes_a_list_and_a_weak_one_does_not():
-    assert len(likely(places_of({**ROUND_NODE_1, 9: claim(0.0, 0.0, 190)}))) == 2
-    assert len(likely(places_of({**ROUND_NODE_1, 9: claim(0.0, 0.0, 170)}))) == 1
+    assert len(likely(places_of({**ROUND_NODE_1, 9: claim(0.0, 0.0, 160)}))) == 2
+    assert len(likely(places_of({**ROUND_NODE_1, 9: claim(0.0, 0.0, 140)}))) == 1
 
 
 def test_a_place_where_nodes_are_few_is_named_beside_one_where_they_are_many():
