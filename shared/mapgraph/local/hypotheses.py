@@ -70,7 +70,7 @@ anywhere in two maps of a hostel of equal rooms and one of an office of equal de
 such a rival was put at a wrong place; at 0.6 two of 207 were, in a room where a node stood nearer."""
 LISTED_SHARE = 0.45
 """Places down to this share are named, once there is a rival: the right one was among them in all of the
-other 239, by support or by the core; at 0.5 in all but one. Nodes stand closer in one room than in another."""
+other 239, by support or by the core; at 0.5 in all but one. Nodes stand closer in one room than elsewhere."""
 PLAIN_FACTOR = 1.2
 """A place alone is plain where its best node has this many times the matches of neighbours on a driven way.
 Of 137 pictures whose place had no rival 130 have; of 160 without their place in the map 5 have."""
