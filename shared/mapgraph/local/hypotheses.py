@@ -80,7 +80,9 @@ Of 137 pictures whose place had no rival 130 have; of 160 without their place in
 
 def likely(places: list[Hypothesis]) -> list[Hypothesis]:
     """The places a picture can have been taken at, the likeliest first; one only where it has no rival."""
-    support, core = places[0].support if places else 0, max((place.core for place in places), default=0)
+    if not places:
+        return []
+    support, core = places[0].support, max(place.core for place in places)
 
     def with_share(of_support: float, of_core: float) -> list[Hypothesis]:
         return [p for p in places if p.support >= of_support * support or p.core >= of_core * core]
