@@ -136,10 +136,9 @@ def _seen_nearer(
     far_m = np.linalg.norm(spot_m - poses[node_id].position_m)
     for other, pose in poses.items():
         offset, free_m = spot_m - pose.position_m, graph.nodes[other].free_m
-        gap_m = np.linalg.norm(offset)
-        bearing_rad = math.atan2(offset[1], offset[0]) - pose.yaw_rad
-        sector = round(bearing_rad / SECTOR_RAD) % SECTORS
-        if other != node_id and gap_m < far_m and (not free_m or free_m[sector] >= gap_m):
+        if other == node_id or np.linalg.norm(offset) >= far_m:
+            continue
+        if not free_m or _saw(offset, pose.yaw_rad, np.array(free_m)):
             return True
     return False
 
@@ -176,9 +175,14 @@ def _new_share(
 
 def _weights(offset: FloatArray, own_yaw_rad: float, free_m: FloatArray) -> FloatArray:
     """1 for floor that the sensors saw, by its offset from them; less behind what they saw."""
-    bearing_rad = np.arctan2(offset[:, 1], offset[:, 0]) - own_yaw_rad
+    return np.where(_saw(offset, own_yaw_rad, free_m), 1.0, OCCLUDED)
+
+
+def _saw(offset: FloatArray, own_yaw_rad: float, free_m: FloatArray) -> npt.NDArray[np.bool_]:
+    """Whether floor was free as far as there, by its offsets (..., 2) from the sensors."""
+    bearing_rad = np.arctan2(offset[..., 1], offset[..., 0]) - own_yaw_rad
     sector = np.rint(bearing_rad / SECTOR_RAD).astype(int) % SECTORS
-    return np.where(np.linalg.norm(offset, axis=1) <= free_m[sector], 1.0, OCCLUDED)
+    return np.asarray(np.linalg.norm(offset, axis=-1) <= free_m[sector])
 
 
 def _on_this_side(graph: MapGraph, start: int, far_m: float) -> set[int]:

@@ -28,10 +28,9 @@ def in_reach(graph: MapGraph, matches: Matches, here: Displacement, profile: Pro
     """Matches with nodes around that lie where they are seen; what claims nothing is not among them."""
     sights = claims(graph, matches, profile, HEADING_CONFIDENCE_MIN)
     near = set(graph.nearest(here.node_id, NEAR_NODES))
-    away = out_of_reach(graph, sights, here, NEAR_NODES).keys() | hanging_apart(
-        graph, sights, here, NEAR_NODES
-    )
-    return {node: match for node, match in matches.items() if node in sights and node in near - away}
+    near -= out_of_reach(graph, sights, here, NEAR_NODES).keys()
+    near -= hanging_apart(graph, sights, here, NEAR_NODES)
+    return {node: match for node, match in matches.items() if node in sights and node in near}
 
 
 def elsewhere(

@@ -94,11 +94,8 @@ def hanging_apart(graph: MapGraph, claims: Mapping[int, Claim], here: Displaceme
     """
     if here.node_id not in graph.nodes:
         return set()
-    poses, loose_m = (
-        relative_poses(graph, here.node_id, claims, most),
-        LOOSE_M * openness(graph, here.node_id),
-    )
-    at_m = np.array([here.x_m, here.y_m])
+    poses = relative_poses(graph, here.node_id, claims, most)
+    loose_m, at_m = LOOSE_M * openness(graph, here.node_id), np.array([here.x_m, here.y_m])
     apart = set()
     for node, pose in poses.items():
         if claims[node].heading_rad is None or np.linalg.eigvalsh(pose.covariance_m2)[-1] < loose_m**2:

@@ -46,15 +46,15 @@ class Process:
         self.child: subprocess.Popen[bytes] | None = None
 
     def start(self) -> None:
-        """Start the process; its port must have been given back by the one before."""
-        assert wait_until(lambda: is_free(self._port), START_S), f"somebody else listens on port {self._port}"
+        """Start the process."""
         self.child = subprocess.Popen(self._command, cwd=self._repository, env=self._environment)
 
     def kill(self) -> None:
-        """End it without a chance to clean up."""
+        """End it without a chance to clean up; its port is free again then."""
         assert self.child is not None
         self.child.kill()
         self.child.wait(START_S)
+        assert wait_until(lambda: is_free(self._port), START_S), f"somebody else listens on port {self._port}"
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -18,7 +18,7 @@ from shared.messages.base import SECTORS
 from shared.messages.maps import Node
 from shared.messages.sensors import Ranges
 from tests.unit.services.planner.travel.seen import Maps, by_node, features, match
-from tests.unit.shared.mapgraph.local.grid import edge
+from tests.unit.shared.mapgraph.local.grid import edge, grid
 
 ANGLES_RAD = tuple(math.radians(30.0 * sector) for sector in range(SECTORS))
 AT_THE_WAYPOINT = by_node(match(0, 0.0, 0.0, 120), match(1, 2.0, 0.0, 37))
@@ -103,3 +103,17 @@ def test_a_goal_that_does_not_show_from_the_last_node_is_headed_for_by_the_map()
     assert blind
     assert math.degrees(blind[0].heading_rad) == pytest.approx(90.0, abs=1.0)
     assert all(event is None for event, _ in found)
+
+
+def test_the_nodes_around_are_compared_beside_those_ahead():
+    """Ahead a corridor whose doors repeat looks the same one door further; around the robot it does not."""
+    maps, asked = Maps(grid(12, 1)), []
+    tracker = Tracker(DEFAULT, maps, Seen(), certain=False)
+    tracker.stand_at(Displacement(2, x_m=0.2, spread_m=0.1))
+    to_a_node = SimpleNamespace(picture=None, arrival_rad=0.0, aliased=False)
+    experience, path = EdgeExperience(DEFAULT, maps), [6, 7, 8, 9]
+    follower = PathFollower(DEFAULT, maps, path, to_a_node, set(), experience, tracker)
+    seen = SimpleNamespace(match=lambda nodes, **_: asked.extend(nodes) or {})
+    ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(3.0,) * SECTORS, max_range_m=4.0)
+    follower.step(Observation(features(), ranges), seen)
+    assert asked == [6, 7, 8, 9, 2, 3, 1]

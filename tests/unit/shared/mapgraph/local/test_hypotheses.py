@@ -30,8 +30,16 @@ def test_the_place_with_most_support_comes_first_though_one_node_resembles_more(
 
 
 def test_a_rival_makes_a_list_and_a_weak_one_does_not():
-    assert len(likely(places_of({**ROUND_NODE_1, 9: claim(0.0, 0.0, 190)}))) == 2
-    assert len(likely(places_of({**ROUND_NODE_1, 9: claim(0.0, 0.0, 170)}))) == 1
+    assert len(likely(places_of({**ROUND_NODE_1, 9: claim(0.0, 0.0, 160)}))) == 2
+    assert len(likely(places_of({**ROUND_NODE_1, 9: claim(0.0, 0.0, 140)}))) == 1
+
+
+def test_a_place_whose_best_nodes_resemble_nearly_as_much_is_a_rival_of_one_with_more_nodes():
+    """A goal in a hostel: in the wrong room a node stood nearer to the spot, and others around it."""
+    dense = {node: claim(node - 2.0, 0.0, 90) for node in range(6)}
+    sparse = {9: claim(0.0, 0.0, 120), 10: claim(1.0, 0.0, 70)}
+    assert sum(c.similarity for c in sparse.values()) < 0.5 * sum(c.similarity for c in dense.values())
+    assert len(likely(places_of({**dense, **sparse}))) == 2
 
 
 def test_a_place_where_nodes_are_few_is_named_beside_one_where_they_are_many():
