@@ -16,6 +16,7 @@ from shared.messages.sensors import Frame, Ranges
 from shared.messages.simulation import Truth
 from shared.sole_robot import SoleRobot
 from shared.topics import FRAME, ODOMETRY, RANGES, SIMULATION, TRUTH, VELOCITY
+from simulator.disturbances.transit import Transit
 from simulator.experimenter import Experimenter, RequestError
 from simulator.outbox import MessageMaker
 from simulator.service_settings import SimulatorSettings
@@ -84,6 +85,8 @@ class Loop:
         self.simulation, self.settings, self.ports = simulation, settings, ports
         self.maker = MessageMaker(simulation, settings)
         self._experimenter = Experimenter(simulation, self.maker, settings.seed)
+        levels = settings.disturbance
+        self.transit: Transit[Frame] = Transit(levels.latency, levels.drops, settings.seed)
         self.seq = 0
         self.stamp_ns = time.time_ns()
 
@@ -111,12 +114,13 @@ class LockstepLoop(Loop):
     """Frame k, velocity k, control_period_s of physics, frame k + 1. Without a velocity nothing moves.
 
     While the emergency stop is engaged time goes on with a robot that stands, commanded or not. Stamps are of
-    the robot's own time, which begins at the wall clock's and goes on with the physics.
+    the robot's own time, which begins at the wall clock's and goes on with the physics. A frame that comes
+    late shows an earlier moment and says so by its stamp; for one that is lost another period passes.
     """
 
     def start(self) -> None:
         """Send the first frame."""
-        self._send()
+        self._begin()
 
     def step(self, now_s: float) -> None:
         """Advance if the awaited velocity came; send the frame again if none came for a while."""
@@ -126,25 +130,59 @@ class LockstepLoop(Loop):
         if self.serve_requests():
             self.seq += 1
             self.stamp_ns += CHANGE_NS
-            self._send()
+            self._begin()
         elif self.ports.stop.engaged():
             if answered or late:
-                self._advance(0.0, 0.0, 0.0)
+                self._advance(None)
         elif velocity is not None and answered:
-            self._advance(velocity.forward_mps, velocity.left_mps, velocity.turn_radps)
+            self._advance(velocity)
         elif late:
             self._repeat(now_s)
 
-    def _advance(self, forward_mps: float, left_mps: float, turn_radps: float) -> None:
+    def _advance(self, velocity: Velocity | None) -> None:
         period_s = self.settings.control_period_s
-        self.simulation.command(forward_mps, left_mps, turn_radps, period_s)
-        self.simulation.step(period_s)
-        self.seq += 1
-        self.stamp_ns += round(1e9 * period_s)
+        if velocity is None:
+            self.simulation.stop()
+        else:
+            self.simulation.command(
+                velocity.forward_mps,
+                velocity.left_mps,
+                velocity.turn_radps,
+                max(period_s, velocity.ttl_ms / 1000.0),
+            )
+        self._pass(period_s)
+        while self.transit.loses(self.seq):
+            self._pass(period_s)
         self._send()
 
+    def _pass(self, period_s: float) -> None:
+        """Let time pass; on the way the frame is exposed that arrives at the end of a later period."""
+        late_ns = self.transit.delay_ns % round(1e9 * period_s)
+        self._drive_on(round(1e9 * period_s) - late_ns)
+        self._expose()
+        self._drive_on(late_ns)
+        self.seq += 1
+
+    def _drive_on(self, duration_ns: int) -> None:
+        if duration_ns > 0:
+            self.simulation.step(1e-9 * duration_ns)
+            self.stamp_ns += duration_ns
+
+    def _begin(self) -> None:
+        """The first frame, or the first of a world that has changed: what was under way is void."""
+        self.transit.clear()
+        self._frame = self._expose()
+        self._send()
+
+    def _expose(self) -> Frame:
+        frame = self.maker.frame(self.seq, self.stamp_ns)
+        self.transit.expose(frame, self.stamp_ns)
+        return frame
+
     def _send(self) -> None:
-        self._pending = [*self.sense_body(), self.maker.frame(self.seq, self.stamp_ns)]
+        for frame in self.transit.arrived(self.stamp_ns):
+            self._frame = frame
+        self._pending = [*self.sense_body(), self._frame.model_copy(update={"seq": self.seq})]
         self._repeat(time.monotonic())
 
     def _repeat(self, now_s: float) -> None:
@@ -180,9 +218,11 @@ class RealTimeLoop(Loop):
             self._frame_s = max(self._frame_s + 1.0 / self.settings.frame_rate_hz, now_s)
             self.seq += 1
             self.stamp_ns = time.time_ns()
-            true = self.maker.truth(self.seq, self.stamp_ns)  # drawing may take half a second
-            self.ports.send(true, self.maker.frame(self.seq, self.stamp_ns))
+            self.ports.send(self.maker.truth(self.seq, self.stamp_ns))  # drawing may take half a second
             self._recent.sent(self.seq, now_s)
+            if not self.transit.loses(self.seq):
+                self.transit.expose(self.maker.frame(self.seq, self.stamp_ns), round(1e9 * now_s))
+        self.ports.send(*self.transit.arrived(round(1e9 * now_s)))
 
     def _catch_up(self, now_s: float) -> None:
         self._physics_s = max(self._physics_s, now_s - CATCH_UP_S)

@@ -11,6 +11,7 @@ from shared.motion.motion import NO_MOTION, Motion
 from simulator.disturbances.camera import Moment
 from simulator.disturbances.leaning import CameraLean
 from simulator.disturbances.rearranging import rearranged
+from simulator.disturbances.traction import traction_of
 from simulator.disturbances.walking import Crowd, crowd_of
 from simulator.robot.physics_scene import Bodies, PhysicsScene
 from simulator.scene.parts import Pose2
@@ -110,7 +111,8 @@ class Simulation:
                 "command must be finite with ttl_s >= 0, "
                 f"got {forward_mps}, {left_mps}, {turn_radps}, {ttl_s}"
             )
-        self._physics.robot.command(forward_mps, left_mps, turn_radps)
+        traction = traction_of(self.settings.disturbances, self._seed, self._physics.time_s)
+        self._physics.robot.command(forward_mps, left_mps, turn_radps, traction)
         self._expires_s = self._physics.time_s + ttl_s
 
     def stop(self) -> None:

@@ -9,6 +9,7 @@ from experiments.commands import (
     failures,
     heading,
     heading_frames,
+    latency,
     localisation,
     matching,
     photographs,
@@ -22,6 +23,7 @@ app = typer.Typer(
 for study in (
     heading,
     heading_frames,
+    latency,
     localisation,
     cycles,
     disturbance,

@@ -1,6 +1,6 @@
 """Hide and seek on a clean map while camera and world are disturbed: the rounds of one level."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -48,13 +48,26 @@ def settings_to_run(names: Iterable[str], levels: Iterable[float], results: list
 
 def run_level(study: Study, disturbance: str, level: float) -> Row:
     """Start a stack with one disturbance at a level and play the rounds."""
-    levels, console = disturbances(disturbance, level), wide_console(stderr=True)
+    rounds = play(study, f"{disturbance} {level:g}", disturbances(disturbance, level), {})
+    return level_row(disturbance, level, rounds)
+
+
+def play(study: Study, label: str, levels: Disturbances, environment: Mapping[str, str]) -> list[Row]:
+    """The figures of the rounds in a stack of their own.
+
+    Args:
+        study: which rounds.
+        label: what people are told beside the number of a round.
+        levels: of the disturbances.
+        environment: further settings of the services.
+    """
+    console = wide_console(stderr=True)
     choice = StackChoice(
         study.data_dir,
         study.world,
         study.seed,
         lockstep=True,
-        environment={"SIMULATOR_DISTURBANCE": levels.text()},
+        environment={"SIMULATOR_DISTURBANCE": levels.text(), **environment},
     )
     clean = load_world(study.world)
     space, mapped = free_space(true_world(clean, levels, study.seed)), free_space(clean)
@@ -66,12 +79,10 @@ def run_level(study: Study, disturbance: str, level: float) -> Row:
         game = Game(stack, space, study.map_name, rng, hideouts=hideouts)
         game.begin(study.seed)
         played = [
-            play_told(
-                console, game, f"{disturbance} {level:g}: {n}/{study.rounds}", study.seed + n, study.max_steps
-            )
+            play_told(console, game, f"{label}: {n}/{study.rounds}", study.seed + n, study.max_steps)
             for n in range(1, study.rounds + 1)
         ]
-    return level_row(disturbance, level, [one.figures() for one in played])
+    return [one.figures() for one in played]
 
 
 def level_row(disturbance: str, level: float, rounds: list[Row]) -> Row:

@@ -13,7 +13,7 @@ from services.features.matching.verification import Candidate, feature_set, veri
 from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.pipeline import Pipeline
 from services.launcher.terminal.output import rounded
-from simulator.disturbances.levels import Disturbances, generator
+from simulator.disturbances.levels import UNSEEN, Disturbances, generator
 from simulator.disturbances.rocking import RMS_RAD, drawn
 from simulator.simulation import Image, Simulation
 from simulator.world.freespace import free_space
@@ -30,6 +30,7 @@ TIMED = 6
 """Pictures timed, of which the first, which fills caches, does not count."""
 
 Row = dict[str, Any]
+SEEN = [name for name in Disturbances.model_fields if name not in UNSEEN]
 
 
 def disturbances(name: str, level: float) -> Disturbances:
@@ -45,7 +46,7 @@ def measured(
     poses = [draw_pair(space, rng, APART_M) for _ in range(pairs)]
     clean = simulated(world, seed=seed)
     targets = [_features(_picture(clean, pair), pipeline) for pair in poses]
-    settings = [(CLEAN, 0.0), *((name, level) for name in Disturbances.model_fields for level in levels)]
+    settings = [(CLEAN, 0.0), *((name, level) for name in SEEN for level in levels)]
     for name, level in settings:
         simulation = simulated(world, disturbances=disturbances(name, level), seed=seed)
         row = _measure(simulation, poses, targets, pipeline, seed)

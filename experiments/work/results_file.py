@@ -14,22 +14,23 @@ class ResultsFile:
     """Tables that grow by a few rows at a time; without a path they are kept in memory only.
 
     Attributes:
-        tables: rows by the name of their table, "results" first.
+        tables: rows by the name of their table, the main one first.
     """
 
-    def __init__(self, path: Path | None, setup: Row, *more: str) -> None:
+    def __init__(self, path: Path | None, setup: Row, *more: str, main: str = "results") -> None:
         """Read what an earlier run left.
 
         Args:
             path: of the file; it need not exist.
             setup: options that all rows share; they stand beside the tables.
-            more: names of tables besides "results".
+            more: names of tables besides the main one.
+            main: name of that.
 
         Raises:
             ExperimentError: the file is of another setup, or no file of this study.
         """
-        self._path, self._setup = path, setup
-        names = ("results", *more)
+        self._path, self._setup, self._main = path, setup, main
+        names = (main, *more)
         there = path is not None and path.exists()
         self.tables: dict[str, list[Row]] = (
             _read(path, setup, names) if there and path is not None else {name: [] for name in names}
@@ -38,11 +39,11 @@ class ResultsFile:
     @property
     def results(self) -> list[Row]:
         """Rows of the main table."""
-        return self.tables["results"]
+        return self.tables[self._main]
 
-    def add(self, *rows: Row, table: str = "results") -> None:
-        """Keep rows."""
-        self.tables[table] += rows
+    def add(self, *rows: Row, table: str | None = None) -> None:
+        """Keep rows, of the main table unless another is named."""
+        self.tables[table or self._main] += rows
         self.write()
 
     def write(self, **summary: Any) -> None:

@@ -8,6 +8,10 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 HOW = 'write them as "fog=0.5,noise=0.3"'
 
 
+UNSEEN = frozenset({"latency", "drops", "slip", "deadband"})
+"""Disturbances that change no single picture."""
+
+
 class Disturbances(BaseModel):
     """Levels from 0, nothing at all, to 1.
 
@@ -23,6 +27,10 @@ class Disturbances(BaseModel):
         tilt: inclination of the camera, constant and swaying, up to 5 degrees.
         rocking: the robot swings on its legs: pitch and roll of 3 degrees each (rms) while it drives.
         mount: the camera is mounted askew, constantly, by up to 10 degrees.
+        latency: frames arrive up to 0.6 s after their exposure.
+        drops: up to half of the frames never arrive.
+        slip: wheels slip: the robot goes and turns up to 30 % less than they roll.
+        deadband: wheels that should roll more slowly than up to 0.1 m/s stand still.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
@@ -38,6 +46,10 @@ class Disturbances(BaseModel):
     tilt: float = Field(default=0.0, ge=0.0, le=1.0)
     rocking: float = Field(default=0.0, ge=0.0, le=1.0)
     mount: float = Field(default=0.0, ge=0.0, le=1.0)
+    latency: float = Field(default=0.0, ge=0.0, le=1.0)
+    drops: float = Field(default=0.0, ge=0.0, le=1.0)
+    slip: float = Field(default=0.0, ge=0.0, le=1.0)
+    deadband: float = Field(default=0.0, ge=0.0, le=1.0)
 
     @model_validator(mode="before")
     @classmethod

@@ -6,6 +6,7 @@ import numpy as np
 import sapien
 
 from shared.motion.motion import NO_MOTION, Motion
+from simulator.disturbances.traction import FULL, Traction
 from simulator.robot.articulation import WHEEL_LAG_RAD, build
 from simulator.robot.steering import LegTarget, next_targets
 from simulator.robot.undercarriage import rolls, undercarriage_of
@@ -39,14 +40,23 @@ class Robot:
         self._drive_index = [order.index(f"drive{k}") for k in places]
         self._targets = [LegTarget(0.0, 0.0)] * len(self._mounts)
         self._angles = [0.0] * len(self._mounts)
-        self._rolls = rolls(self._undercarriage, 0.0, 0.0, 0.0)
+        self._rolls, self._traction = rolls(self._undercarriage, 0.0, 0.0, 0.0), FULL
         self._turned_rad = self._wheel_angles_rad()
         self.odometry = self.odometry_per_s = NO_MOTION
         self.links = {link.name: link for link in self._articulation.links}
 
-    def command(self, forward_mps: float, left_mps: float, turn_radps: float) -> None:
-        """Move like this, robot frame. A stop keeps the wheels where they point."""
-        self._rolls = rolls(self._undercarriage, forward_mps, left_mps, turn_radps)
+    def command(
+        self, forward_mps: float, left_mps: float, turn_radps: float, traction: Traction = FULL
+    ) -> None:
+        """Move like this, robot frame, as the wheels grip. A stop keeps the wheels where they point."""
+        self._traction = traction
+        self._rolls = rolls(
+            self._undercarriage,
+            traction.forward * forward_mps,
+            traction.left * left_mps,
+            traction.turn * turn_radps,
+            traction.deadband_mps,
+        )
 
     def control(self, dt_s: float) -> None:
         """Set the servo targets for the next physics step."""
@@ -74,7 +84,7 @@ class Robot:
             for mount, now, before in zip(self._mounts, now_rad, self._turned_rad, strict=True)
         ]
         self._turned_rad = now_rad
-        step = rolled(self._mounts, self.steer_angles_rad(), ways_m)
+        step = self._traction.rolled(rolled(self._mounts, self.steer_angles_rad(), ways_m))
         self.odometry = self.odometry.then(step)
         self.odometry_per_s = Motion(step.x_m / dt_s, step.y_m / dt_s, step.turn_rad / dt_s)
 

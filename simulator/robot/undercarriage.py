@@ -89,7 +89,11 @@ class Roll:
 
 
 def rolls(
-    undercarriage: Undercarriage, forward_mps: float, left_mps: float, turn_radps: float
+    undercarriage: Undercarriage,
+    forward_mps: float,
+    left_mps: float,
+    turn_radps: float,
+    deadband_mps: float = 0.0,
 ) -> tuple[Roll, ...]:
     """How each wheel has to roll for a velocity of the robot; of what a base cannot do the nearest it can.
 
@@ -97,10 +101,24 @@ def rolls(
     drops the part to the left. A car cannot turn faster than its front wheels let it, nor at all where it
     stands; the same share of the turn is kept at any speed.
 
+    Args:
+        undercarriage: the base.
+        forward_mps: of the robot, in its frame.
+        left_mps: likewise.
+        turn_radps: likewise.
+        deadband_mps: a wheel that would have to roll more slowly stands still.
+
     Returns:
         One for each mount, with a heading within a quarter turn for wheels that a car steers, negative speeds
         rolling backwards.
     """
+    wanted = _wanted(undercarriage, forward_mps, left_mps, turn_radps)
+    return tuple(Roll(r.heading_rad, 0.0) if abs(r.speed_mps) < deadband_mps else r for r in wanted)
+
+
+def _wanted(
+    undercarriage: Undercarriage, forward_mps: float, left_mps: float, turn_radps: float
+) -> tuple[Roll, ...]:
     if undercarriage.base == "holonomic":
         return tuple(
             _rolling(forward_mps - turn_radps * m.y_m, left_mps + turn_radps * m.x_m)

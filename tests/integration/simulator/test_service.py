@@ -132,6 +132,32 @@ def test_lockstep_advances_one_period_per_command_and_waits_without_one(start):
     assert peer.truth.seq == 4
 
 
+def test_late_frames_show_and_stamp_an_earlier_moment_than_the_distances(start):
+    peer = start(lockstep=True, SIMULATOR_DISTURBANCE="latency=0.75")  # 450 ms: one and a half periods
+    peer.wait_for(lambda: peer.complete(0))
+    first, pictures = peer.frame.stamp_ns, [peer.frame.data]
+    for seq in range(4):
+        peer.answer(seq)
+        peer.wait_for(lambda seq=seq: peer.complete(seq + 1))
+        pictures.append(peer.frame.data)
+        late_ms = (peer.ranges.stamp_ns - peer.frame.stamp_ns) // 1_000_000
+        assert late_ms == (300, 450, 450, 450)[seq]
+    assert pictures[1] == pictures[0]
+    assert pictures[3] != pictures[2] != pictures[1]
+    peer.ask(action="reset", pose=Pose(x_m=3.0, y_m=2.0, yaw_rad=1.0))
+    peer.wait_for(lambda: peer.complete(5))
+    assert peer.frame.stamp_ns == peer.ranges.stamp_ns > first  # nothing of before is under way
+
+
+def test_for_a_lost_frame_another_period_passes(start):
+    peer = start(lockstep=True, SIMULATOR_DISTURBANCE="drops=1", SIMULATOR_SEED="2")
+    peer.wait_for(lambda: peer.complete(0))
+    while peer.frame.seq < 12:
+        peer.answer(peer.frame.seq)
+    assert peer.frame.seq == peer.truth.seq
+    assert peer.truth.sim_time_s == pytest.approx(0.3 * peer.frame.seq)
+
+
 def test_frames_of_a_robot_with_an_imu_say_where_down_is(start):
     peer = start(lockstep=True, SIMULATOR_IMU="true", SIMULATOR_DISTURBANCE="mount=1")
     peer.wait_for(lambda: peer.complete(0))
