@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from experiments.work.page import markdown_table
+from services.launcher.client.environments import robot_base
 from services.launcher.client.run_record import world_label
 from services.launcher.terminal.output import rounded
 
@@ -19,6 +20,7 @@ def report(world: str, profile: str, seed: int, rounds: Sequence[Figures]) -> di
         "world": world,
         "profile": profile,
         "seed": seed,
+        "base": robot_base(),
         "rounds": list(rounds),
         "summary": summary(rounds),
     }

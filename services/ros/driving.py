@@ -29,7 +29,7 @@ class Driving:
             return f"a velocity for frame {velocity.seq}, which did not go out in the last {MOST_AGE_S:g} s"
         if velocity.left_mps and not self._limits.left_mps:
             return (
-                f"{velocity.left_mps:.2f} m/s to the left of a base that cannot roll so: set DRIVE_BASE "
+                f"{velocity.left_mps:.2f} m/s to the left of a base that cannot roll so: set TOPNAV_BASE "
                 "to that of this robot"
             )
         wanted = Motion(velocity.forward_mps, velocity.left_mps, velocity.turn_radps)

@@ -4,6 +4,7 @@ No service reads the world file. A robot for streets and yards has distance sens
 takes fewer pictures a second; how it decides is the same everywhere.
 """
 
+import os
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -71,3 +72,8 @@ def environment_of(world: WorldFile | str | Path | None) -> Environment:
     # Not all of it is read: models take seconds, and whoever uses the world checks it.
     named = read_contents(world_path(str(world))).get("environment", "indoor")
     return ENVIRONMENTS.get(named, INDOOR) if isinstance(named, str) else INDOOR
+
+
+def robot_base() -> str:
+    """What the robot of a stack that this command starts rolls on."""
+    return os.environ.get("TOPNAV_BASE") or "holonomic"

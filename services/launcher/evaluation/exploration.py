@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from services.launcher.client.environments import environment_of
+from services.launcher.client.environments import environment_of, robot_base
 from services.launcher.client.experimenter import Experimenter
 from services.launcher.client.failure import ExperimentError
 from services.launcher.client.maps import delete_map, read_map, require_map
@@ -96,6 +96,7 @@ def figures(result: Exploration, space: FreeSpace, map_name: str, seed: int) -> 
         "world": result.truth.world,
         "map": map_name,
         "seed": seed,
+        "base": robot_base(),
         "nodes": len(poses),
         "edges": len(result.graph.edges),
         "coverage": rounded(coverage(space.centres_m(), positions, place.covered_m)),

@@ -55,5 +55,5 @@ def test_the_base_is_told_no_more_than_it_can():
 
 def test_sideways_for_a_base_that_cannot_is_refused_with_what_to_set():
     found = driving(MotionLimits(0.5, 0.0, 1.0))
-    assert "DRIVE_BASE" in found.hear(velocity(left_mps=0.1), 10.1, 10.1)
+    assert "TOPNAV_BASE" in found.hear(velocity(left_mps=0.1), 10.1, 10.1)
     assert found.wanted(10.2, hold=False) == STAND
