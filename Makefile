@@ -37,6 +37,7 @@ demo: setup
 
 test: setup
 	@bash deploy/setup/test_programs.sh
+	@bash deploy/setup/ros.sh $(BIN)/python .venv-ros || echo "No Python with ROS: the tests that need it are skipped." >&2
 	$(BIN)/python -m pytest -n $(WORKERS) --ignore=tests/faults --ignore=tests/benchmarks $(PYTEST_ARGS)
 
 faults: setup
