@@ -178,3 +178,43 @@ def test_the_thesis_knows_no_rivals():
     places = places_of(FIRST | SECOND, THESIS)
     assert places.plain
     assert set(places.open_targets(TARGETS)) == set(TARGETS)
+
+
+ALIKE = by_node(match(9, 0.0, 0.0, 60), match(10, 1.0, 0.0, 40))
+
+
+def seen_from(places, node, differs):
+    places.sees(match(GOAL, 0.0, 0.0).model_copy(update={"difference": differs}), Displacement(node))
+
+
+def test_a_goal_that_its_place_shows_is_arrived_at_though_another_is_furnished_alike():
+    places = places_of(FIRST | ALIKE)
+    assert places.plain
+    seen_from(places, 1, 14.0)
+    assert places.arrived(1, view(0.88)).why == ""
+
+
+def test_a_goal_that_shows_something_else_is_looked_for_at_what_is_furnished_alike():
+    """As a picture of a room that is not in the map, at the room most like it."""
+    places = places_of(FIRST | ALIKE)
+    assert places.without(TARGETS.fromkeys((1, 2), 0.1)) == [9]
+    seen_from(places, 1, 37.0)
+    assert "not excluded" in places.arrived(1, view(0.88)).why
+    assert set(places.open_targets(TARGETS)) == {9, 10}
+    seen_from(places, 9, 45.0)
+    assert places.arrived(9, view(0.40)).failure == "ambiguous"
+
+
+def test_it_is_arrived_at_if_it_differs_clearly_less_than_from_all_of_these():
+    places = places_of(FIRST | ALIKE)
+    seen_from(places, 1, 30.0)
+    places.arrived(1, view(0.88))
+    seen_from(places, 9, 60.0)
+    assert "another place" in places.arrived(9, view(0.40)).why
+    assert places.arrived(1, view(0.88)).why == ""
+
+
+def test_where_nothing_is_furnished_alike_a_goal_may_differ_by_light_and_people():
+    places = places_of(FIRST)
+    seen_from(places, 1, 80.0)
+    assert places.arrived(1, view(0.88)).why == ""
