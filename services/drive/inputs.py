@@ -108,10 +108,24 @@ class Inputs:
         """Let the heading count as too old: who made it is gone."""
         self._heading_s = NEVER_S
 
+    @property
+    def newest_ranges(self) -> Ranges | None:
+        """The newest distances, answered or not."""
+        return self._last_ranges
+
+    def answered(self) -> None:
+        """The robot was told what to do: in lockstep it says its distances anew."""
+        if self._lockstep:
+            self.ranges = None
+
     def too_old(self, now_s: float) -> bool:
         """Whether heading or distances have outlived their time."""
         assert self.heading is not None
-        return now_s - self._heading_s > self.heading.ttl_ms / 1000.0 or now_s - self._ranges_s > RANGES_TTL_S
+        return now_s - self._heading_s > self.heading.ttl_ms / 1000.0 or self.are_ranges_too_old(now_s)
+
+    def are_ranges_too_old(self, now_s: float) -> bool:
+        """Whether the distances have outlived their time; in lockstep time stands still."""
+        return not self._lockstep and now_s - self._ranges_s > RANGES_TTL_S
 
     def _hear_robot(self, ranges: Ranges, now_s: float) -> None:
         """Note that the robot is there; after a silence what comes first may have been sent long ago."""

@@ -19,9 +19,11 @@ from services.gateway.http.map_store_proxy import open_client
 from services.gateway.http.metrics import Metrics
 from services.gateway.http.response_headers import ResponseHeaders
 from services.gateway.live.bridge import BEAT_S, Bridge
+from services.gateway.live.hands import Hands
 from services.gateway.live.hub import Hub
 from services.gateway.live.mission_log import MissionLog
 from services.gateway.routes import (
+    driving,
     estop,
     evidence,
     goals,
@@ -56,7 +58,7 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
         secret = settings.map_store_token.get_secret_value()
         store = open_client(str(settings.map_store_url), secret, settings.certs)
         askers = (Asker(bus, metrics), Asker(bus, metrics), Asker(bus, metrics, STRANGERS))
-        gateway = Gateway(settings, metrics, *askers, hub, log, store)
+        gateway = Gateway(settings, metrics, *askers, hub, log, store, Hands(bus))
         app.state.gateway = gateway
         bridge = Bridge(bus, hub, asyncio.get_running_loop(), settings.robot, settings.max_robots)
         bridge.start()
@@ -76,7 +78,7 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
     app.state.access = Access(settings, ValidTokens.chosen(settings))
     problems.install(app, metrics)
     app.add_middleware(ResponseHeaders, metrics=metrics)
-    for resource in (estop, evidence, goals, missions, maps, robots, runs, session):
+    for resource in (driving, estop, evidence, goals, missions, maps, robots, runs, session):
         app.include_router(resource.router, dependencies=[Depends(guard)])
     for open_to_all in (live, health):
         app.include_router(open_to_all.router)

@@ -15,6 +15,7 @@ from services.gateway.http.asking import Asker
 from services.gateway.http.metrics import Metrics
 from services.gateway.http.slots import Slots
 from services.gateway.live.coalescing import Coalescer
+from services.gateway.live.hands import Hands
 from services.gateway.live.hub import Hub
 from services.gateway.live.mission_log import MissionLog
 from services.gateway.settings import GatewaySettings
@@ -38,6 +39,7 @@ class Gateway:
         strange_asker: asks about names that no robot was heard of, so that these hold up nobody else.
         missions: record of those that ended.
         store: client of the map store's REST interface.
+        hands: passes on how people drive robots.
         pictures: the one thread that decodes and encodes pictures: a large one needs 200 MB while it decodes.
         uploads, imports, sockets: slots for pictures and archives on their way in, and for WebSockets.
         stops: emergency stops that come faster than the service that drives should hear them.
@@ -51,6 +53,7 @@ class Gateway:
     hub: Hub
     missions: MissionLog
     store: httpx.AsyncClient
+    hands: Hands
     pictures: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1, "pictures"))
 
     def __post_init__(self) -> None:

@@ -16,6 +16,7 @@ from services.launcher.commands import (
     demo,
     doctor,
     down,
+    drive,
     estop,
     explore,
     foxglove,
@@ -45,7 +46,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (demo, explore, goto, estop, world, models, record, replay, recover, foxglove):
+for command in (demo, explore, goto, drive, estop, world, models, record, replay, recover, foxglove):
     app.add_typer(command.app)
 for command in (map, mission, camera, certs, token, up, down, status, doctor):
     app.add_typer(command.app)

@@ -22,6 +22,7 @@ from shared.topics import (
     EVENT,
     FEATURES,
     HEADING,
+    MANUAL,
     MAP_DELTA,
     MISSION,
     MISSION_KINDS,
@@ -54,6 +55,7 @@ class Planner:
         self._odometry = bus.subscribe(ODOMETRY, robot=robot)
         self._deltas = bus.subscribe(MAP_DELTA, map="*")
         self._stops = bus.subscribe(ESTOP_STATE, robot=robot)
+        self._wishes = bus.subscribe(MANUAL, robot=robot)
         self._planners = bus.subscribe(STATUS, robot=robot)
         self._requests = bus.requests(MISSION, robot=robot)
         self._kind_requests = bus.requests(MISSION_KINDS, robot=robot)
@@ -81,8 +83,10 @@ class Planner:
             self._handle(request)
         while (question := self._kind_requests.take()) is not None:
             question.reply(MissionKinds(kinds=self._kinds.infos()))
-        if (stop := self._emergency_stop()) and self.control.state == "running":
-            self.control.pause(stop)
+        by_hand = [wish.who for wish in self._wishes.take_all() if wish.action == "drive"]
+        held = self._emergency_stop() or (f"{by_hand[-1]} drives by hand" if by_hand else "")
+        if held and self.control.state == "running":
+            self.control.pause(held)
             self._publish_status(now_s)
         for delta in self._deltas.take_all():
             self.control.follow_store(delta)

@@ -8,7 +8,7 @@ from fastapi import Security
 from fastapi.security import HTTPAuthorizationCredentials, HTTPBearer
 from starlette.requests import HTTPConnection
 
-from services.gateway.auth.roles import READS, UPLOADS, role_for
+from services.gateway.auth.roles import DRIVING, READS, UPLOADS, role_for
 from services.gateway.auth.sessions import Sessions
 from services.gateway.auth.tokens import ValidTokens
 from services.gateway.http.rates import RateLimits, address_of
@@ -126,7 +126,9 @@ async def guard(
         needed = "viewer"
     person = access.admit(connection, method, needed)
     connection.state.person = person
-    if method not in READS and not stops:  # a stop is never too many
+    if (method, path) in DRIVING:
+        access.rates.wish(person.client)
+    elif method not in READS and not stops:  # a stop is never too many
         access.rates.write(person.client)
         if (method, path) in UPLOADS:
             access.rates.upload(person.client)

@@ -16,12 +16,15 @@ OPERATOR = frozenset(
     {
         ("DELETE", "/api/robots/{robot}/estop"),
         ("POST", "/api/maps"),
+        ("POST", "/api/robots/{robot}/drive"),
         ("POST", "/api/robots/{robot}/goal-check"),
         ("POST", "/api/robots/{robot}/missions"),
         ("POST", "/api/robots/{robot}/missions/goto"),
         ("POST", "/api/robots/{robot}/missions/{action}"),
     }
 )
+DRIVING = frozenset({("POST", "/api/robots/{robot}/drive")})
+"""Said again as long as a person drives: limited by itself, less tightly than other writes."""
 UPLOADS = frozenset(
     {
         ("POST", "/api/maps/import"),

@@ -2,6 +2,7 @@
 
 import { get } from "./page/api.js";
 import { $, html } from "./page/dom.js";
+import { ByHand } from "./drive/by_hand.js";
 import { EStop } from "./page/estop.js";
 import { Events } from "./record/events.js";
 import { Goal } from "./drive/goal.js";
@@ -45,6 +46,7 @@ const maps = new Maps(showMap, () => views.name === "maps" && mapTable.show());
 const mapTable = new MapTable(maps);
 const runs = new Runs();
 const estop = new EStop(where, say);
+const byHand = new ByHand(where, say);
 const live = new Live(heard, changed);
 const views = new Views(viewChanged);
 
@@ -144,6 +146,7 @@ function checkAge() {
 }
 
 function follow(name) {
+  byHand.release();
   robot = name;
   for (const part of [panorama, polar, events, mission, history, matches, estop]) part.clear();
   graph.status = null;

@@ -14,6 +14,8 @@ from shared.web.problems import ProblemError
 
 STOPS_PER_S, STOP_BURST = 5.0, 20
 """Of one robot, each passed on by itself: nobody presses faster. Others are coalesced, never refused."""
+WISHES_PER_S, WISH_BURST = 20.0, 60
+"""Of one client that drives by hand, which wishes anew seven times a second; chosen: three of its pages."""
 MOST_KEYS = 4096
 """Clients remembered; the one heard of longest ago is forgotten, which at worst gives it a full bucket."""
 
@@ -62,6 +64,7 @@ class RateLimits:
         self._comparisons = TokenBuckets(settings.comparisons_per_s, settings.comparison_burst)
         self._failures = TokenBuckets(settings.failures_per_s, settings.failure_burst)
         self._stops = TokenBuckets(STOPS_PER_S, STOP_BURST)
+        self._wishes = TokenBuckets(WISHES_PER_S, WISH_BURST)
         self._proven: OrderedDict[tuple[str, str], None] = OrderedDict()
 
     def write(self, client: str) -> None:
@@ -75,6 +78,10 @@ class RateLimits:
     def comparison(self, client: str) -> None:
         """Count a comparison of pictures, which reads only but computes; raises ProblemError 429."""
         _refuse(self._comparisons.take(client, self._clock()), "comparisons")
+
+    def wish(self, client: str) -> None:
+        """Count a wish of somebody who drives by hand; raises ProblemError 429."""
+        _refuse(self._wishes.take(client, self._clock()), "wishes")
 
     def stop(self, robot: str) -> bool:
         """Count an emergency stop; whether it is passed on at once, or together with others."""

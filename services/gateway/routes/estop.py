@@ -77,7 +77,7 @@ async def show_estop(robot: RobotPath, gateway: GatewayDep) -> EStopAnswer:
 async def engage_estop(request: Request, robot: RobotPath, gateway: GatewayDep) -> EStopAnswer:
     """Stop the robot now; it stands until a person clears the stop, whatever restarts."""
     wish, warning = await _reason(request)
-    who = _signed(wish.who, person_of(request).name)
+    who = signed(wish.who, person_of(request).name)
     engage = EStopRequest(action="engage", who=who, why=wish.why[:LONGEST_WHY])
     if access_of(request).rates.stop(robot):
         state = await _ask(gateway, robot, engage)
@@ -98,8 +98,8 @@ async def clear_estop(request: Request, robot: RobotPath, gateway: GatewayDep, w
         expected = "the name of the person who clears the stop, in the body or as ?who="
         next_step = "look whether the robot may move, then clear it in your name"
         raise ProblemError(422, "who_required", expected, "none", next_step)
-    signed = _signed(name, person_of(request).name)
-    return _answer(await _ask(gateway, robot, EStopRequest(action="clear", who=signed, why=wish.why)))
+    person = signed(name, person_of(request).name)
+    return _answer(await _ask(gateway, robot, EStopRequest(action="clear", who=person, why=wish.why)))
 
 
 async def _reason(request: Request) -> tuple[Engage, str]:
@@ -111,7 +111,7 @@ async def _reason(request: Request) -> tuple[Engage, str]:
         return Engage(), f"stopped without who and why, as the body could not be read: {problem.detail}"[:400]
 
 
-def _signed(who: str, token: str) -> str:
+def signed(who: str, token: str) -> str:
     """What somebody says to be called, and what is known of them: only that stands in brackets."""
     said = who.replace("(", "").replace(")", "").strip()
     known_as = f" (token {token})" if token and token != said else ""

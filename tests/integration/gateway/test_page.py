@@ -11,7 +11,7 @@ from PIL import Image
 from shared.bus import Bus, wait_until
 from shared.messages.missions import Event, MissionStatus
 from shared.messages.sensors import Frame
-from shared.topics import EVENT, FRAME, STATUS
+from shared.topics import EVENT, FRAME, MANUAL, STATUS
 from tests.browser import WAIT_MS, listen, needs_chromium
 from tests.integration.gateway.conftest import serve_gateway
 from tests.integration.gateway.gateway_process import WAIT_S, free_port
@@ -153,3 +153,37 @@ def test_positions_follow_the_headings(page: "Page") -> None:
     )
     found = np.array(spots) - spots[0]
     np.testing.assert_allclose(found, [[0, 0], [1, 0], [1, 1]], atol=0.2)
+
+
+def test_keys_and_stick_drive_by_hand_until_the_page_lets_go(page: "Page", robot_bus: Bus) -> None:
+    wishes = robot_bus.subscribe(MANUAL, robot="r1")
+    page.wait_for_selector("#map option", state="attached", timeout=WAIT_MS)
+
+    def said(**wanted: float | str) -> bool:
+        came = wishes.take_all()
+        return any(all(getattr(wish, k) == v for k, v in wanted.items()) for wish in came)
+
+    def drives(**wanted: float | str) -> None:
+        assert wait_until(lambda: page.wait_for_timeout(50) or said(**wanted), WAIT_S)
+
+    page.check("#by-hand")
+    drives(who="console", forward_mps=0.0, turn_radps=0.0)
+    page.keyboard.down("KeyW")
+    page.keyboard.down("KeyA")
+    drives(forward_mps=0.4, turn_radps=1.0)
+    page.keyboard.up("KeyW")
+    page.keyboard.up("KeyA")
+    drives(forward_mps=0.0, turn_radps=0.0)
+    box = page.locator("#stick").bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"])
+    drives(forward_mps=-0.4, turn_radps=0.0)
+    page.mouse.up()
+    page.uncheck("#by-hand")
+    drives(action="release")
+    assert page.is_hidden("#stick")
+    page.keyboard.press("KeyW")
+    page.wait_for_timeout(300)
+    assert not said(action="drive")

@@ -196,3 +196,10 @@ def test_a_removed_token_ends_what_it_opened(endpoint: str, tmp_path: Path) -> N
         assert ask(address, "viewer", "GET", "/api/robots").status_code == 401
         assert ask(address, "operator", "GET", "/api/robots").status_code == 200
     assert next(running, None) is None
+
+
+def test_an_operator_drives_by_hand_and_a_viewer_does_not(guarded: str) -> None:
+    wish = {"json": {"who": "anna"}}
+    assert ask(guarded, "viewer", "POST", "/api/robots/r1/drive", **wish).status_code == 403
+    driven = ask(guarded, "operator", "POST", "/api/robots/r1/drive", **wish)
+    assert (driven.status_code, driven.json()["who"]) == (202, "anna (token otto)")

@@ -87,6 +87,8 @@ export const TEXT = {
   goalColumns: ["node", "agree", "trust", "direction"],
   edgeColumns: ["to", "direction", "inliers", "trust"],
   evidenceColumns: ["evidence", ""],
+  byHand: (forward, left, turn) =>
+    `${forward.toFixed(2)} m/s ahead${left ? `, ${left.toFixed(2)} to the left` : ""}, turning ${turn.toFixed(2)} rad/s`,
   stopWhy: "the stop button of the console",
   stopped: ({ who, why }, since) => `Emergency stop by ${who || "somebody"}${since ? ` at ${since}` : ""}${why ? `: ${why}` : ""}.`,
   release: "Let it go",
