@@ -84,6 +84,7 @@ class GoalDestination:
         found = self._matcher.locate(goal, COMPARED_NODES)
         self.places = GoalPlaces(maps, found, profile)
         self.aliased = not self.places.plain
+        self.arrival_rad = profile.arrival.arrival_rad * (1.0 if self.places.plain else CLOSER_SHARE)
         self._lies = dict(self._seen_from(found))
         self._targets = self._reachable(found)
         self._targets |= dict.fromkeys(self.places.without(self._targets), LAST_EDGE_M)
@@ -92,11 +93,6 @@ class GoalDestination:
         self._strayed = False
         self._suspect: tuple[EdgeKey, str] | None = None
         self._relocated: set[EdgeKey] = set()
-
-    @property
-    def arrival_rad(self) -> float:
-        """Disparity of an arrival; where places look alike the very spot decides."""
-        return self._profile.arrival.arrival_rad * (1.0 if self.places.plain else CLOSER_SHARE)
 
     def targets(self) -> dict[int, float]:
         """Nodes the goal resembles, with the cost of the way from each."""
@@ -205,9 +201,7 @@ class GoalDestination:
             self.aliased = True
             tracker.shown({node: view[node] for node in another.nodes})
             return f"aliased: this is about node {another.nodes[0]}, its place about {self.places.names}"
-        ruling = self.places.arrived(node, Visit(similarity, tracker.likeness(similarity)))
-        self.aliased |= not self.places.plain
-        return self._settle(ruling)
+        return self._settle(self.places.arrived(node, Visit(similarity, tracker.likeness(similarity))))
 
     def _settle(self, ruling: Ruling) -> str:
         """Take over what the places say: without any left there are no targets."""

@@ -56,19 +56,17 @@ class Destination(Protocol):
 
     Attributes:
         picture: the goal picture's features; None where the path ends at a node.
+        arrival_rad: disparity at which the end is reached.
         aliased: the picture resembles a wrong spot too: it counts only from the last waypoint on.
         compared: nodes of the map compared with a frame to localise.
         search_steps: frames without anything known after which the travel is given up.
     """
 
     picture: Features | None
+    arrival_rad: float
     aliased: bool
     compared: int
     search_steps: int
-
-    @property
-    def arrival_rad(self) -> float:
-        """Disparity at which the end is reached; it may change on the way."""
 
     def targets(self) -> Mapping[int, float]:
         """Nodes the path may end at, with the cost of the way beyond; without any the travel is given up."""

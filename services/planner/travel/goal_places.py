@@ -17,7 +17,6 @@ from services.planner.travel.place_evidence import PlaceEvidence, Visit
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import (
     Hypothesis,
-    furnished_alike,
     hypotheses,
     is_plain,
     likely,
@@ -42,10 +41,6 @@ AROUND_M = 2.0
 BEYOND_FACTOR = 2.0
 """A picture was taken within so many times the distance that its matches with a node stand for: in nine of
 ten edges of three worlds that is right to a factor of 1.6."""
-DIFFERS = 24.0
-"""Levels by which a goal differs at its place at most, seen from 3 to 10 cm aside. At 14 spots of a hostel 18
-at most, at the same spots of other rooms 26 and more; near the many edges of an office's desks 30, at a tenth
-of its spots 27: there other places are visited in vain."""
 TRIES = 2
 """Times the picture may be lost, refuted or the way shut at one place before that counts."""
 
@@ -71,7 +66,7 @@ class GoalPlaces:
         self._maps, self._profile = maps, profile
         places = self._hypotheses(found)
         self._yaw_rad = {node: match.yaw_rad or 0.0 for node, match in found.items()}
-        self._places, self._alike = likely(places), furnished_alike(places)
+        self._places = likely(places)
         self.plain = not places or is_plain(places, typical_similarity(maps.graph))
         self._evidence = PlaceEvidence()
         self._losses: Counter[Hypothesis] = Counter()
@@ -92,7 +87,7 @@ class GoalPlaces:
 
     def without(self, targets: Mapping[int, float]) -> list[int]:
         """Of each place that has none of the targets the node most like the picture."""
-        rivals = [*([] if self.plain else self._places), *self._alike]
+        rivals = [] if self.plain else self._places
         return [place.nodes[0] for place in rivals if targets.keys().isdisjoint(place.nodes)]
 
     def sees(self, goal: NodeMatch, here: Displacement | None) -> None:
@@ -102,9 +97,8 @@ class GoalPlaces:
             goal: the frame against the picture.
             here: where the frame was taken.
         """
-        if here is None or goal.difference is None or (self.plain and not self.is_near(here.node_id)):
-            return
-        if (place := self._nearest(here.node_id)) is not None:
+        place = None if self.plain or here is None else self._nearest(here.node_id)
+        if place is not None and goal.difference is not None:
             self._evidence.looked(place, goal.difference)
 
     def is_near(self, node: int | None) -> bool:
@@ -183,12 +177,12 @@ class GoalPlaces:
             node: of the map, near there.
             visit: what it sees of the goal.
         """
+        if self.plain:
+            return Ruling()
         place = self._nearest(node)
-        if place is None or (self.plain and not self._alike):
+        if place is None:
             return Ruling()
         self._evidence.visited(place, visit)
-        if self.plain and not self._is_strange(place):
-            return Ruling()
         return self._judge(place)
 
     def lost(self, node: int | None) -> Ruling:
@@ -224,14 +218,7 @@ class GoalPlaces:
         done = self._evidence.visits.keys() | self._shut
         return [place for place in self._places if place not in done]
 
-    def _is_strange(self, place: Hypothesis | None) -> bool:
-        """Whether the goal shows something else than a place furnished like others: it may be of none."""
-        return place is not None and self._evidence.differs_by(place, DIFFERS)
-
     def _judge(self, here: Hypothesis) -> Ruling:
-        strange = not self._left() and self._is_strange(self._evidence.best())
-        if strange and self._alike:
-            self._places, self._alike, self.plain = [*self._places, *self._alike], [], False
         visits, best, left = self._evidence.visits, self._evidence.best(), self._left()
         if left:
             alike = f"{visits.get(here, Visit()).likeness:.0%} alike"
@@ -247,7 +234,7 @@ class GoalPlaces:
         if most < SPOT_SHARE:
             why = f"the goal resembles nodes {self.names}, but is at none of them, {most:.0%} alike at most"
             return Ruling(why, "goal_not_in_map")
-        if self._evidence.rivals() or (strange and not self._evidence.is_told(best)):
+        if self._evidence.rivals():
             why = f"one of the places of nodes {self.names}, which look alike"
             return Ruling(f"{why}; differences: {self._evidence.told()}", "ambiguous")
         return Ruling() if best == here else Ruling(f"another place resembles the goal more, by {most:.0%}")

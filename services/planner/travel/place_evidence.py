@@ -13,11 +13,6 @@ TOLD_FACTOR = 2.0
 pairs of rooms alike, each seen from 1 to 5 cm aside, it excludes 176 of 177 that a few small things tell
 apart, and of 23 that nothing does one, the wrong one; from up to 10 cm 83 of 87, and a right one of nine."""
 
-STRANGE_FACTOR = 1.5
-"""At a place where the goal shows something else it has to differ by so much less than elsewhere: matches
-exclude nothing there. Right places near an office's desks differed by 1.8 times less, a wrong one of a hostel
-of which the right room was not in the map by 1.2."""
-
 
 @dataclass(frozen=True, order=True)
 class Visit:
@@ -50,15 +45,6 @@ class PlaceEvidence:
     def looked(self, place: Hypothesis, difference: float) -> None:
         """A frame was taken beside where the goal picture should have been."""
         self._difference[place] = min(difference, self._differs(place))
-
-    def differs_by(self, place: Hypothesis, levels: float) -> bool:
-        """Whether the goal is known to differ from what was seen there by so much."""
-        return levels <= self._difference.get(place, 0.0)
-
-    def is_told(self, place: Hypothesis | None) -> bool:
-        """Whether the goal differs clearly less at one place than at any other that was looked at."""
-        others = [differs for other, differs in self._difference.items() if other != place]
-        return place is not None and STRANGE_FACTOR * self._differs(place) <= min(others, default=math.inf)
 
     def best(self) -> Hypothesis | None:
         """The place visited that resembles the goal most, of those that do not differ from it too much."""

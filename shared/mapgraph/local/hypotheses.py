@@ -73,10 +73,6 @@ LISTED_SHARE = 0.45
 """Places down to this share are named, once there is a rival: the right one was among them in all of the
 others, by support or by the core; at 0.5 in all but one. It was not in one of 40 pictures taken later, in a
 room whose nodes stand 0.7 m from the spot, where those of a twin stand 0.2 m from it."""
-ALIKE_SHARE = 0.25
-"""Another place with this share of the greatest core is furnished alike, be it no rival. In a flat nothing
-has more than 0.07; of a hostel's rooms that the map shows one has 0.5 of a picture of a room that it does not
-show, where all the others are unlikely."""
 PLAIN_FACTOR = 1.2
 """A place alone is plain where its best node has this many times the matches of neighbours on a driven way.
 Of 137 pictures whose place had no rival 130 have; of 160 without their place in the map 5 have."""
@@ -94,13 +90,6 @@ def likely(places: list[Hypothesis]) -> list[Hypothesis]:
     if len(with_share(RIVAL_SHARE, RIVAL_CORE_SHARE)) < 2:
         return places[:1]
     return with_share(LISTED_SHARE, LISTED_SHARE)
-
-
-def furnished_alike(places: list[Hypothesis]) -> list[Hypothesis]:
-    """Places that are not likely, but resemble the picture as only look-alikes of the likely ones do."""
-    core = max((place.core for place in places), default=0)
-    named = likely(places)
-    return [place for place in places if place not in named and place.core >= ALIKE_SHARE * core]
 
 
 def is_plain(places: list[Hypothesis], typical: float) -> bool:
