@@ -2,6 +2,7 @@
 
 import { get } from "./page/api.js";
 import { $, html } from "./page/dom.js";
+import { Body } from "./drive/body.js";
 import { ByHand } from "./drive/by_hand.js";
 import { EStop } from "./page/estop.js";
 import { Events } from "./record/events.js";
@@ -22,6 +23,7 @@ import { TEXT } from "./page/text.js";
 import { Views } from "./page/views.js";
 
 const SERVICES = ["simulator", "features", "map_store", "planner", "drive", "gateway"];
+const BODY = ["odometry", "imu", "battery", "camera"];
 const DEFAULT_ROBOT = "r1";
 const ROBOTS_MS = 5000;
 const SAID_MS = 8000;
@@ -47,6 +49,7 @@ const mapTable = new MapTable(maps);
 const runs = new Runs();
 const estop = new EStop(where, say);
 const byHand = new ByHand(where, say);
+const body = new Body();
 const live = new Live(heard, changed);
 const views = new Views(viewChanged);
 
@@ -103,6 +106,7 @@ function heard(type, data) {
   else if (type === "heading") { polar.takeHeading(data); panorama.mark(data); history.takeHeading(data); }
   else if (type === "velocity") { polar.takeVelocity(data); history.takeVelocity(data); }
   else if (type === "estop") estop.take(data);
+  else if (BODY.includes(type)) body.take(type, data);
   else if (type === "event") events.take(data);
   else if (type === "services") {
     showServices(data);
@@ -148,7 +152,7 @@ function checkAge() {
 function follow(name) {
   byHand.release();
   robot = name;
-  for (const part of [panorama, polar, events, mission, history, matches, estop]) part.clear();
+  for (const part of [panorama, polar, body, events, mission, history, matches, estop]) part.clear();
   graph.status = null;
   $("travel").textContent = "";
   live.follow(name);

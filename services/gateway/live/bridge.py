@@ -9,7 +9,21 @@ from typing import Any
 from services.gateway.live.hub import Hub
 from shared.bus import Bus
 from shared.messages.base import Message
-from shared.topics import ESTOP_STATE, EVENT, FRAME, HEADING, RANGES, STATUS, TRUTH, VELOCITY, Topic
+from shared.topics import (
+    BATTERY,
+    CAMERA_STATE,
+    ESTOP_STATE,
+    EVENT,
+    FRAME,
+    HEADING,
+    IMU,
+    ODOMETRY,
+    RANGES,
+    STATUS,
+    TRUTH,
+    VELOCITY,
+    Topic,
+)
 from shared.transport.keys import is_robot
 
 PERIOD_S = 0.25
@@ -20,7 +34,10 @@ BEAT_S = 2.0
 """A third of the silence after which the console connects again, less what a beat may be late."""
 
 QUEUED: tuple[Topic[Any], ...] = (STATUS, EVENT, TRUTH)
-NEWEST: tuple[Topic[Any], ...] = (FRAME, RANGES, HEADING, VELOCITY, ESTOP_STATE)
+NEWEST: tuple[Topic[Any], ...] = (
+    *(FRAME, RANGES, HEADING, VELOCITY, ESTOP_STATE),
+    *(ODOMETRY, IMU, BATTERY, CAMERA_STATE),
+)
 """Of these an inbox keeps the newest only: under '*' robots would displace each other."""
 TELLING: tuple[Topic[Any], ...] = (RANGES, ESTOP_STATE)
 """Of these enough arrives under '*' to tell that there is another robot."""

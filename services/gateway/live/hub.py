@@ -13,6 +13,8 @@ from services.gateway.http.metrics import Metrics
 from services.gateway.live.outbox import Outbox
 from services.gateway.live.true_poses import TruePoses
 from shared.messages.base import Message
+from shared.messages.body import Battery, Imu, Odometry
+from shared.messages.camera import CameraState
 from shared.messages.drive import Heading, Velocity
 from shared.messages.estop import EStopState
 from shared.messages.missions import Event, MissionStatus
@@ -43,6 +45,15 @@ NEWEST: dict[type[Message], str] = {
     Frame: "frame",
 }
 """What is kept and told as it stands now: the field of `RobotView`, and its name towards pages."""
+BODY: dict[type[Message], str] = {
+    Odometry: "odometry",
+    Imu: "imu",
+    Battery: "battery",
+    CameraState: "camera",
+}
+"""The same of what a robot may say of its body."""
+BODY_PERIOD_S = 0.5
+"""No page reads these faster; an IMU speaks a hundred times a second."""
 
 
 @dataclass
@@ -56,6 +67,11 @@ class RobotView:
     heading: Heading | None = None
     velocity: Velocity | None = None
     estop: EStopState | None = None
+    odometry: Odometry | None = None
+    imu: Imu | None = None
+    battery: Battery | None = None
+    camera: CameraState | None = None
+    told_s: dict[str, float] = field(default_factory=dict)
     status: MissionStatus | None = None
     truth: Truth | None = None
     true_poses: TruePoses = field(default_factory=TruePoses)
@@ -115,7 +131,7 @@ class Hub:
         view = self.robots.setdefault(robot, RobotView())
         outbox = Outbox()
         outbox.offer_newest("services", _text("services", self.services))
-        for kind in NEWEST.values():
+        for kind in (*NEWEST.values(), *BODY.values()):
             if (message := getattr(view, kind)) is not None:
                 outbox.offer_newest(kind, _text(kind, facts_of(message)))
         for event in view.events:
@@ -136,10 +152,12 @@ class Hub:
     def _store(self, robot: str, view: RobotView, message: Message) -> None:
         if (kind := NEWEST.get(type(message))) is not None:
             setattr(view, kind, message)
-            if view.outboxes:
-                text = _text(kind, facts_of(message))
-                for outbox in view.outboxes:
-                    outbox.offer_newest(kind, text)
+            _tell(view, kind, message)
+        elif (kind := BODY.get(type(message))) is not None:
+            setattr(view, kind, message)
+            if view.seen_s - view.told_s.get(kind, 0.0) >= BODY_PERIOD_S:
+                view.told_s[kind] = view.seen_s
+                _tell(view, kind, message)
         match message:
             case Frame():
                 view.frame_s = view.seen_s
@@ -156,6 +174,14 @@ class Hub:
             case Truth():
                 view.truth = message
                 view.true_poses.take(message)
+
+
+def _tell(view: RobotView, kind: str, message: Message) -> None:
+    """Pass on how something stands now to whoever follows."""
+    if view.outboxes:
+        text = _text(kind, facts_of(message))
+        for outbox in view.outboxes:
+            outbox.offer_newest(kind, text)
 
 
 def _text(kind: str, data: dict[str, Any]) -> str:

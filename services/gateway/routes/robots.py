@@ -6,7 +6,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel
 
-from services.gateway.live.hub import RobotView, facts_of
+from services.gateway.live.hub import BODY, RobotView, facts_of
 from services.gateway.live.snapshot import jpeg_of
 from services.gateway.live.true_poses import Position
 from services.gateway.state import Gateway, GatewayDep, MapQuery, RobotPath
@@ -35,7 +35,7 @@ async def list_robots(gateway: GatewayDep) -> list[dict[str, Any]]:
 
 @router.get("/api/robots/{robot}")
 async def show_robot(robot: RobotPath, gateway: GatewayDep) -> dict[str, Any]:
-    """One robot: its newest frame's facts, mission, heading and ranges."""
+    """One robot: its newest frame's facts, mission, heading and ranges; what it says of its body, if any."""
     return _facts(robot, known(gateway, robot))
 
 
@@ -111,6 +111,7 @@ def _facts(robot: str, view: RobotView) -> dict[str, Any]:
     now_s = time.monotonic()
     shown: dict[str, Message | None] = {"frame": view.frame, "estop": view.estop, "mission": view.status}
     shown |= {"heading": view.heading, "ranges": view.ranges}
+    shown |= {kind: message for kind in BODY.values() if (message := getattr(view, kind)) is not None}
     facts = {name: None if message is None else facts_of(message) for name, message in shown.items()}
     if facts["frame"] is not None:
         facts["frame"]["age_s"] = round(now_s - view.frame_s, 3)

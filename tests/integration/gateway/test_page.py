@@ -9,9 +9,11 @@ import pytest
 from PIL import Image
 
 from shared.bus import Bus, wait_until
+from shared.messages.body import Battery, Imu, Odometry
+from shared.messages.camera import CameraState
 from shared.messages.missions import Event, MissionStatus
 from shared.messages.sensors import Frame
-from shared.topics import EVENT, FRAME, MANUAL, STATUS
+from shared.topics import BATTERY, CAMERA_STATE, EVENT, FRAME, IMU, MANUAL, ODOMETRY, STATUS
 from tests.browser import WAIT_MS, listen, needs_chromium
 from tests.integration.gateway.conftest import serve_gateway
 from tests.integration.gateway.gateway_process import WAIT_S, free_port
@@ -187,3 +189,32 @@ def test_keys_and_stick_drive_by_hand_until_the_page_lets_go(page: "Page", robot
     page.keyboard.press("KeyW")
     page.wait_for_timeout(300)
     assert not said(action="drive")
+
+
+def test_what_a_robot_says_of_its_body_is_shown(page: "Page", robot_bus: Bus) -> None:
+    said = [
+        (robot_bus.publisher(BATTERY, robot="r1"), Battery(robot="r1", share=0.62, charging=True)),
+        (robot_bus.publisher(ODOMETRY, robot="r1"), Odometry(robot="r1", x_m=1.5, yaw_rad=1.57)),
+        (robot_bus.publisher(IMU, robot="r1"), Imu(robot="r1", gravity=(0.0, 0.1, -0.99499))),
+        (
+            robot_bus.publisher(CAMERA_STATE, robot="r1"),
+            CameraState(robot="r1", source="osc://camera", model="RICOH THETA Z1", rate_hz=8.0, delay_s=0.4),
+        ),
+    ]
+    page.wait_for_selector("#map option", state="attached", timeout=WAIT_MS)
+    assert page.is_hidden("#body-facts")
+    expected = (
+        "battery 62 % charging",
+        "1.5 m ahead",
+        "90\u00b0",
+        "leaning 5.7\u00b0",
+        "Z1: 8.0 Hz, 400 ms late",
+    )
+
+    def shown() -> bool:
+        for publisher, message in said:
+            publisher.put(message)
+        page.wait_for_timeout(200)
+        return all(part in page.inner_text("#body-facts") for part in expected)
+
+    assert wait_until(shown, WAIT_S), page.inner_text("#body-facts")

@@ -87,6 +87,16 @@ export const TEXT = {
   goalColumns: ["node", "agree", "trust", "direction"],
   edgeColumns: ["to", "direction", "inliers", "trust"],
   evidenceColumns: ["evidence", ""],
+  battery: ({ share, charging, voltage_v: volts }) =>
+    ["battery", share !== null && `${Math.round(100 * share)} %`, volts !== null && `${volts.toFixed(1)} V`, charging && "charging"]
+      .filter(Boolean)
+      .join(" "),
+  odometry: ({ x_m: x, y_m: y, yaw_rad: yaw }) =>
+    `wheels: ${x.toFixed(1)} m ahead, ${y.toFixed(1)} m left, ${Math.round((yaw * 180) / Math.PI)}\u00b0 from where they began`,
+  lean: (degrees) => `leaning ${degrees.toFixed(1)}\u00b0`,
+  camera: ({ model, problem, rate_hz: rate, delay_s: delay, battery_fraction: share }) =>
+    `camera${model ? ` ${model}` : ""}: ` +
+    (problem || `${rate.toFixed(1)} Hz, ${Math.round(1000 * delay)} ms late${share === null ? "" : `, ${Math.round(100 * share)} %`}`),
   byHand: (forward, left, turn) =>
     `${forward.toFixed(2)} m/s ahead${left ? `, ${left.toFixed(2)} to the left` : ""}, turning ${turn.toFixed(2)} rad/s`,
   stopWhy: "the stop button of the console",

@@ -6,6 +6,7 @@ import pytest
 
 from services.gateway.http.metrics import Metrics
 from services.gateway.live.hub import Hub
+from shared.messages.body import Battery, Imu
 from shared.messages.drive import Heading
 from shared.messages.estop import EStopState
 from shared.messages.missions import Event, MissionStatus
@@ -95,3 +96,20 @@ def test_names_that_only_followers_said_take_no_robots_place() -> None:
         assert outbox is not None
         mine.leave(name, outbox)
     assert set(mine.robots) == {"r1", "r2"}
+
+
+def test_a_body_that_speaks_fast_is_told_seldom_and_known_to_the_last(monkeypatch) -> None:
+    now_s, told = 100.0, []
+    monkeypatch.setattr("services.gateway.live.hub.time.monotonic", lambda: now_s)
+    mine = hub()
+    mine.take([frame(1)])
+    outbox = mine.join("r1")
+    assert outbox is not None
+    monkeypatch.setattr(outbox, "offer_newest", lambda kind, _text: told.append(kind))
+    for number in range(100):  # an IMU for a second
+        now_s = 100.0 + 0.01 * number
+        mine.take([Imu(seq=number, robot="r1"), *([Battery(robot="r1")] if number == 60 else [])])
+    assert told == ["imu", "imu", "battery"]
+    newest = mine.robots["r1"].imu
+    assert newest is not None
+    assert newest.seq == 99
