@@ -25,6 +25,7 @@ OPERATOR = {
     ("POST", "/api/robots/{robot}/missions/goto"),
     ("POST", "/api/robots/{robot}/missions/{action}"),
     ("POST", "/api/robots/{robot}/goal-check"),
+    ("POST", "/api/robots/{robot}/drive"),
     ("DELETE", "/api/robots/{robot}/estop"),
 }
 VIEWER = {("POST", "/api/session"), ("DELETE", "/api/session")}
