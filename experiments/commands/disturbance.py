@@ -45,17 +45,12 @@ def disturbance(
     own, and the same rounds from the same seeds.
     """
     from experiments.driving import disturbance as driven
-    from experiments.work.results_file import ResultsFile, Row
-    from services.launcher.client.failure import ExperimentError
-    from services.launcher.processes.state import StateFolder
+    from experiments.work.results_file import ResultsFile
     from services.launcher.terminal.output import print_rows
 
     names, numbers = _names(only), _numbers(levels)
-    if StateFolder(data_dir.resolve()).read() is not None:
-        raise ExperimentError("a stack runs there: stop it ('topnav down'), every level needs its own")
     study = driven.Study(world, map_name, rounds, seed, max_steps, data_dir)
-    setup: Row = {"world": world, "map": map_name, "seed": seed, "rounds": rounds, "max_steps": max_steps}
-    found = ResultsFile(json_file, setup)
+    found = ResultsFile(json_file, study.setup())
     for setting in driven.settings_to_run(names, numbers, found.results):
         found.add(driven.run_level(study, setting["disturbance"], setting["level"]))
         if plot is not None:

@@ -42,23 +42,19 @@ def latency(
     """
     from experiments.driving import latency as driven
     from experiments.driving.disturbance import Study
-    from experiments.work.results_file import ResultsFile, Row
-    from services.launcher.client.failure import ExperimentError
-    from services.launcher.processes.state import StateFolder
+    from experiments.work.results_file import ResultsFile
     from services.launcher.terminal.output import print_rows
 
     wanted = _milliseconds(latencies)
-    if StateFolder(data_dir.resolve()).read() is not None:
-        raise ExperimentError("a stack runs there: stop it ('topnav down'), every delay needs its own")
     study = Study(world, map_name, rounds, seed, max_steps, data_dir)
-    setup: Row = {"world": world, "map": map_name, "seed": seed, "rounds": rounds, "max_steps": max_steps}
-    found = ResultsFile(json_file, setup, main="points")
+    found = ResultsFile(json_file, study.setup(), main="points")
     done = {(row["latency_ms"], row["rate_hz"]) for row in found.results}
-    for latency_ms in wanted:
-        if (latency_ms, rate_hz) not in done:
-            found.add(driven.run_point(study, latency_ms, rate_hz))
+    for latency_ms in (one for one in wanted if (one, rate_hz) not in done):
+        found.add(driven.run_point(study, latency_ms, rate_hz))
         if plot is not None:
             driven.draw_points(plot, found.results)
+    if plot is not None:
+        driven.draw_points(plot, found.results)
     print_rows(f"late frames in {world}, seed {seed}", found.results, SHOWN)
     return len(found.results)
 

@@ -11,10 +11,12 @@ from experiments.hide_and_seek.report import summary
 from experiments.rendered.disturbed import CLEAN, disturbances
 from experiments.work.page import line_style, new_figure
 from experiments.work.results_file import Row
+from services.launcher.client.failure import ExperimentError
 from services.launcher.client.maps import require_map
 from services.launcher.client.stack import StackChoice, open_stack
 from services.launcher.drawing.pictures import save_figure
 from services.launcher.evaluation.rounds import Game
+from services.launcher.processes.state import StateFolder
 from services.launcher.terminal.output import wide_console
 from simulator.disturbances.levels import Disturbances
 from simulator.disturbances.rearranging import rearranged
@@ -35,6 +37,17 @@ class Study:
     seed: int
     max_steps: int
     data_dir: Path
+
+    def setup(self) -> Row:
+        """The options that all rows of its results file share.
+
+        Raises:
+            ExperimentError: a stack runs in its folder.
+        """
+        if StateFolder(self.data_dir.resolve()).read() is not None:
+            raise ExperimentError("a stack runs there: stop it ('topnav down'), every setting needs its own")
+        kept = ("world", "map_name", "seed", "rounds", "max_steps")
+        return {name.removesuffix("_name"): getattr(self, name) for name in kept}
 
 
 def settings_to_run(names: Iterable[str], levels: Iterable[float], results: list[Row]) -> list[Row]:

@@ -56,7 +56,7 @@ class Drive:
             self._motion.measured(odometry)
         fresh = inputs.take(self._ranges.take(), self._headings.take(), now_s)
         self._motion.at(inputs.ranges, now_s)
-        if self._is_driven_by_hand(now_s, fresh=fresh) or inputs.heading is None:
+        if self._follow_hand(now_s, fresh=fresh) or inputs.heading is None:
             return
         if before is not None and before.mission_id != inputs.heading.mission_id:
             self._memory = Memory()
@@ -71,8 +71,8 @@ class Drive:
         elif fresh:
             self._answer(inputs.heading, inputs.ranges)
 
-    def _is_driven_by_hand(self, now_s: float, *, fresh: bool) -> bool:
-        """Whether a person drives; then what they wish is done. What they let go of stands.
+    def _follow_hand(self, now_s: float, *, fresh: bool) -> bool:
+        """Do what a person wishes, stand once they let go; False while nobody drives.
 
         A wish may have waited since the last step: its age counts from then.
         """

@@ -35,8 +35,15 @@ BEAT_S = 2.0
 
 QUEUED: tuple[Topic[Any], ...] = (STATUS, EVENT, TRUTH)
 NEWEST: tuple[Topic[Any], ...] = (
-    *(FRAME, RANGES, HEADING, VELOCITY, ESTOP_STATE),
-    *(ODOMETRY, IMU, BATTERY, CAMERA_STATE),
+    FRAME,
+    RANGES,
+    HEADING,
+    VELOCITY,
+    ESTOP_STATE,
+    ODOMETRY,
+    IMU,
+    BATTERY,
+    CAMERA_STATE,
 )
 """Of these an inbox keeps the newest only: under '*' robots would displace each other."""
 TELLING: tuple[Topic[Any], ...] = (RANGES, ESTOP_STATE)

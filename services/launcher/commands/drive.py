@@ -2,14 +2,11 @@
 
 import getpass
 import time
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Literal
 
 import typer
 
 from services.launcher.terminal import options
-
-if TYPE_CHECKING:
-    from shared.messages.drive import Manual
 
 app = typer.Typer()
 
@@ -42,6 +39,7 @@ def drive(
     from services.launcher.client.address import find_address
     from services.launcher.client.failure import ExperimentError
     from shared.bus import wait_until
+    from shared.messages.drive import Manual
     from shared.topics import MANUAL, VELOCITY
 
     address = find_address(endpoint, data_dir)
@@ -55,8 +53,20 @@ def drive(
             raise ExperimentError("no drive service is there: see topnav status")
         told, wishes = bus.subscribe(VELOCITY, robot=robot), bus.publisher(MANUAL, robot=robot)
 
-        def say(action: str) -> None:
-            wishes.put(_wish(robot, name, action, forward, left, turn))
+        def say(action: Literal["drive", "release"]) -> None:
+            now_ns = time.time_ns()
+            wishes.put(
+                Manual(
+                    seq=now_ns // 1_000_000,
+                    stamp_ns=now_ns,
+                    robot=robot,
+                    who=name,
+                    action=action,
+                    forward_mps=forward,
+                    left_mps=left,
+                    turn_radps=turn,
+                )
+            )
 
         began_s, answers = time.monotonic(), []
         try:
@@ -70,20 +80,3 @@ def drive(
         raise ExperimentError(f"{robot} did not obey: somebody else drives it, or its emergency stop holds")
     fastest = max(answers, key=lambda velocity: velocity.speed_mps)
     typer.echo(f"{robot}: {len(answers)} velocities, at most {fastest.speed_mps:.2f} m/s")
-
-
-def _wish(robot: str, who: str, action: str, forward: float, left: float, turn: float) -> "Manual":
-    from shared.messages.drive import Manual
-
-    return Manual.model_validate(
-        {
-            "seq": time.time_ns() // 1_000_000,
-            "stamp_ns": time.time_ns(),
-            "robot": robot,
-            "who": who,
-            "action": action,
-            "forward_mps": forward,
-            "left_mps": left,
-            "turn_radps": turn,
-        }
-    )
