@@ -1,11 +1,11 @@
 """What the base hears: velocities of the type that it subscribes to, and why it hears nothing."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Protocol
 
 from services.ros.conversions.twist import Motion, twist_bytes
 from services.ros.wires.codec import Codec
-from services.ros.wires.wire import URGENT, Endpoint, Wire
+from services.ros.wires.wire import STANDING_S, URGENT, Endpoint, Put, Wire
 
 
 class Spoken(Protocol):
@@ -32,7 +32,7 @@ class BaseLink:
 
     def __init__(self, wire: Wire, codec: Codec, spoken: Spoken) -> None:
         self._wire, self._codec, self._spoken = wire, codec, spoken
-        self._put: dict[str, Callable[[bytes], None]] = {}
+        self._put: dict[str, Put] = {}
 
     def problem(self) -> str:
         """Why nothing can be sent now; "" if it can."""
@@ -45,7 +45,8 @@ class BaseLink:
             return
         if kind not in self._put:
             self._put[kind] = self._wire.publisher(self._spoken.topic, kind, URGENT)
-        self._put[kind](twist_bytes(self._codec, kind, motion, self._spoken.frame, robot_time_s))
+        payload = twist_bytes(self._codec, kind, motion, self._spoken.frame, robot_time_s)
+        self._put[kind](payload, STANDING_S if motion.stands else None)
 
 
 def chosen_type(spoken: Spoken, there: Sequence[Endpoint]) -> tuple[str | None, str]:

@@ -16,12 +16,15 @@ import struct
 import sys
 import threading
 import time
+from contextlib import suppress
 from importlib import import_module
 from typing import Any
 
 LENGTHS = struct.Struct("<II")
 MOST_BYTES = 64_000_000
 """As wires/wire.py has it; a longer frame is no frame."""
+LAST_WORDS_S = 0.5
+"""How long what was published last may take to arrive; chosen: many round trips of a radio link."""
 GRAPH_PERIOD_S = 0.5
 """How soon a publisher that comes or goes is told of; chosen: before anybody asks why nothing happens."""
 
@@ -69,12 +72,9 @@ class Outlet:
         self._stream, self._lock = stream, threading.Lock()
 
     def send(self, header: dict[str, Any], payload: bytes = b"") -> None:
-        """Send one frame; the process ends where the other end has."""
-        try:
-            with self._lock:
-                self._stream.sendall(frame_bytes(header, payload))
-        except OSError:
-            os._exit(0)
+        """Send one frame, to nobody where the other end is gone: what it said last is still to be obeyed."""
+        with suppress(OSError), self._lock:
+            self._stream.sendall(frame_bytes(header, payload))
 
 
 def type_of(kind: str) -> Any:
@@ -107,6 +107,14 @@ class SideCar:
             self._doings[header["do"]](header, payload)
         except Exception as error:  # noqa: BLE001 - rclpy raises what its middleware likes
             self._outlet.send({"is": "fault", "text": f"{header.get('do')} {header.get('topic')}: {error}"})
+
+    def finish(self) -> None:
+        """Wait until whoever hears has what was published last, though not for long."""
+        from rclpy.duration import Duration
+
+        end_s = time.monotonic() + LAST_WORDS_S
+        for publisher in self._publishers.values():
+            publisher.wait_for_all_acked(Duration(seconds=max(end_s - time.monotonic(), 0.0)))
 
     def tell_graph(self) -> None:
         """Say who else publishes and subscribes to the topics that were asked for."""
@@ -177,7 +185,10 @@ def _obey(stream: socket.socket, side_car: SideCar, executor: Any) -> None:
     while (frame := read_frame(stream)) is not None:
         side_car.do(*frame)
         executor.wake()
-    os._exit(0)
+    try:
+        side_car.finish()
+    finally:
+        os._exit(0)
 
 
 def main() -> None:

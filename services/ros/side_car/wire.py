@@ -7,14 +7,14 @@ import subprocess
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from services.ros.side_car.node import frame_bytes, read_frame
-from services.ros.wires.wire import REPORT, SENSOR, Answer, Deliver, Endpoint, Quality, WireError
+from services.ros.wires.wire import REPORT, SENSOR, Answer, Deliver, Endpoint, Put, Quality, WireError
 
 log = logging.getLogger(__name__)
 
@@ -22,6 +22,7 @@ PROGRAM = Path(__file__).with_name("node.py")
 START_S = 30.0
 """Longest start of rclpy; chosen: ten times that of an idle machine."""
 END_S = 2.0
+"""For the last words to leave, and then for the side-car to end; chosen: longer than it waits itself."""
 MOST_WAITING = 64
 """Frames that may wait while the other process stands still; chosen: what is older is worthless by then."""
 
@@ -42,11 +43,14 @@ class Outbox:
                 self._waiting.append((until_s, frame_bytes(dict(header), payload)))
                 self._changed.notify()
 
-    def close(self) -> None:
-        """Stop sending; the stream is shut down already."""
+    def close(self, within_s: float) -> None:
+        """Send what waits, if the other process takes it within that time, and end the stream."""
         with self._changed:
             self._closing = True
             self._changed.notify()
+        self._thread.join(within_s)
+        with suppress(OSError):  # the side-car may be gone
+            self._stream.shutdown(socket.SHUT_WR)
         self._thread.join()
 
     def _run(self) -> None:
@@ -54,7 +58,7 @@ class Outbox:
             with self._changed:
                 while not self._waiting and not self._closing:
                     self._changed.wait()
-                if self._closing:
+                if not self._waiting:
                     return
                 until_s, frame = self._waiting.popleft()
             if time.monotonic() > until_s:
@@ -96,12 +100,12 @@ class SideCarWire:
         self._deliver[topic] = deliver
         self._declare("subscribe", topic, kind, quality)
 
-    def publisher(self, topic: str, kind: str, quality: Quality = REPORT) -> Callable[[bytes], None]:
+    def publisher(self, topic: str, kind: str, quality: Quality = REPORT) -> Put:
         """See `Wire`."""
         self._declare("advertise", topic, kind, quality)
 
-        def put(payload: bytes) -> None:
-            until_s = time.monotonic() + quality.lives_s
+        def put(payload: bytes, lives_s: float | None = None) -> None:
+            until_s = time.monotonic() + (quality.lives_s if lives_s is None else lives_s)
             self._outbox.send({"do": "publish", "topic": topic, "until": until_s}, payload, until_s)
 
         return put
@@ -129,9 +133,7 @@ class SideCarWire:
         if self._closing:
             return
         self._closing = True
-        with suppress(OSError):  # the side-car may be gone
-            self._stream.shutdown(socket.SHUT_RDWR)
-        self._outbox.close()
+        self._outbox.close(END_S)
         try:
             self._process.wait(END_S)
         except subprocess.TimeoutExpired:

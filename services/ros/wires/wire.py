@@ -57,7 +57,16 @@ SENSOR = Quality(reliable=False, depth=1)
 URGENT = Quality(reliable=True, depth=1, lives_s=0.2)
 """Velocities: a reliable publisher is heard by every base. One that was held up longer is worse than none:
 the wheels stop without it (chosen, less than a command lives)."""
+STANDING_S = 5.0
+"""So long a velocity of nothing may be held up: late it does no harm, and the last must arrive; chosen."""
 REPORT = Quality(reliable=True, depth=10)
+
+
+class Put(Protocol):
+    """Sends payloads of one publisher."""
+
+    def __call__(self, payload: bytes, lives_s: float | None = None, /) -> None:
+        """Send one, never blocking; it may be held up for `lives_s`, None: as its quality says."""
 
 
 class Wire(Protocol):
@@ -66,8 +75,8 @@ class Wire(Protocol):
     def subscribe(self, topic: str, kind: str, deliver: Deliver, quality: Quality = SENSOR) -> None:
         """Hear a topic ("/scan") of one type from now on."""
 
-    def publisher(self, topic: str, kind: str, quality: Quality = REPORT) -> Callable[[bytes], None]:
-        """Declare a publisher; what it returns sends one payload and never blocks."""
+    def publisher(self, topic: str, kind: str, quality: Quality = REPORT) -> Put:
+        """Declare a publisher; what it returns sends."""
 
     def serve(self, service: str, kind: str, answer: Answer) -> None:
         """Answer a service ("/topnav/stop") from now on."""
@@ -82,4 +91,4 @@ class Wire(Protocol):
         """Do nothing while the wire works; raise WireError once it does not."""
 
     def close(self) -> None:
-        """Leave the graph."""
+        """Leave the graph, once what was sent before is on its way."""

@@ -20,6 +20,7 @@ from services.ros.wires.wire import (
     Answer,
     Deliver,
     Endpoint,
+    Put,
     Quality,
     WireError,
 )
@@ -85,8 +86,8 @@ class ZenohWire:
         self._declared.append(self._session.declare_subscriber(self._names.heard_key(topic, kind), handler))
         self._announce("MS", topic, kind, quality)
 
-    def publisher(self, topic: str, kind: str, quality: Quality = REPORT) -> Callable[[bytes], None]:
-        """See `Wire`."""
+    def publisher(self, topic: str, kind: str, quality: Quality = REPORT) -> Put:
+        """See `Wire`: a session holds nothing up, so nothing is too late."""
         urgent = quality == URGENT
         publisher = self._session.declare_publisher(
             self._names.data_key(topic, kind),
@@ -98,7 +99,7 @@ class ZenohWire:
         gid = self._names.gid(self._announce("MP", topic, kind, quality))
         numbers = itertools.count(1)
 
-        def put(payload: bytes) -> None:
+        def put(payload: bytes, _lives_s: float | None = None) -> None:
             publisher.put(payload, attachment=self._names.attachment(next(numbers), time.time_ns(), gid))
 
         return put

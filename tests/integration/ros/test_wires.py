@@ -1,20 +1,24 @@
 """Two nodes on each wire: what is said is heard, who is there is known, services are answered."""
 
 import os
+import signal
 import subprocess
 import sys
+import threading
 
+import numpy as np
 import pytest
 import zenoh
 
-from services.ros.conversions.twist import Motion, motion_of, twist_bytes
-from services.ros.robot_file import WireChoice
+from services.ros.base_link import BaseLink
+from services.ros.conversions.twist import STAND, Motion, motion_of, twist_bytes
+from services.ros.robot_file import VelocityTopic, WireChoice
 from services.ros.wires.opening import Interpreter, open_wire
 from services.ros.wires.rmw_zenoh import RmwZenohNames
 from services.ros.wires.wire import URGENT, WireError
 from shared.bus import wait_until
 from tests.integration.ros.conftest import ROS_PYTHON, SOON_S
-from tests.ros_messages import CODEC, SCAN, TWIST
+from tests.ros_messages import CODEC, SCAN, TWIST, scan
 
 TRIGGER = "std_srvs/srv/Trigger"
 CALL = """
@@ -106,6 +110,32 @@ def test_a_side_car_that_dies_is_told_and_one_of_a_closed_wire_ends(join):
         return False
 
     assert wait_until(down, SOON_S)
+
+
+@pytest.mark.parametrize("choice", ["rclpy"], indirect=True)
+def test_a_last_word_to_stand_is_heard_though_the_side_car_was_held_up(join):
+    """By a burst of load it does not run for a while, and is told to end meanwhile."""
+    ours, theirs, came = join("topnav"), join("base"), []
+    theirs.subscribe("/cmd_vel", TWIST, lambda payload, _at_s: came.append(payload))
+    ours.subscribe("/scan", SCAN, lambda _payload, _at_s: None)
+    base, scans = (
+        BaseLink(ours, CODEC, VelocityTopic(topic="/cmd_vel", type=TWIST)),
+        theirs.publisher("/scan", SCAN),
+    )
+
+    def moves():
+        base.send(Motion(0.5, 0.0, 0.0), None)
+        return bool(came)
+
+    assert wait_until(moves, SOON_S)
+    ours._process.send_signal(signal.SIGSTOP)
+    scans(CODEC.encode(SCAN, scan(np.full(360, 3.0), 1.0)))
+    base.send(STAND, None)
+    going_on = threading.Timer(2 * URGENT.lives_s, ours._process.send_signal, [signal.SIGCONT])
+    going_on.start()
+    ours.close()
+    assert wait_until(lambda: motion_of(CODEC.decode(TWIST, came[-1]), TWIST) == STAND, SOON_S)
+    going_on.join()
 
 
 def test_a_python_without_rclpy_or_none_at_all_is_named():
