@@ -1,5 +1,6 @@
 # Everything runs from a bare clone: `setup` makes .venv and installs all that a run needs.
 #   make demo    explore the apartment, then find a hidden robot from its picture (KEEP=1 leaves it running)
+#   make ros-demo  the same with a robot that only ROS 2 reaches, in real time: about ten minutes
 #   make test    every test but those of tests/faults      make check   lint, types, unit tests: two minutes
 #                (WORKERS=0: in one process)
 #   make containers  the same stack by Docker Compose, as a newcomer runs it
@@ -19,7 +20,7 @@ STAMP := $(VENV)/.installed
 INPUTS := pyproject.toml experiments/pyproject.toml constraints.txt deploy/packaging/opencv-shim/pyproject.toml
 SOURCES := services shared simulator experiments tests
 
-.PHONY: setup demo test faults check lint types containers bench fuzz sbom audit screenshots clean
+.PHONY: setup demo ros-demo test faults check lint types containers bench fuzz sbom audit screenshots clean
 
 setup: $(STAMP)
 	@bash deploy/setup/vulkan.sh
@@ -34,6 +35,10 @@ $(STAMP): $(INPUTS)
 
 demo: setup
 	KEEP=$(KEEP) $(BIN)/topnav demo
+
+ros-demo: setup
+	@bash deploy/setup/ros.sh $(BIN)/python .venv-ros
+	bash deploy/setup/own_network.sh $(BIN)/topnav ros-demo
 
 test: setup
 	@bash deploy/setup/test_programs.sh

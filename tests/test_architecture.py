@@ -29,11 +29,15 @@ PURE = (
     "services/camera/checking/level.py",
     "services/camera/checking/marking.py",
     "services/camera/checking/report.py",
+    "services/camera/checking/robot_frames.py",
     "services/camera/mount/*.py",
     "services/features/matching/*.py",
     "services/features/pipeline/*.py",
     "services/features/retrieval/*.py",
     "services/launcher/compose/**/*.py",
+    "services/launcher/checking/distances.py",
+    "services/launcher/checking/motion.py",
+    "services/launcher/checking/report.py",
     "services/launcher/processes/restart.py",
     "services/ros/conversions/*.py",
     "services/ros/base_link.py",
@@ -81,13 +85,14 @@ FORBIDDEN = {
     "launcher": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
     "ros": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
 }
-ROOMS = ("compose", "processes", "terminal", "client", "drawing", "evaluation", "commands")
+ROOMS = ("compose", "processes", "terminal", "client", "drawing", "evaluation", "checking", "commands")
 """Of the launcher, from the ground up: a room imports itself and those before it."""
 
-SHELL = ("terminal", "client", "drawing", "evaluation", "commands", "cli.py", "__main__.py")
+SHELL = ("terminal", "client", "drawing", "evaluation", "checking", "commands", "cli.py", "__main__.py")
 """What people use of the launcher: the shell of all processes and no process itself."""
 
 JOINS = {
+    "checking/check.py": {"camera"},
     "client/environments.py": {"simulator"},
     "commands/camera.py": {"camera"},
     "commands/demo.py": {"simulator"},

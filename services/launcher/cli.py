@@ -27,6 +27,7 @@ from services.launcher.commands import (
     record,
     recover,
     replay,
+    robot,
     status,
     token,
     up,
@@ -36,7 +37,7 @@ from services.launcher.commands import (
 ADDED = "topnav.commands"
 """Entry points of this group are Typer apps of further commands."""
 
-STUDIES = ("hide-and-seek", "suite", "study", "calibrate", "bench", "soak")
+STUDIES = ("hide-and-seek", "ros-demo", "suite", "study", "calibrate", "bench", "soak")
 """Commands of the distribution topnav-studies; without it they say where to get it."""
 
 app = typer.Typer(
@@ -48,7 +49,7 @@ app = typer.Typer(
 )
 for command in (demo, explore, goto, drive, estop, world, models, record, replay, recover, foxglove):
     app.add_typer(command.app)
-for command in (map, mission, camera, certs, token, up, down, status, doctor):
+for command in (map, mission, camera, robot, certs, token, up, down, status, doctor):
     app.add_typer(command.app)
 
 

@@ -34,6 +34,10 @@ SAME_CLOCK_S = 1.0
 Count = Callable[[str, str], None]
 
 
+class ClockJumpError(ConversionError):
+    """The robot's clock was set while topnav listened."""
+
+
 @dataclass
 class Source:
     """One topic that is heard: its newest payload, and what is known of it."""
@@ -150,7 +154,8 @@ class Sensing:
             return source.convert(message, self._wall_ns + round(at_s * NS), now_s)
         except (CodecError, ConversionError) as error:
             source.trouble, source.trouble_s = f"{source.topic}: {error}", now_s
-            self._count(f"bad {source.topic}", source.trouble)
+            jumped = isinstance(error, ClockJumpError)  # happens once: no other line may hide it
+            self._count(f"{'clock of' if jumped else 'bad'} {source.topic}", source.trouble)
             return None
 
     def _judged(self, source: Source, stamp: float, came_s: float) -> float:
@@ -163,7 +168,7 @@ class Sensing:
         if judged.verdict == "late":
             raise ConversionError(f"held up for {-judged.off_s:.1f} s on its way")
         if judged.verdict == "jumped":
-            raise ConversionError(f"the robot's clock jumped by {judged.off_s:+.1f} s")
+            raise ClockJumpError(f"the robot's clock jumped by {judged.off_s:+.1f} s")
         own_s = source.clock.offset_s or 0.0
         offsets = [s.clock.offset_s for s in self._sources if s.clock.offset_s is not None]
         return stamp - max(offset for offset in offsets if abs(offset - own_s) < SAME_CLOCK_S)

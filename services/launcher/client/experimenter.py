@@ -14,6 +14,10 @@ TIMEOUT_S = 30.0  # moving furniture builds the world and its light anew: second
 ABSENT_S = 20.0  # a simulator that died is back within seconds; loading a world takes most of them
 STILL_M = 0.001  # a tenth of what a robot at 0.1 m/s covers between two polls
 STILL_POLLS = 2  # in a row: one may fall between two steps of the physics
+NO_SIMULATOR = (
+    "no simulator answers, and without one nobody knows where a robot truly is: a real one explores and "
+    "drives by 'topnav mission start' and 'topnav goto'"
+)
 POLL_S = 0.1  # a third of a control period in lockstep (0.3 s)
 
 
@@ -78,9 +82,9 @@ class Experimenter:
         while True:
             try:
                 return self._bus.ask(SIMULATION, request, TIMEOUT_S, robot=self._robot)
-            except AbsentError:
+            except AbsentError as error:
                 if time.monotonic() > deadline_s:
-                    raise
+                    raise ExperimentError(NO_SIMULATOR) from error
             time.sleep(POLL_S)
 
 

@@ -76,13 +76,16 @@ class MissionClient:
         return self._bus.ask(MISSION, request, ASK_TIMEOUT_S, robot=self._robot)
 
     def wait_for_frame(self, after_ns: int, timeout_s: float = 30.0) -> Features:
-        """Wait for the features of a frame later than `after_ns`, so that no older one is answered."""
+        """Wait for the features of a frame later than `after_ns`, so that no older one is answered.
+
+        The trail has begun by then: the next node's true pose is known.
+        """
         deadline_s = time.monotonic() + timeout_s
         while time.monotonic() < deadline_s:
             self._bus.wait(PERIOD_S)
             self.collect()
             features = self._features.take()
-            if features is not None and features.stamp_ns > after_ns:
+            if features is not None and features.stamp_ns > after_ns and self.trail.begun(features.stamp_ns):
                 return features
         raise ExperimentError(f"no frame came through the feature service within {timeout_s:.0f} s")
 

@@ -20,7 +20,9 @@ from shared.topics import MISSION
 ROBOT = "r1"
 JOIN_TIMEOUT_S = 15.0  # liveliness tokens arrive within a second; a loaded machine needs more
 ASK_TIMEOUT_S = 10.0  # as in client/mission.py
-NEEDED = frozenset({"planner", "drive", "features", "map_store", "simulator"})
+NEEDED = frozenset({"planner", "drive", "features", "map_store"})
+ROBOTS = frozenset({"simulator", "ros", "camera"})
+"""Any of them is a robot, or its eyes."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,8 @@ class StackChoice:
         ports: of a stack of its own; None takes free ones.
         secure: certificates and access rules for a stack of its own.
         timeout_s: how long the start of one of its own may take.
+        ros: file of a robot in ROS 2, in place of a simulator.
+        camera: URL of a camera, likewise or beside `ros`.
     """
 
     data_dir: Path
@@ -47,6 +51,8 @@ class StackChoice:
     environment: dict[str, str] = field(default_factory=dict)
     secure: bool = False
     timeout_s: float = START_TIMEOUT_S
+    ros: str | None = None
+    camera: str | None = None
 
 
 @dataclass(frozen=True)
@@ -134,6 +140,8 @@ def _launcher(choice: StackChoice, told: Callable[[str], None]) -> Launcher:
         secure=choice.secure,
         timeout_s=choice.timeout_s,
         told=told,
+        ros=choice.ros,
+        camera=choice.camera,
     )
 
 
@@ -154,6 +162,10 @@ def _end_left_mission(bus: Bus) -> None:
 
 
 def _require_services(bus: Bus, endpoint: str) -> None:
-    if not wait_until(lambda: set(bus.alive()) >= NEEDED, JOIN_TIMEOUT_S, period_s=0.1):
-        missing = sorted(NEEDED - set(bus.alive()))
-        raise ExperimentError(f"no living {', '.join(missing)} at {endpoint}: see 'topnav status'")
+    if not wait_until(lambda: not _missing(set(bus.alive())), JOIN_TIMEOUT_S, period_s=0.1):
+        missing = ", ".join(_missing(set(bus.alive())))
+        raise ExperimentError(f"no living {missing} at {endpoint}: see 'topnav status'")
+
+
+def _missing(alive: set[str]) -> list[str]:
+    return sorted(NEEDED - alive) + ([] if alive & ROBOTS else [f"robot ({', '.join(sorted(ROBOTS))})"])

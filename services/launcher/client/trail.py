@@ -33,6 +33,10 @@ class Trail:
                 self._stamps_ns.append(truth.stamp_ns)
                 self.truths.append(truth)
 
+    def begun(self, stamp_ns: int) -> bool:
+        """Whether a state of that time or earlier is known."""
+        return bool(self._stamps_ns) and self._stamps_ns[0] <= stamp_ns
+
     def mark(self) -> int:
         """How long the trail is by now, for `since`."""
         return len(self.truths)

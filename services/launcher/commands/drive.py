@@ -1,19 +1,13 @@
 """`topnav drive`: move a robot by hand for a while, from the shell."""
 
 import getpass
-import time
-from typing import Annotated, Literal
+from typing import Annotated
 
 import typer
 
 from services.launcher.terminal import options
 
 app = typer.Typer()
-
-PERIOD_S = 0.1
-"""A wish holds for 0.4 s: of four one has to arrive."""
-MEETING_S = 2.0
-"""Before the first wish: the drive service has to be there to hear it."""
 
 Forward = Annotated[float, typer.Option(min=-2.0, max=2.0, help="Metres a second ahead.")]
 Left = Annotated[float, typer.Option(min=-2.0, max=2.0, help="To the left, if its base can.")]
@@ -38,45 +32,14 @@ def drive(
     """
     from services.launcher.client.address import find_address
     from services.launcher.client.failure import ExperimentError
-    from shared.bus import wait_until
-    from shared.messages.drive import Manual
-    from shared.topics import MANUAL, VELOCITY
+    from services.launcher.client.hand import Hand
 
     address = find_address(endpoint, data_dir)
     if address is None:
         raise ExperimentError(f"no stack runs in {data_dir}: start one (topnav up), or name its --endpoint")
-    name = (who or getpass.getuser())[:64]
     with address.open() as bus:
-        drivers: set[str] = set()
-        bus.watch_alive(lambda _service, instance, alive: drivers.add(instance) if alive else None, "drive")
-        if not wait_until(lambda: bool(drivers), MEETING_S):
-            raise ExperimentError("no drive service is there: see topnav status")
-        told, wishes = bus.subscribe(VELOCITY, robot=robot), bus.publisher(MANUAL, robot=robot)
-
-        def say(action: Literal["drive", "release"]) -> None:
-            now_ns = time.time_ns()
-            wishes.put(
-                Manual(
-                    seq=now_ns // 1_000_000,
-                    stamp_ns=now_ns,
-                    robot=robot,
-                    who=name,
-                    action=action,
-                    forward_mps=forward,
-                    left_mps=left,
-                    turn_radps=turn,
-                )
-            )
-
-        began_s, answers = time.monotonic(), []
-        try:
-            while time.monotonic() - began_s < seconds:
-                say("drive")
-                time.sleep(PERIOD_S)
-                answers += [velocity for velocity in told.take_all() if velocity.why == f"by hand: {name}"]
-        finally:
-            say("release")
+        answers = Hand(bus, robot, who or getpass.getuser()).move(forward, left, turn, seconds)
     if not answers:
         raise ExperimentError(f"{robot} did not obey: somebody else drives it, or its emergency stop holds")
-    fastest = max(answers, key=lambda velocity: velocity.speed_mps)
-    typer.echo(f"{robot}: {len(answers)} velocities, at most {fastest.speed_mps:.2f} m/s")
+    fastest_mps = max(velocity.speed_mps for _, velocity in answers)
+    typer.echo(f"{robot}: {len(answers)} velocities, at most {fastest_mps:.2f} m/s")

@@ -12,7 +12,7 @@ from tests.integration.drive.conftest import SOON_S
 
 @pytest.fixture
 def topnav_drive(router_endpoint, monkeypatch):
-    monkeypatch.setattr("services.launcher.commands.drive.MEETING_S", SOON_S)
+    monkeypatch.setattr("services.launcher.client.hand.MEETING_S", SOON_S)
 
     def run(*words):
         return CliRunner().invoke(app, [*words, "--who", "anna", "--endpoint", router_endpoint])
@@ -54,5 +54,5 @@ def test_a_robot_that_its_emergency_stop_holds_does_not_obey(start, topnav_drive
 
 
 def test_without_a_drive_service_it_says_so(topnav_drive, monkeypatch):
-    monkeypatch.setattr("services.launcher.commands.drive.MEETING_S", 0.5)
+    monkeypatch.setattr("services.launcher.client.hand.MEETING_S", 0.5)
     assert "no drive service" in str(topnav_drive("--forward", "0.2").exception)

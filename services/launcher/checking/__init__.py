@@ -1,0 +1,1 @@
+"""`topnav robot check`: whether a robot is what topnav takes it for."""

@@ -1,0 +1,149 @@
+"""`topnav robot check` on a robot in ROS 2: a good one passes, and of a bad one the fault is named."""
+
+import io
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from experiments.ros_robot import body
+from experiments.ros_robot.messages import picture_of, scan_of
+from experiments.ros_robot.robot import RosRobot, judged, running
+from services.launcher.checking.check import RobotCheck
+from services.launcher.client.experimenter import Experimenter
+from services.launcher.client.stack import Stack, StackChoice, open_stack
+from services.launcher.client.trail import driven_m
+from services.ros.conversions.twist import motion_of
+from shared.bus import wait_until
+from shared.topics import RANGES, TRUTH
+from tests.integration.ros.conftest import ROS_PYTHON
+
+pytestmark = [
+    pytest.mark.render,
+    pytest.mark.slow,
+    pytest.mark.timeout(900),
+    pytest.mark.usefixtures("patient_sessions"),
+    pytest.mark.skipif(not ROS_PYTHON.exists(), reason=f"no {ROS_PYTHON}: deploy/setup/ros.sh makes it"),
+]
+
+SMALL_PICTURES = {"SIMULATOR_WIDTH_PX": "1024"}
+SOON_S = 60.0
+NS = 1_000_000_000
+
+
+@dataclass
+class Checked:
+    """A check and what it said."""
+
+    check: RobotCheck
+    lines: list[tuple[str, str]]
+
+    @property
+    def text(self) -> str:
+        return "\n".join(f"{word} {text}" for word, text in self.lines)
+
+
+@pytest.fixture(scope="module")
+def stack(tmp_path_factory) -> Iterator[Stack]:
+    """A stack whose robot is in ROS, where there is room all round."""
+    folder = tmp_path_factory.mktemp("robot")
+    robot = RosRobot(folder / "robot", "apartment", 1, 180 + os.getpid() % 50, ROS_PYTHON, SMALL_PICTURES)
+    choice = StackChoice(
+        folder / "data", lockstep=False, seed=1, ros=str(robot.file), environment=robot.variables
+    )
+    with running(robot) as up, open_stack(choice) as opened, judged(up, opened.bus):
+        yield opened
+
+
+@pytest.fixture
+def checked(stack) -> Checked:
+    """A check of the robot, which stands at the world's start and sees again."""
+    ranges = stack.bus.subscribe(RANGES, robot=stack.robot)
+    reset_ns = Experimenter(stack.bus, stack.robot).reset(1).stamp_ns
+    assert wait_until(lambda: (one := ranges.take()) is not None and one.stamp_ns > reset_ns, SOON_S)
+    lines = []
+    logs = stack.launcher.logs
+    return Checked(RobotCheck(stack.bus, stack.robot, "anna", logs, lambda *line: lines.append(line)), lines)
+
+
+def changed(edit):
+    """Pictures as a camera delivers them that is mounted otherwise."""
+
+    def made(codec, frame):
+        picture = np.asarray(Image.open(io.BytesIO(frame.data)))
+        file = io.BytesIO()
+        Image.fromarray(np.ascontiguousarray(edit(picture))).save(file, "JPEG", quality=92)
+        return picture_of(codec, frame.model_copy(update={"data": file.getvalue()}))
+
+    return made
+
+
+def test_a_good_robot_passes_and_ends_where_it_began(stack, checked):
+    assert checked.check.senses(), checked.text
+    truths = stack.bus.subscribe(TRUTH, robot=stack.robot)
+    checked.check.moves()
+    checked.check.stops()
+    assert checked.check.problems == [], checked.text
+    way = truths.take_all()
+    assert driven_m(way) > 1.0
+    assert driven_m([way[0], way[-1]]) < 0.3
+    assert checked.check.figures["stop_estop_s"] <= 0.5
+
+
+@pytest.mark.parametrize(
+    ("edit", "named"),
+    [
+        (lambda picture: picture[:, ::-1], "left and right are swapped in the picture"),
+        (lambda picture: picture[::-1, ::-1], "upside down"),
+        (lambda picture: np.roll(picture, picture.shape[1] // 4, axis=1), "90 degrees to the left"),
+    ],
+    ids=["mirrored", "upside down", "turned"],
+)
+def test_a_camera_that_is_mounted_otherwise_is_named(monkeypatch, checked, edit, named):
+    monkeypatch.setattr(body, "picture_of", changed(edit))
+    assert checked.check.senses(), checked.text
+    checked.check.moves()
+    assert any(named in one for one in checked.check.problems), checked.text
+
+
+def test_a_base_whose_sideways_axis_is_reversed_is_named(monkeypatch, checked):
+    def reversed_(message, kind):
+        motion = motion_of(message, kind)
+        return replace(motion, left_mps=-motion.left_mps)
+
+    monkeypatch.setattr(body, "motion_of", reversed_)
+    assert checked.check.senses(), checked.text
+    checked.check.moves()
+    assert any("sideways axis is reversed" in one for one in checked.check.problems), checked.text
+
+
+def nan_scan(codec, ranges):
+    message = scan_of(codec, ranges)
+    message.ranges = np.full_like(message.ranges, np.nan)
+    return message
+
+
+def late_clock(codec, frame):
+    return picture_of(codec, frame.model_copy(update={"stamp_ns": frame.stamp_ns + 60 * NS}))
+
+
+@pytest.mark.parametrize(
+    ("what", "fault", "named"),
+    [
+        ("scan_of", nan_scan, "0 of 12 readings are some"),
+        ("picture_of", changed(lambda picture: picture[:, : picture.shape[0] * 4 // 3]), "exactly 2:1"),
+        ("picture_of", late_clock, "clock jumped by +60"),
+    ],
+    ids=["NaN scans", "4:3 pictures", "clock jumps"],
+)
+def test_what_cannot_be_used_is_named_in_a_line_and_nothing_moves(
+    stack, monkeypatch, checked, what, fault, named
+):
+    monkeypatch.setattr(body, what, fault)
+    truths = stack.bus.subscribe(TRUTH, robot=stack.robot)
+    assert checked.check.senses() == (fault is late_clock)
+    assert named in checked.text
+    assert max(truth.speed_mps for truth in truths.take_all()) < 0.01
