@@ -2,6 +2,9 @@
 
 import multiprocessing
 import os
+import signal
+import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
@@ -15,6 +18,10 @@ from rich.progress import Progress
 
 from services.launcher.client.failure import ExperimentError
 from shared.geometry.sphere import FloatArray
+
+WATCH_S = 0.5
+STOPPED_S = 20.0
+"""Longer than a stack needs to stop (stop_grace_period of docker-compose.yml); chosen."""
 
 
 @contextmanager
@@ -30,7 +37,8 @@ def workers(jobs: int, cluster: str | None) -> Iterator[Executor]:
     """
     if cluster is None:
         # Fresh processes: a fork would copy the threads of the bus in whatever state they are.
-        with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as pool:
+        fresh = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(jobs, fresh, initializer=_end_with, initargs=(os.getpid(),)) as pool:
             yield pool
         return
     try:
@@ -82,6 +90,22 @@ def results_of(
                 _keep(files[futures[future]], future.result())
                 progress.advance(task)
     return [np.load(file, allow_pickle=False) for file in files]
+
+
+def _end_with(parent: int) -> None:
+    """Have this worker end when who gave it work is gone: a stack that it started would run for ever."""
+
+    main = threading.main_thread().ident
+    assert main is not None
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(WATCH_S)
+        signal.pthread_kill(main, signal.SIGINT)  # wakes the main thread, which stops what it runs
+        time.sleep(STOPPED_S)
+        os._exit(1)  # it waits for work that nobody gives any more
+
+    threading.Thread(target=watch, name="parent", daemon=True).start()
 
 
 def _on_one_core(function: Callable[[Any], FloatArray], plan: Any) -> FloatArray:
