@@ -41,6 +41,7 @@ class RosRobot:
         domain: ROS_DOMAIN_ID.
         python: interpreter with rclpy.
         environment: of its simulator, beside SENSES.
+        camera: whether its pictures are in ROS; else topnav has a camera of its own.
     """
 
     folder: Path
@@ -49,6 +50,7 @@ class RosRobot:
     domain: int
     python: Path
     environment: Mapping[str, str] = field(default_factory=dict)
+    camera: bool = True
 
     @property
     def file(self) -> Path:
@@ -66,7 +68,7 @@ class RosRobot:
             {
                 "name": "simulated robot",
                 "wire": {"kind": "rclpy", "domain": self.domain},
-                "camera": {"topic": "/camera/panorama/compressed", "frame": "camera"},
+                "camera": {"topic": "/panorama/compressed", "frame": "camera"} if self.camera else None,
                 "scan": {"topic": "/scan", "frame": "laser"},
                 "odometry": {"topic": "/odom"},
                 "imu": {"topic": "/imu"},

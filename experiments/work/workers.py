@@ -94,7 +94,6 @@ def results_of(
 
 def _end_with(parent: int) -> None:
     """Have this worker end when who gave it work is gone: a stack that it started would run for ever."""
-
     main = threading.main_thread().ident
     assert main is not None
 

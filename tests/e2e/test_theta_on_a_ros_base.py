@@ -1,0 +1,149 @@
+"""A base in ROS 2 with a camera over wifi, as a TurtleBot 4 with a THETA: late pictures, and a drop-out."""
+
+import os
+import threading
+import time
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+
+from experiments.ros_robot.robot import RosRobot, judged, running
+from services.launcher.client.stack import Stack, StackChoice, open_stack
+from services.launcher.client.trail import collisions
+from services.launcher.evaluation.exploration import explore
+from services.launcher.evaluation.rounds import Game
+from shared.bus import open_bus, wait_until
+from shared.topics import CAMERA_STATE, FRAME
+from simulator.world.freespace import free_space
+from simulator.world.world_file import load_world
+from tests.e2e.near_node import hiding_place_near_a_node
+from tests.faults.watching import Watch
+from tests.integration.ros.conftest import ROS_PYTHON
+from tests.osc_camera import OscCamera
+
+pytestmark = [
+    pytest.mark.render,
+    pytest.mark.slow,
+    pytest.mark.timeout(900),
+    pytest.mark.usefixtures("patient_sessions"),
+    pytest.mark.skipif(not ROS_PYTHON.exists(), reason=f"no {ROS_PYTHON}: deploy/setup/ros.sh makes it"),
+]
+
+WORLD = "apartment"
+STEPS = 90
+DELAY_S, RATE_HZ = 0.4, 5.0
+"""What a THETA's preview is late by over wifi (deploy/CAMERAS.md)."""
+UNPLUGGED_S = 10.0
+STOP_S, SEEN_S = 0.5, 0.5
+"""From the last heading on, which is of the last picture, to a word to stand; deceleration, truth at 10 Hz, and a
+machine that does other things."""
+LAST_PICTURE_S = 1.5
+"""Within so long the last picture has become a heading, on a machine that does other things."""
+MOVES_S = 60.0
+
+
+@dataclass
+class Eye:
+    """The camera's sensor: what the simulator shows, as long as somebody looks."""
+
+    endpoint: str
+    seen: deque[tuple[float, bytes]] = field(default_factory=lambda: deque(maxlen=20))
+    end: threading.Event = field(default_factory=threading.Event)
+
+    def look(self) -> None:
+        with open_bus(self.endpoint) as bus:
+            frames = bus.subscribe(FRAME, robot="r1")
+            while not self.end.is_set():
+                bus.wait(0.05)
+                if (frame := frames.take()) is not None:
+                    self.seen.append((time.monotonic(), frame.data))
+
+    def picture(self, at_s: float) -> bytes:
+        """The JPEG that was exposed at a time or just before."""
+        assert wait_until(lambda: bool(self.seen), MOVES_S)
+        before = [data for came_s, data in tuple(self.seen) if came_s <= at_s]
+        return before[-1] if before else self.seen[0][1]
+
+
+@dataclass
+class Robot:
+    """What the test needs of it."""
+
+    stack: Stack
+    camera: OscCamera
+
+
+@pytest.fixture
+def robot(tmp_path) -> Iterator[Robot]:
+    """A robot whose base and scanner are in ROS and whose camera is an OSC one."""
+    domain = 180 + os.getpid() % 50
+    small = {"SIMULATOR_WIDTH_PX": "1024", "SIMULATOR_FRAME_RATE_HZ": "8"}
+    body = RosRobot(tmp_path / "robot", WORLD, 1, domain, ROS_PYTHON, small, camera=False)
+    with running(body) as up:
+        eye = Eye(up.simulator.endpoint)
+        looking = threading.Thread(target=eye.look)
+        looking.start()
+        try:
+            with OscCamera(eye.picture, RATE_HZ, DELAY_S) as camera:
+                choice = StackChoice(
+                    tmp_path / "data", lockstep=False, seed=1, ros=str(body.file), camera=camera.url,
+                    environment=body.variables,
+                )  # fmt: skip
+                with open_stack(choice) as stack, judged(up, stack.bus):
+                    yield Robot(stack, camera)
+        finally:
+            eye.end.set()
+            looking.join()
+
+
+class DropOut(threading.Thread):
+    """Takes the camera's battery out while the robot drives, once, and puts it back."""
+
+    def __init__(self, camera: OscCamera, watch: Watch) -> None:
+        super().__init__(daemon=True)
+        self._camera, self._watch = camera, watch
+        self.at_s: float | None = None
+        self.back_s = 0.0
+
+    def run(self) -> None:
+        since_s = time.monotonic()
+        if wait_until(lambda: self._watch.moving(since_s), MOVES_S):
+            self.at_s = time.monotonic()
+            self._camera.unplug()
+            time.sleep(UNPLUGGED_S)
+            self._camera.plug()
+            self.back_s = time.monotonic()
+
+
+def test_it_stands_while_its_camera_is_gone_and_finds_the_picture_afterwards(robot, record_property):
+    stack, space = robot.stack, free_space(load_world(WORLD))
+    states = stack.bus.subscribe(CAMERA_STATE, robot=stack.robot)
+    explored = explore(stack, WORLD, "theta", seed=1, max_steps=STEPS)
+    assert len(explored.graph.nodes) > 3
+    assert states.take().model == robot.camera.model
+    game = Game(stack, space, "theta", np.random.default_rng(1))
+    start = game.begin(seed=1).pose
+    with Watch(stack.endpoint, stack.robot) as watch:
+        gone = DropOut(robot.camera, watch)
+        gone.start()
+        hider = hiding_place_near_a_node(explored, space, start)
+        played = game.seek(start, hider, seed=2, max_steps=400)
+        gone.join()
+        assert gone.at_s is not None, "it never drove"
+        headed_s = [at_s for at_s, _ in watch.headings if at_s < gone.at_s + LAST_PICTURE_S]
+        stood_s = watch.still_after_s(headed_s[-1])
+        record_property("stood_after_heading_s", stood_s)
+        record_property("stood_after_unplugging_s", watch.still_after_s(gone.at_s))
+        told_s = watch.told_to_stand_s(headed_s[-1])
+        assert told_s is not None
+        assert told_s - headed_s[-1] <= STOP_S
+        assert stood_s is not None
+        assert stood_s <= STOP_S + SEEN_S
+        assert watch.fastest_mps(gone.back_s) > 0.1  # it drove on
+        still = [speed for at_s, speed in watch.speeds if headed_s[-1] + 1.0 < at_s < gone.back_s]
+        assert max(still) < 0.03
+    assert played.success, played.run.status.reason
+    assert collisions([*explored.run.truths, *played.run.truths]) == 0
