@@ -38,8 +38,7 @@ DELAY_S, RATE_HZ = 0.4, 5.0
 """What a THETA's preview is late by over wifi (deploy/CAMERAS.md)."""
 UNPLUGGED_S = 10.0
 STOP_S, SEEN_S = 0.5, 0.5
-"""From the last heading on, which is of the last picture, to a word to stand; deceleration, truth at 10 Hz, and a
-machine that does other things."""
+"""From the last picture's heading to a word to stand; deceleration, and a machine that does other things."""
 LAST_PICTURE_S = 1.5
 """Within so long the last picture has become a heading, on a machine that does other things."""
 MOVES_S = 60.0
