@@ -1,7 +1,6 @@
 """`topnav robot check` on a robot in ROS 2: a good one passes, and of a bad one the fault is named."""
 
 import io
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -20,13 +19,14 @@ from services.ros.conversions.twist import motion_of
 from shared.bus import wait_until
 from shared.topics import RANGES, TRUTH
 from tests.integration.ros.conftest import ROS_PYTHON
+from tests.theta_robot import NO_ROS, domain
 
 pytestmark = [
     pytest.mark.render,
     pytest.mark.slow,
     pytest.mark.timeout(900),
     pytest.mark.usefixtures("patient_sessions"),
-    pytest.mark.skipif(not ROS_PYTHON.exists(), reason=f"no {ROS_PYTHON}: deploy/setup/ros.sh makes it"),
+    pytest.mark.skipif(not ROS_PYTHON.exists(), reason=NO_ROS),
 ]
 
 SMALL_PICTURES = {"SIMULATOR_WIDTH_PX": "1024"}
@@ -50,7 +50,7 @@ class Checked:
 def stack(tmp_path_factory) -> Iterator[Stack]:
     """A stack whose robot is in ROS, where there is room all round."""
     folder = tmp_path_factory.mktemp("robot")
-    robot = RosRobot(folder / "robot", "apartment", 1, 180 + os.getpid() % 50, ROS_PYTHON, SMALL_PICTURES)
+    robot = RosRobot(folder / "robot", "apartment", 1, domain(), ROS_PYTHON, SMALL_PICTURES)
     choice = StackChoice(
         folder / "data", lockstep=False, seed=1, ros=str(robot.file), environment=robot.variables
     )

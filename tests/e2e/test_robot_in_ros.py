@@ -1,6 +1,5 @@
 """A robot that only ROS 2 reaches explores and finds a picture: rclpy, services/ros and the guard."""
 
-import os
 from collections.abc import Iterator
 
 import numpy as np
@@ -17,13 +16,14 @@ from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
 from tests.e2e.near_node import hiding_place_near_a_node
 from tests.integration.ros.conftest import ROS_PYTHON
+from tests.theta_robot import NO_ROS, domain
 
 pytestmark = [
     pytest.mark.render,
     pytest.mark.slow,
     pytest.mark.timeout(900),
     pytest.mark.usefixtures("patient_sessions"),
-    pytest.mark.skipif(not ROS_PYTHON.exists(), reason=f"no {ROS_PYTHON}: deploy/setup/ros.sh makes it"),
+    pytest.mark.skipif(not ROS_PYTHON.exists(), reason=NO_ROS),
 ]
 
 WORLD = "apartment"
@@ -35,8 +35,7 @@ SOON_S = 30.0
 @pytest.fixture
 def stack(tmp_path) -> Iterator[Stack]:
     """A stack whose robot is in ROS."""
-    domain = 180 + os.getpid() % 50
-    robot = RosRobot(tmp_path / "robot", WORLD, 1, domain, ROS_PYTHON, SMALL_PICTURES)
+    robot = RosRobot(tmp_path / "robot", WORLD, 1, domain(), ROS_PYTHON, SMALL_PICTURES)
     choice = StackChoice(
         tmp_path / "data", lockstep=False, seed=1, ros=str(robot.file), environment=robot.variables
     )

@@ -1,41 +1,34 @@
 """A base in ROS 2 with a camera over wifi, as a TurtleBot 4 with a THETA: late pictures, and a drop-out."""
 
-import os
 import threading
 import time
-from collections import deque
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
 
-from experiments.ros_robot.robot import RosRobot, judged, running
-from services.launcher.client.stack import Stack, StackChoice, open_stack
 from services.launcher.client.trail import collisions
 from services.launcher.evaluation.exploration import explore
 from services.launcher.evaluation.rounds import Game
-from shared.bus import open_bus, wait_until
-from shared.topics import CAMERA_STATE, FRAME
+from shared.bus import wait_until
+from shared.topics import CAMERA_STATE
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
 from tests.e2e.near_node import hiding_place_near_a_node
 from tests.faults.watching import Watch
 from tests.integration.ros.conftest import ROS_PYTHON
 from tests.osc_camera import OscCamera
+from tests.theta_robot import NO_ROS, WORLD, ThetaRobot, theta_robot
 
 pytestmark = [
     pytest.mark.render,
     pytest.mark.slow,
     pytest.mark.timeout(900),
     pytest.mark.usefixtures("patient_sessions"),
-    pytest.mark.skipif(not ROS_PYTHON.exists(), reason=f"no {ROS_PYTHON}: deploy/setup/ros.sh makes it"),
+    pytest.mark.skipif(not ROS_PYTHON.exists(), reason=NO_ROS),
 ]
 
-WORLD = "apartment"
 STEPS = 90
-DELAY_S, RATE_HZ = 0.4, 5.0
-"""What a THETA's preview is late by over wifi (deploy/CAMERAS.md)."""
 UNPLUGGED_S = 10.0
 STOP_S, SEEN_S = 0.5, 0.5
 """From the last picture's heading to a word to stand; deceleration, and a machine that does other things."""
@@ -44,58 +37,11 @@ LAST_PICTURE_S = 1.5
 MOVES_S = 60.0
 
 
-@dataclass
-class Eye:
-    """The camera's sensor: what the simulator shows, as long as somebody looks."""
-
-    endpoint: str
-    seen: deque[tuple[float, bytes]] = field(default_factory=lambda: deque(maxlen=20))
-    end: threading.Event = field(default_factory=threading.Event)
-
-    def look(self) -> None:
-        with open_bus(self.endpoint) as bus:
-            frames = bus.subscribe(FRAME, robot="r1")
-            while not self.end.is_set():
-                bus.wait(0.05)
-                if (frame := frames.take()) is not None:
-                    self.seen.append((time.monotonic(), frame.data))
-
-    def picture(self, at_s: float) -> bytes:
-        """The JPEG that was exposed at a time or just before."""
-        assert wait_until(lambda: bool(self.seen), MOVES_S)
-        before = [data for came_s, data in tuple(self.seen) if came_s <= at_s]
-        return before[-1] if before else self.seen[0][1]
-
-
-@dataclass
-class Robot:
-    """What the test needs of it."""
-
-    stack: Stack
-    camera: OscCamera
-
-
 @pytest.fixture
-def robot(tmp_path) -> Iterator[Robot]:
-    """A robot whose base and scanner are in ROS and whose camera is an OSC one."""
-    domain = 180 + os.getpid() % 50
-    small = {"SIMULATOR_WIDTH_PX": "1024", "SIMULATOR_FRAME_RATE_HZ": "8"}
-    body = RosRobot(tmp_path / "robot", WORLD, 1, domain, ROS_PYTHON, small, camera=False)
-    with running(body) as up:
-        eye = Eye(up.simulator.endpoint)
-        looking = threading.Thread(target=eye.look)
-        looking.start()
-        try:
-            with OscCamera(eye.picture, RATE_HZ, DELAY_S) as camera:
-                choice = StackChoice(
-                    tmp_path / "data", lockstep=False, seed=1, ros=str(body.file), camera=camera.url,
-                    environment=body.variables,
-                )  # fmt: skip
-                with open_stack(choice) as stack, judged(up, stack.bus):
-                    yield Robot(stack, camera)
-        finally:
-            eye.end.set()
-            looking.join()
+def robot(tmp_path) -> Iterator[ThetaRobot]:
+    """The robot in the apartment."""
+    with theta_robot(tmp_path, width_px=1024) as opened:
+        yield opened
 
 
 class DropOut(threading.Thread):
