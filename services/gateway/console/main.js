@@ -23,6 +23,7 @@ import { TEXT } from "./page/text.js";
 import { Views } from "./page/views.js";
 
 const SERVICES = ["simulator", "features", "map_store", "planner", "drive", "gateway"];
+const REAL = ["ros", "camera"]; // in whose place no simulator is missed
 const BODY = ["odometry", "imu", "battery", "camera"];
 const DEFAULT_ROBOT = "r1";
 const ROBOTS_MS = 5000;
@@ -131,7 +132,10 @@ function changed(up, full = false) {
 }
 
 function showServices(counts) {
-  const names = [...SERVICES, ...Object.keys(counts || {}).filter((name) => !SERVICES.includes(name))];
+  const told = Object.keys(counts || {});
+  const real = REAL.some((name) => told.includes(name)) && !counts.simulator;
+  const expected = SERVICES.filter((name) => name !== "simulator" || !real);
+  const names = [...expected, ...told.filter((name) => !SERVICES.includes(name))];
   $("services").replaceChildren(...names.map((name) => {
     const count = counts?.[name] || 0;
     const state = counts === null ? "unknown" : count ? "alive" : "missing";

@@ -218,3 +218,10 @@ def test_what_a_robot_says_of_its_body_is_shown(page: "Page", robot_bus: Bus) ->
         return all(part in page.inner_text("#body-facts") for part in expected)
 
     assert wait_until(shown, WAIT_S), page.inner_text("#body-facts")
+
+
+def test_no_simulator_is_missed_where_a_real_robot_is(page: "Page", robot_bus: Bus) -> None:
+    page.wait_for_selector("#services li.missing:has-text('simulator')", timeout=WAIT_MS)
+    robot_bus.announce("ros")
+    page.wait_for_selector("#services li.alive:has-text('ros')", timeout=WAIT_MS)
+    assert page.locator("#services li:has-text('simulator')").count() == 0

@@ -53,6 +53,17 @@ def test_a_slow_robot_needs_less_free_way_for_its_speed_than_a_fast_one():
     assert speed_mps(0.5, 1.15) == pytest.approx(0.4)
 
 
+@pytest.mark.parametrize("delay_s", [0.0, 0.3, 0.6])
+@pytest.mark.parametrize("near_m", [0.7, 0.9, 1.2])
+def test_speed_is_free_way_over_the_time_to_touch_and_the_delay_with_which_it_is_seen(near_m, delay_s):
+    """Speed v = d / (contact_s + delay_s), deploy/ROBOTS.md: with as much near all round, wherever it goes."""
+    limits, near = DriveLimits(), ranges().model_copy(update={"distances_m": (near_m,) * 12})
+    heading, rng = Heading(robot="r1"), np.random.default_rng(0)
+    answer, _ = compute_velocity(heading, near, Since(delay_s=delay_s), Memory(), rng, limits)
+    free_m = near_m - limits.passing.disc_m(1.0)
+    assert answer.speed_mps == pytest.approx(free_m / (limits.contact_s + delay_s))
+
+
 def test_commands_outlive_two_readings_and_end_well_within_half_a_second():
     answer = velocity(Heading(robot="r1"), ranges())
     assert 2 * RANGES_PERIOD_MS < answer.ttl_ms <= 250
