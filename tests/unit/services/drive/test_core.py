@@ -56,7 +56,7 @@ def test_a_slow_robot_needs_less_free_way_for_its_speed_than_a_fast_one():
 @pytest.mark.parametrize("delay_s", [0.0, 0.3, 0.6])
 @pytest.mark.parametrize("near_m", [0.7, 0.9, 1.2])
 def test_speed_is_free_way_over_the_time_to_touch_and_the_delay_with_which_it_is_seen(near_m, delay_s):
-    """Speed v = d / (contact_s + delay_s), deploy/ROBOTS.md: with as much near all round, wherever it goes."""
+    """Speed v = d / (contact_s + delay_s), deploy/ROBOTS.md: as much is near all round, wherever it goes."""
     limits, near = DriveLimits(), ranges().model_copy(update={"distances_m": (near_m,) * 12})
     heading, rng = Heading(robot="r1"), np.random.default_rng(0)
     answer, _ = compute_velocity(heading, near, Since(delay_s=delay_s), Memory(), rng, limits)
