@@ -17,6 +17,7 @@ from services.launcher.client.stack import Stack, StackChoice, open_stack
 from services.launcher.client.trail import driven_m
 from services.ros.conversions.twist import motion_of
 from shared.bus import wait_until
+from shared.messages.simulation import Pose
 from shared.topics import RANGES, TRUTH
 from tests.integration.ros.conftest import ROS_PYTHON
 from tests.theta_robot import NO_ROS, domain
@@ -147,3 +148,40 @@ def test_what_cannot_be_used_is_named_in_a_line_and_nothing_moves(
     assert checked.check.senses() == (fault is late_clock)
     assert named in checked.text
     assert max(truth.speed_mps for truth in truths.take_all()) < 0.01
+
+
+def mirrored_scan(codec, ranges):
+    message = scan_of(codec, ranges)
+    message.ranges = np.roll(message.ranges[::-1], 1)
+    return message
+
+
+@pytest.mark.parametrize(
+    ("made", "sectors", "named"),
+    [(scan_of, (0, 3), ""), (mirrored_scan, (0, 9), "scan.upside_down of the robot's file is wrong")],
+    ids=["right", "mirrored"],
+)
+def test_boxes_ahead_and_at_the_left_show_how_the_scanner_sits(
+    stack, monkeypatch, checked, made, sectors, named
+):
+    monkeypatch.setattr(body, "scan_of", made)
+    experimenter = Experimenter(stack.bus, stack.robot)
+    robot, placed = experimenter.truth().pose, []
+
+    def put(what):
+        if placed:
+            experimenter.set_item(placed.pop(), present=False)
+        turned = {"straight ahead": 0.0, "at the robot's left": np.pi / 2}
+        for where_rad in [rad for words, rad in turned.items() if words in what]:
+            towards = robot.yaw_rad + where_rad
+            pose = Pose(
+                x_m=robot.x_m + 0.8 * np.cos(towards), y_m=robot.y_m + 0.8 * np.sin(towards), yaw_rad=0.0
+            )
+            placed.append("box_left" if where_rad else "box_ahead")
+            experimenter.place_obstacle("basket", pose, placed[-1])
+
+    checked.check.boxes(put)
+    figures = checked.check.figures
+    assert (figures["box_ahead_sector"], figures["box_left_sector"]) == sectors, checked.text
+    assert named in "".join(checked.check.problems)
+    assert bool(checked.check.problems) == bool(named)

@@ -65,8 +65,7 @@ class RobotCheck:
         looked = self._looker.look(LOOK_S)
         self._pictures(looked)
         if looked.ranges:
-            for word, text in report.ranges_line(looked.ranges, LOOK_S):
-                self._say(word, text)
+            self._say(*report.ranges_line(looked.ranges, LOOK_S))
         most_m = looked.ranges[-1].max_range_m if looked.ranges else 0.0
         self._wrong(distances.range_problems([one.distances_m for one in looked.ranges], most_m))
         told_m = [] if not looked.ranges else list(looked.ranges[-1].distances_m)
@@ -93,22 +92,23 @@ class RobotCheck:
         self._wrong(distances.box_problems(ahead, left))
 
     def moves(self) -> list[Seen]:
-        """Go 0.2 m each way and turn a little, both ways.
+        """Go 0.2 m each way where there is room, and turn a little, both ways.
 
         Raises:
-            ExperimentError: a mission runs, there is no room, or nobody obeys.
+            ExperimentError: a mission runs, there is no room anywhere, or nobody obeys.
         """
         self._require_idle()
-        near_m = min(self._distances())
-        if near_m < ROOM_M:
-            raise ExperimentError(
-                f"something is {near_m:.2f} m from the robot: {ROOM_M} m free all round are needed to move"
-            )
         hand = Hand(self._bus, self._robot, self._who)
-        seen = []
+        seen: list[Seen] = []
         for move in MOVES:
+            free_m = distances.free_m(self._distances(), move.direction_rad)
+            if free_m < ROOM_M and not move.turn_rad:
+                self._say("move", f"{move.name}: not made, {free_m:.2f} m free of {ROOM_M} needed")
+                continue
             seen.append(moving.make(move, hand, self._looker))
-            self._say(*report.moves_line(seen[-1:])[0])
+            self._say(*report.move_line(seen[-1]))
+        if all(one.move.turn_rad for one in seen):
+            raise ExperimentError(f"something is near on all sides: {ROOM_M} m free are needed to move")
         if all(one.told_share == 0.0 for one in seen):
             raise ExperimentError("drive obeys nobody: somebody else drives, or the emergency stop holds")
         self._wrong(motion_problems(seen))
@@ -117,7 +117,10 @@ class RobotCheck:
         return seen
 
     def stops(self) -> None:
-        """Let go while it moves, then engage the emergency stop while it moves, and try to move under it."""
+        """Let go while it moves, then engage the emergency stop while it moves, and try to move under it.
+
+        The stop is cleared only by who saw that it holds: where it does not, it stays engaged.
+        """
         hand = Hand(self._bus, self._robot, self._who)
         hand.move(STOP_MPS, 0.0, 0.0, STOP_DRIVE_S)
         let_go_s = self._stood_after_s(time.time_ns())
@@ -128,14 +131,15 @@ class RobotCheck:
         time.sleep(STOP_DRIVE_S)
         engaged_ns = time.time_ns()
         self._estop("engage")
-        try:
-            estop_s = self._stood_after_s(engaged_ns)
-            driven.join()
-            obeyed = self._stands_under_it(hand)
-        finally:
+        estop_s = self._stood_after_s(engaged_ns)
+        driven.join()
+        obeyed = self._stands_under_it(hand)
+        problems = report.stop_problems(report.Stops(let_go_s, estop_s, obeyed))
+        self._wrong(problems)
+        if problems:
+            self._say("stop", "the emergency stop stays engaged: 'topnav estop --clear --who NAME' ends it")
+        else:
             self._estop("clear")
-        stops = report.Stops(let_go_s, estop_s, obeyed)
-        self._wrong(report.stop_problems(stops))
         told = ["not known: no odometry" if one is None else f"{one:.2f} s" for one in (let_go_s, estop_s)]
         self._say("stop", f"after letting go {told[0]}, after the emergency stop {told[1]}")
         self.figures |= {"stop_let_go_s": let_go_s, "stop_estop_s": estop_s, "stop_obeyed": obeyed}

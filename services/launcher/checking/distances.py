@@ -22,6 +22,12 @@ def nearer_sector(before_m: Sequence[float], after_m: Sequence[float]) -> int | 
     return sector if change_m[sector] >= NEARER_M else None
 
 
+def free_m(distances_m: Sequence[float], direction_rad: float) -> float:
+    """How far it is free in a direction, robot frame, and a sector to either side of it."""
+    sector = round(direction_rad * SECTORS / math.tau)
+    return min(distances_m[(sector + beside) % SECTORS] for beside in (-1, 0, 1))
+
+
 def box_problems(ahead: int | None, left: int | None) -> list[str]:
     """What is wrong, by where a box straight ahead and one at the left were seen."""
     if ahead is None and left is None:

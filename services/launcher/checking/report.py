@@ -44,10 +44,8 @@ def delay_problems(ages_s: Sequence[float]) -> list[str]:
     return []
 
 
-def stop_problems(stops: Stops | None) -> list[str]:
+def stop_problems(stops: Stops) -> list[str]:
     """What is wrong with how it stops."""
-    if stops is None:
-        return []
     found = []
     for after_s, what in ((stops.let_go_s, "let go"), (stops.estop_s, "stopped by the emergency stop")):
         if after_s is not None and after_s > STOP_S:
@@ -57,14 +55,14 @@ def stop_problems(stops: Stops | None) -> list[str]:
     return found
 
 
-def moves_line(seen: Sequence[Seen]) -> list[tuple[str, str]]:
-    """What the camera saw of each move."""
-    return [("move", f"{one.move.name}: {_told(one)}") for one in seen]
+def move_line(one: Seen) -> tuple[str, str]:
+    """What the camera saw of a move."""
+    return "move", f"{one.move.name}: {_told(one)}"
 
 
 def _told(one: Seen) -> str:
     if one.told_share < 0.5:
-        return "not made: something is near, or the base cannot"
+        return "not made: the base cannot, or something is near"
     turned = "" if one.match.yaw_rad is None else f", turned {math.degrees(one.match.yaw_rad):+.0f}"
     went = "cannot tell where to" if one.heading_rad is None else f"went {math.degrees(one.heading_rad):+.0f}"
     wheels = ""
@@ -74,13 +72,11 @@ def _told(one: Seen) -> str:
     return f"the camera {'stood' if one.still else went}{turned}{wheels}"
 
 
-def ranges_line(ranges: Sequence[Ranges], seconds: float) -> list[tuple[str, str]]:
-    """Twelve distances, from straight ahead counter-clockwise."""
-    if not ranges:
-        return []
+def ranges_line(ranges: Sequence[Ranges], seconds: float) -> tuple[str, str]:
+    """Twelve distances, from straight ahead counter-clockwise; at least one reading of them."""
     shown = " ".join(f"{one:.1f}" for one in ranges[-1].distances_m)
     rate = f"{len(ranges) / seconds:.0f} a second, up to {ranges[-1].max_range_m:g} m"
-    return [("distances", f"{rate}: {shown} (ahead first, then to the left)")]
+    return "distances", f"{rate}: {shown} (ahead first, then to the left)"
 
 
 def move_figures(one: Seen) -> dict[str, Any]:

@@ -1,8 +1,10 @@
 """Where a box comes nearer says how the scanner sits."""
 
+import math
+
 import pytest
 
-from services.launcher.checking.distances import box_problems, nearer_sector, range_problems
+from services.launcher.checking.distances import box_problems, free_m, nearer_sector, range_problems
 
 FREE_M = [3.0] * 12
 
@@ -11,6 +13,12 @@ def test_the_sector_that_a_box_made_shorter_is_found_and_noise_is_not():
     boxed = [*FREE_M[:3], 0.8, *FREE_M[4:]]
     assert nearer_sector(FREE_M, boxed) == 3
     assert nearer_sector(FREE_M, [2.95] * 12) is None
+
+
+@pytest.mark.parametrize(("direction_rad", "found_m"), [(0.0, 2.0), (math.pi, 3.0), (-math.pi / 2, 0.5)])
+def test_free_is_what_the_sectors_towards_a_direction_say(direction_rad, found_m):
+    near = [3.0, 2.0, *[3.0] * 6, 0.5, *[3.0] * 3]
+    assert free_m(near, direction_rad) == found_m
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,6 @@ def test_late_pictures_and_clocks_ahead_are_named(ages_s, named):
 @pytest.mark.parametrize(
     ("stops", "count"),
     [
-        (None, 0),
         (Stops(0.2, 0.1), 0),
         (Stops(None, None), 0),
         (Stops(0.8, 0.1), 1),
