@@ -57,8 +57,8 @@ class ThetaRobot:
 
 
 def domain() -> int:
-    """A ROS domain that no other test of this machine uses now."""
-    return 180 + os.getpid() % 50
+    """A ROS domain that no other worker of this run uses (below 180: tests/integration/ros)."""
+    return 180 + int(os.environ.get("PYTEST_XDIST_WORKER", "gw40").removeprefix("gw"))
 
 
 @contextmanager

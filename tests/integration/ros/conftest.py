@@ -26,7 +26,7 @@ SOON_S = 30.0
 REPOSITORY = Path(__file__).resolve().parents[3]
 ROS_PYTHON = Path(os.environ.get("TOPNAV_ROS_PYTHON", REPOSITORY / ".venv-ros/bin/python"))
 KINDS = ["rmw_zenoh", "bridge", "rclpy"]
-DOMAINS = itertools.count(20 + os.getpid() % 150)
+DOMAINS = itertools.count(20 + os.getpid() % 100)
 CLOCK_AHEAD_S = 4_000.0
 
 
