@@ -17,10 +17,15 @@ FOLDERS = {
     "services/drive": Role.DRIVE,
     "services/gateway": Role.GATEWAY,
     "services/ros": Role.ROBOT,
+    "services/launcher": Role.OPERATOR,
     "experiments": Role.OPERATOR,
 }
-# Plays simulator and planner of many robots on a bus of its own, which is not secured.
-IMPERSONATORS = {"experiments/scale/asking_robot.py"}
+# Many robots' simulator and planner, a robot's body with its truth, on buses of their own: none is secured.
+IMPERSONATORS = {
+    "experiments/scale/asking_robot.py",
+    "experiments/ros_robot/body.py",
+    "experiments/ros_robot/truth.py",
+}
 # The emergency stop is in shared code: drive holds the desk, a body follows.
 SIDES = {"EStopServer": Role.DRIVE, "RobotEStop": Role.SIMULATOR}
 CALLS = {
