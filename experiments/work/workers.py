@@ -94,6 +94,7 @@ def results_of(
 
 def _end_with(parent: int) -> None:
     """Have this worker end when who gave it work is gone: a stack that it started would run for ever."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs behind a shell ignores it
     main = threading.main_thread().ident
     assert main is not None
 
