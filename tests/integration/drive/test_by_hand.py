@@ -62,12 +62,13 @@ def test_a_hand_comes_before_the_planner_until_it_lets_go(start, neighbours):
 
 
 def test_a_second_person_does_not_take_the_robot(start, neighbours):
+    """The first one's wishes live long enough for a test that is held up."""
     start()
     ada, bob = Person(neighbours, "Ada"), Person(neighbours, "Bob")
-    assert neighbours.drives(by(ada, neighbours, forward_mps=0.2))
+    assert neighbours.drives(by(ada, neighbours, forward_mps=0.2, ttl_ms=1_000))
 
     def both():
-        by(ada, neighbours, forward_mps=0.2)()
+        by(ada, neighbours, forward_mps=0.2, ttl_ms=1_000)()
         bob.says(forward_mps=-0.2)
 
     came = neighbours.commands(0.6, both, several)
