@@ -14,9 +14,9 @@ class Person:
     def __init__(self, neighbours, who):
         self._out, self.who, self._seq = neighbours.bus.publisher(MANUAL, robot="r1"), who, 0
 
-    def says(self, action="drive", **more):
+    def says(self, action="drive", ttl_ms=TTL_MS, **more):
         self._seq += 1
-        self._out.put(Manual(robot="r1", seq=self._seq, who=self.who, action=action, ttl_ms=TTL_MS, **more))
+        self._out.put(Manual(robot="r1", seq=self._seq, who=self.who, action=action, ttl_ms=ttl_ms, **more))
 
 
 def by(person, neighbours, near_m=4.0, **wished):
