@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import pytest
+
 from experiments.ros_robot.robot import RosRobot, Running, judged, running
 from services.launcher.client.stack import Stack, StackChoice, open_stack
 from shared.bus import open_bus, wait_until
@@ -20,7 +22,13 @@ WORLD = "apartment"
 DELAY_S, RATE_HZ = 0.4, 5.0
 """Of a THETA's preview over wifi (deploy/CAMERAS.md)."""
 FIRST_PICTURE_S = 60.0
-NO_ROS = f"no {ROS_PYTHON}: deploy/setup/ros.sh makes it"
+IN_ROS = [
+    pytest.mark.render,
+    pytest.mark.slow,
+    pytest.mark.usefixtures("patient_sessions"),
+    pytest.mark.skipif(not ROS_PYTHON.exists(), reason=f"no {ROS_PYTHON}: deploy/setup/ros.sh makes it"),
+]
+"""Marks of tests whose robot is in ROS."""
 
 
 @dataclass

@@ -27,26 +27,18 @@ def ros_demo(
     The simulator is a node that publishes CompressedImage, LaserScan, Odometry and Imu, and hears
     TwistStamped; topnav reaches it by services/ros alone, and the guard stands before its base.
     """
-    from experiments.ros_robot import robot as ros
-    from services.launcher.client.failure import ExperimentError
-    from services.launcher.client.stack import StackChoice, open_stack
-    from services.launcher.evaluation.demo import Scene, explore_scene, report, seek_hidden_robot
+    from experiments.ros_robot.robot import RosRobot, running_stack
+    from services.launcher.client.stack import StackChoice
+    from services.launcher.evaluation.demo import Scene, play, require_found
     from services.launcher.terminal.output import new_run_folder, wide_console
     from simulator.world.freespace import free_space
     from simulator.world.world_file import load_world
 
     console, file = wide_console(), load_world(world)
     scene = Scene(file, free_space(file), seed, new_run_folder(runs))
-    robot = ros.RosRobot(scene.folder / "robot", world, seed, domain, python)
-    choice = StackChoice(
-        scene.folder / "data", seed=seed, lockstep=False, timeout_s=timeout_s,
-        ros=str(robot.file), environment=robot.variables,
-    )  # fmt: skip
+    robot = RosRobot(scene.folder / "robot", world, seed, domain, python)
+    choice = StackChoice(scene.folder / "data", seed=seed, timeout_s=timeout_s)
     console.print(f"starting a robot in ROS, domain {domain}, logs in {robot.folder}", highlight=False)
-    with ros.running(robot) as up, open_stack(choice) as stack, ros.judged(up, stack.bus):
-        console.print(f"all up; watch the robot on {stack.gateway_url}", highlight=False)
-        explored = explore_scene(console, stack, scene, choice.data_dir, explore_steps)
-        found = seek_hidden_robot(console, stack, scene, explored)
-        console.print(f"report: {report(scene, explored, found)}", highlight=False, soft_wrap=True)
-    if not found.success:
-        raise ExperimentError(f"the hidden robot was not found: {found.run.status.reason}")
+    with running_stack(robot, choice) as stack:
+        found = play(console, stack, scene, choice.data_dir, explore_steps)
+    require_found(found)

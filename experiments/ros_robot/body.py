@@ -49,7 +49,8 @@ class RosBody:
         ):
             if topic is not None:
                 self._put[kind] = wire.publisher(topic.topic, kind, SENSOR)
-        self._lock, self._heard, self._seq = threading.Lock(), list[Motion](), 0
+        self._lock, self._seq = threading.Lock(), 0
+        self._heard: Motion | None = None
         base = file.guard or file.velocity
         self._hears = base.types()[0]
         wire.subscribe(base.topic, self._hears, self._store, URGENT)
@@ -69,7 +70,7 @@ class RosBody:
         except (CodecError, ConversionError):
             return
         with self._lock:
-            self._heard = [motion]
+            self._heard = motion
         self._bus.wake.set()
 
     def _run(self) -> None:
@@ -97,8 +98,8 @@ class RosBody:
     def _move(self) -> None:
         """Tell the simulator what the base was told; it stands by itself once nothing comes any more."""
         with self._lock:
-            heard, self._heard = self._heard, []
-        for motion in heard:
+            motion, self._heard = self._heard, None
+        if motion is not None:
             self._velocities.put(
                 Velocity(
                     seq=self._seq, stamp_ns=time.time_ns(), robot=self._robot, ttl_ms=TIME_OUT_MS,

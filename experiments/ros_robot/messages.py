@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from services.ros.conversions.body import GRAVITY_MPS2, UNKNOWN
 from services.ros.conversions.header import NS_PER_S
 from services.ros.sensing import IMU, ODOMETRY, SCAN
 from services.ros.wires.codec import Codec
@@ -14,9 +15,6 @@ from shared.messages.sensors import Direction, Frame, Ranges
 PICTURE = "sensor_msgs/msg/CompressedImage"
 NEAREST_M = 0.02
 """range_min of the scan; chosen: the body of the robot is further from its sensors."""
-GRAVITY_MPS2 = 9.80665
-UNKNOWN = -1.0
-"""First element of a covariance whose quantity the sensor does not have (sensor_msgs/Imu)."""
 
 
 def picture_of(codec: Codec, frame: Frame) -> Any:

@@ -6,14 +6,14 @@ import sys
 import threading
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, closing, contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import yaml
 
 from experiments.ros_robot.body import NODE, RosBody
 from experiments.ros_robot.truth import TruthRelay
-from services.launcher.client.stack import ROBOT
+from services.launcher.client.stack import ROBOT, Stack, StackChoice, open_stack
 from services.launcher.processes.supervisor import Launcher
 from services.ros.robot_file import RobotFile
 from services.ros.wires.codec import Codec
@@ -147,6 +147,19 @@ def running(robot: RosRobot) -> Iterator[Running]:
         wire = stack.enter_context(closing(open_wire(file.wire, codec, NODE, rclpy)))
         stack.enter_context(closing(RosBody(bus, ROBOT, wire, codec, file)))
         yield Running(simulator, stack.enter_context(closing(Guard(robot))))
+
+
+@contextmanager
+def running_stack(robot: RosRobot, choice: StackChoice) -> Iterator[Stack]:
+    """Start the robot and a stack that drives it, in real time; `choice` says the rest of the stack.
+
+    Raises:
+        LaunchError: simulator or stack does not come up.
+        WireError: ROS does not.
+    """
+    whole = replace(choice, lockstep=False, ros=str(robot.file), environment=robot.variables)
+    with running(robot) as up, open_stack(whole) as stack, judged(up, stack.bus):
+        yield stack
 
 
 @contextmanager

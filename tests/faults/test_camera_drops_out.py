@@ -16,17 +16,10 @@ from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
 from tests.e2e.near_node import hiding_place_near_a_node
 from tests.faults.watching import Watch
-from tests.integration.ros.conftest import ROS_PYTHON
 from tests.osc_camera import OscCamera
-from tests.theta_robot import NO_ROS, WORLD, ThetaRobot, theta_robot
+from tests.theta_robot import IN_ROS, WORLD, ThetaRobot, theta_robot
 
-pytestmark = [
-    pytest.mark.render,
-    pytest.mark.slow,
-    pytest.mark.timeout(900),
-    pytest.mark.usefixtures("patient_sessions"),
-    pytest.mark.skipif(not ROS_PYTHON.exists(), reason=NO_ROS),
-]
+pytestmark = [*IN_ROS, pytest.mark.timeout(900)]
 
 STEPS = 90
 UNPLUGGED_S = 10.0

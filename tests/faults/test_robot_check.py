@@ -10,25 +10,19 @@ from PIL import Image
 
 from experiments.ros_robot import body
 from experiments.ros_robot.messages import picture_of, scan_of
-from experiments.ros_robot.robot import RosRobot, judged, running
+from experiments.ros_robot.robot import RosRobot, running_stack
 from services.launcher.checking.check import RobotCheck
 from services.launcher.client.experimenter import Experimenter
-from services.launcher.client.stack import Stack, StackChoice, open_stack
+from services.launcher.client.stack import Stack, StackChoice
 from services.launcher.client.trail import driven_m
 from services.ros.conversions.twist import motion_of
 from shared.bus import wait_until
 from shared.messages.simulation import Pose
 from shared.topics import RANGES, TRUTH
 from tests.integration.ros.conftest import ROS_PYTHON
-from tests.theta_robot import NO_ROS, domain
+from tests.theta_robot import IN_ROS, domain
 
-pytestmark = [
-    pytest.mark.render,
-    pytest.mark.slow,
-    pytest.mark.timeout(900),
-    pytest.mark.usefixtures("patient_sessions"),
-    pytest.mark.skipif(not ROS_PYTHON.exists(), reason=NO_ROS),
-]
+pytestmark = [*IN_ROS, pytest.mark.timeout(900)]
 
 SMALL_PICTURES = {"SIMULATOR_WIDTH_PX": "1024"}
 SOON_S = 60.0
@@ -52,10 +46,7 @@ def stack(tmp_path_factory) -> Iterator[Stack]:
     """A stack whose robot is in ROS, where there is room all round."""
     folder = tmp_path_factory.mktemp("robot")
     robot = RosRobot(folder / "robot", "apartment", 1, domain(), ROS_PYTHON, SMALL_PICTURES)
-    choice = StackChoice(
-        folder / "data", lockstep=False, seed=1, ros=str(robot.file), environment=robot.variables
-    )
-    with running(robot) as up, open_stack(choice) as opened, judged(up, opened.bus):
+    with running_stack(robot, StackChoice(folder / "data", seed=1)) as opened:
         yield opened
 
 

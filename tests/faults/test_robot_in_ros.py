@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from experiments.ros_robot.robot import RosRobot, judged, running
-from services.launcher.client.stack import Stack, StackChoice, open_stack
+from experiments.ros_robot.robot import RosRobot, running_stack
+from services.launcher.client.stack import Stack, StackChoice
 from services.launcher.client.trail import collisions
 from services.launcher.evaluation.exploration import explore, figures
 from services.launcher.evaluation.rounds import Game
@@ -16,15 +16,9 @@ from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
 from tests.e2e.near_node import hiding_place_near_a_node
 from tests.integration.ros.conftest import ROS_PYTHON
-from tests.theta_robot import NO_ROS, domain
+from tests.theta_robot import IN_ROS, domain
 
-pytestmark = [
-    pytest.mark.render,
-    pytest.mark.slow,
-    pytest.mark.timeout(900),
-    pytest.mark.usefixtures("patient_sessions"),
-    pytest.mark.skipif(not ROS_PYTHON.exists(), reason=NO_ROS),
-]
+pytestmark = [*IN_ROS, pytest.mark.timeout(900)]
 
 WORLD = "apartment"
 STEPS = 90
@@ -36,10 +30,7 @@ SOON_S = 30.0
 def stack(tmp_path) -> Iterator[Stack]:
     """A stack whose robot is in ROS."""
     robot = RosRobot(tmp_path / "robot", WORLD, 1, domain(), ROS_PYTHON, SMALL_PICTURES)
-    choice = StackChoice(
-        tmp_path / "data", lockstep=False, seed=1, ros=str(robot.file), environment=robot.variables
-    )
-    with running(robot) as up, open_stack(choice) as opened, judged(up, opened.bus):
+    with running_stack(robot, StackChoice(tmp_path / "data", seed=1)) as opened:
         yield opened
 
 

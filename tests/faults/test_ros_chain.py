@@ -14,19 +14,12 @@ import pytest
 
 from shared.bus import wait_until
 from tests.faults.watching import Watch, exploring
-from tests.integration.ros.conftest import ROS_PYTHON
-from tests.theta_robot import NO_ROS, ThetaRobot, theta_robot
+from tests.theta_robot import IN_ROS, ThetaRobot, theta_robot
 
 EVENTS = int(os.environ.get("ROS_EVENTS", "8"))
 """100 for the figure in deploy/MEASURED.md."""
 
-pytestmark = [
-    pytest.mark.render,
-    pytest.mark.slow,
-    pytest.mark.timeout(300 + 60 * EVENTS),
-    pytest.mark.usefixtures("patient_sessions"),
-    pytest.mark.skipif(not ROS_PYTHON.exists(), reason=NO_ROS),
-]
+pytestmark = [*IN_ROS, pytest.mark.timeout(300 + 60 * EVENTS)]
 
 STOPS_THE_BASE = ("ros", "drive", "planner", "features", "camera")
 STOPS_HEADINGS = ("planner", "features", "camera")

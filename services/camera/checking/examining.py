@@ -16,7 +16,7 @@ from services.camera.checking.report import Mount, Report
 from services.camera.checking.watching import Watched
 from services.camera.frames import FrameMaker, decoded_picture, size_of
 from services.camera.mount.calibration_file import FisheyeCalibration
-from services.camera.mount.orientation import levelled
+from services.camera.mount.orientation import Orientation, levelled
 from services.camera.mount.table import first_lens_sees
 from services.camera.settings import CameraSettings
 from services.camera.source import Picture
@@ -60,7 +60,7 @@ def examine(
         lenses=fisheye is not None,
         delay_s=delay_of(watched.changes, watched.arrivals_s, np.array(watched.parts)),
         clock_jump_s=_jump_s(watched.clock_s),
-        rate_hz=_rate_hz(watched.arrivals_s),
+        rate_hz=rate_hz(watched.arrivals_s),
         longest_pause_s=max(np.diff(watched.arrivals_s), default=None),
     )
     if not frames:
@@ -84,7 +84,7 @@ def _of_frames(
         width_px=frame.width_px,
         height_px=frame.height_px,
         passed_on=frame.data is picture.data,
-        mount=_mount(level, settings),
+        mount=mount_of(level, settings.orientation),
         seam=float(np.median([_seam(settings, fisheye, *one) for one in frames])),
         from_deg=math.degrees(coverage.lowest_rad),
         to_deg=math.degrees(coverage.highest_rad),
@@ -93,11 +93,10 @@ def _of_frames(
     return found, marked(panorama, None if level is None else level.up)
 
 
-def _mount(level: Level | None, settings: CameraSettings) -> Mount | None:
+def mount_of(level: Level | None, now: Orientation) -> Mount | None:
     """The mount that would be level: up in the frame is turned back to the camera's frame first."""
     if level is None:
         return None
-    now = settings.orientation
     then = levelled(now.rotation.T @ level.up, now)
     turns = (math.degrees(one) for one in (level.lean_rad, level.std_rad, then.roll_rad, then.pitch_rad))
     return Mount(*turns)
@@ -113,7 +112,8 @@ def _seam(
     return jump(as_it_came, ends(as_it_came))
 
 
-def _rate_hz(arrivals_s: Sequence[float]) -> float | None:
+def rate_hz(arrivals_s: Sequence[float]) -> float | None:
+    """Pictures a second; None of a single one."""
     span_s = arrivals_s[-1] - arrivals_s[0] if len(arrivals_s) > 1 else 0.0
     return (len(arrivals_s) - 1) / span_s if span_s > 0.0 else None
 

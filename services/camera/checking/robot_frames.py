@@ -9,9 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from services.camera.checking.coverage import coverage_of, ends, jump
+from services.camera.checking.examining import mount_of, rate_hz
 from services.camera.checking.level import level_of
 from services.camera.checking.marking import marked
-from services.camera.checking.report import Mount, Report
+from services.camera.checking.report import Report
+from services.camera.frames import decoded_picture
+from services.camera.mount.orientation import Orientation
+from services.camera.source import Picture
 from shared.messages.sensors import Frame
 
 Image = npt.NDArray[np.uint8]
@@ -24,11 +28,13 @@ def look_at(frames: Sequence[Frame], arrivals_s: Sequence[float], source: str) -
         frames: some of those that came, at least one.
         arrivals_s: when all came, monotonic; at least as many.
         source: what is said to have made them.
+
+    Raises:
+        BadPictureError: a damaged one.
     """
     panoramas = [_panorama(frame) for frame in frames]
     same = [one for one in panoramas if one.shape == panoramas[-1].shape]
     level, coverage = level_of(same[-1]), coverage_of(same)
-    gaps_s = np.diff(arrivals_s)
     report = Report(
         source=source,
         live=True,
@@ -41,9 +47,9 @@ def look_at(frames: Sequence[Frame], arrivals_s: Sequence[float], source: str) -
         lenses=False,
         width_px=frames[-1].width_px,
         height_px=frames[-1].height_px,
-        rate_hz=float(len(gaps_s) / gaps_s.sum()) if len(gaps_s) else None,
-        longest_pause_s=float(gaps_s.max()) if len(gaps_s) else None,
-        mount=None if level is None else _mount(level.up, level.lean_rad, level.std_rad),
+        rate_hz=rate_hz(arrivals_s),
+        longest_pause_s=max(np.diff(arrivals_s), default=None),
+        mount=mount_of(level, Orientation()),
         seam=float(np.median([jump(one, ends(one)) for one in same])),
         from_deg=math.degrees(coverage.lowest_rad),
         to_deg=math.degrees(coverage.highest_rad),
@@ -53,14 +59,7 @@ def look_at(frames: Sequence[Frame], arrivals_s: Sequence[float], source: str) -
     return report, cv2.imencode(".png", picture)[1].tobytes()
 
 
-def _mount(up: npt.NDArray[np.float64], lean_rad: float, std_rad: float) -> Mount:
-    """Roll and pitch by which the camera's own settings would have to change."""
-    roll_rad, pitch_rad = math.atan2(up[1], up[2]), math.atan2(-up[0], math.hypot(up[1], up[2]))
-    return Mount(*(math.degrees(one) for one in (lean_rad, std_rad, roll_rad, pitch_rad)))
-
-
 def _panorama(frame: Frame) -> Image:
-    data = np.frombuffer(frame.data, np.uint8)
     if frame.encoding == "jpeg":
-        return np.asarray(cv2.imdecode(data, cv2.IMREAD_COLOR), dtype=np.uint8)
-    return data.reshape(frame.height_px, frame.width_px, 3)
+        return decoded_picture(Picture(frame.data, frame.stamp_ns), frame.width_px)
+    return np.frombuffer(frame.data, np.uint8).reshape(frame.height_px, frame.width_px, 3)

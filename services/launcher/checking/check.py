@@ -3,6 +3,7 @@
 import threading
 import time
 from collections.abc import Callable
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
@@ -13,7 +14,7 @@ from services.camera.checking.report import problems as camera_problems
 from services.camera.checking.robot_frames import look_at
 from services.launcher.checking import distances, moving, report
 from services.launcher.checking.looking import Looked, Looker, last_words
-from services.launcher.checking.motion import MOVES, Seen, motion_problems
+from services.launcher.checking.motion import MOVES, Move, Seen, motion_problems
 from services.launcher.client.failure import ExperimentError
 from services.launcher.client.hand import Hand
 from shared.bus import Bus
@@ -33,7 +34,6 @@ TOLD = ("camera", "rate", "frames", "level", "seam", "coverage")
 SERVICES = {
     "ros": "the robot in ROS",
     "camera": "the camera",
-    "robot-guard": "the guard",
     "features": "features",
 }
 
@@ -98,15 +98,11 @@ class RobotCheck:
             ExperimentError: a mission runs, there is no room anywhere, or nobody obeys.
         """
         self._require_idle()
-        hand = Hand(self._bus, self._robot, self._who)
         seen: list[Seen] = []
         for move in MOVES:
-            free_m = distances.free_m(self._distances(), move.direction_rad)
-            if free_m < ROOM_M and not move.turn_rad:
-                self._say("move", f"{move.name}: not made, {free_m:.2f} m free of {ROOM_M} needed")
-                continue
-            seen.append(moving.make(move, hand, self._looker))
-            self._say(*report.move_line(seen[-1]))
+            if self._has_room(move):
+                seen.append(moving.make(move, self._hand, self._looker))
+                self._say(*report.move_line(seen[-1]))
         if all(one.move.turn_rad for one in seen):
             raise ExperimentError(f"something is near on all sides: {ROOM_M} m free are needed to move")
         if all(one.told_share == 0.0 for one in seen):
@@ -121,7 +117,7 @@ class RobotCheck:
 
         The stop is cleared only by who saw that it holds: where it does not, it stays engaged.
         """
-        hand = Hand(self._bus, self._robot, self._who)
+        hand = self._hand
         hand.move(STOP_MPS, 0.0, 0.0, STOP_DRIVE_S)
         let_go_s = self._stood_after_s(time.time_ns())
         hand.move(-STOP_MPS, 0.0, 0.0, STOP_DRIVE_S)
@@ -133,7 +129,7 @@ class RobotCheck:
         self._estop("engage")
         estop_s = self._stood_after_s(engaged_ns)
         driven.join()
-        obeyed = self._stands_under_it(hand)
+        obeyed = self._stands_under_it()
         problems = report.stop_problems(report.Stops(let_go_s, estop_s, obeyed))
         self._wrong(problems)
         if problems:
@@ -174,6 +170,19 @@ class RobotCheck:
         told = np.median([one.distances_m for one in looked.ranges], axis=0)
         return [float(one) for one in told]
 
+    @cached_property
+    def _hand(self) -> Hand:
+        return Hand(self._bus, self._robot, self._who)
+
+    def _has_room(self, move: Move) -> bool:
+        """Whether a move touches nothing; a turn on the spot never does, for the body is round."""
+        if move.turn_rad:
+            return True
+        free_m = distances.free_m(self._distances(), move.direction_rad)
+        if free_m < ROOM_M:
+            self._say("move", f"{move.name}: not made, {free_m:.2f} m free of {ROOM_M} needed")
+        return free_m >= ROOM_M
+
     def _require_idle(self) -> None:
         try:
             state = self._bus.ask(MISSION, MissionRequest(action="status"), ASK_S, robot=self._robot).state
@@ -202,13 +211,13 @@ class RobotCheck:
         self._looker.look(3.0 * report.STOP_S)
         return moving.stopped_after_s(self._looker.odometry, from_ns)
 
-    def _stands_under_it(self, hand: Hand) -> bool:
+    def _stands_under_it(self) -> bool:
         """Whether it stays where it is though a person drives it."""
         began_ns = time.time_ns()
-        told = hand.move(-STOP_MPS, 0.0, 0.0, STOP_DRIVE_S)
+        told = self._hand.move(-STOP_MPS, 0.0, 0.0, STOP_DRIVE_S)
         self._looker.follow()
         rolled = any(moving.moves(one) for one in self._looker.odometry if one.stamp_ns > began_ns)
-        return not rolled and not any(velocity.speed_mps for _, velocity in told)
+        return not rolled and not any(velocity.speed_mps for velocity in told)
 
     def _wrong(self, problems: list[str]) -> None:
         for one in problems:

@@ -64,4 +64,4 @@ def range_problems(readings_m: Sequence[Sequence[float]], max_range_m: float) ->
 
 
 def _degrees(sectors: int) -> int:
-    return round(math.degrees(math.remainder(math.radians(sectors * DEG_PER_SECTOR), math.tau)))
+    return round(math.remainder(sectors * DEG_PER_SECTOR, 360))

@@ -5,8 +5,10 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from services.launcher.client.failure import ExperimentError
+from services.launcher.processes.wait import log_lines
 from shared.bus import Bus
 from shared.messages.body import Odometry
 from shared.messages.features import Features
@@ -21,7 +23,7 @@ KEPT = 6
 FRESH_S = 10.0
 """Longest wait for a picture's features; chosen: three a second, 0.6 s late, on a busy machine."""
 MATCH_S = 10.0
-SAYS = {"WARNING", "ERROR"}
+SAYS, LAST_LINES = {"WARNING", "ERROR"}, 50
 MAP = "none"
 """No node of any map is asked for."""
 
@@ -110,9 +112,16 @@ def last_words(logs: Path, services: Mapping[str, str], since_s: float) -> list[
     since = time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(since_s))
     found = []
     for name, called in services.items():
-        path = logs / f"{name}.jsonl"
-        lines = path.read_text(encoding="utf-8").splitlines()[-50:] if path.exists() else []
-        entries = [json.loads(line) for line in lines if line.startswith("{")]
-        texts = [one["text"] for one in entries if one["level"] in SAYS and one["time"] >= since]
+        entries = [_entry(line) for line in log_lines(logs / f"{name}.jsonl")[-LAST_LINES:]]
+        texts = [one["text"] for one in entries if one.get("level") in SAYS and one["time"] >= since]
         found += [f"{called} says: {text}" for text in dict.fromkeys(texts)]
     return found
+
+
+def _entry(line: str) -> dict[str, Any]:
+    """A line of a log; empty for one that is half written, or of a program that knows no JSON."""
+    try:
+        entry = json.loads(line)
+    except ValueError:
+        return {}
+    return entry if isinstance(entry, dict) else {}

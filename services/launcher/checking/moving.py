@@ -43,15 +43,14 @@ def make(move: Move, hand: Hand, looker: Looker) -> Seen:
     )
 
 
-def _share(move: Move, told: Sequence[tuple[float, Velocity]], seconds: float) -> float:
+def _share(move: Move, told: Sequence[Velocity], seconds: float) -> float:
     """How much of a move drive told the base: the mean of what it said, against the wish."""
     if not told:
         return 0.0
     wished = (move.forward_m / seconds, move.left_m / seconds, move.turn_rad / seconds)
     length = sum(one * one for one in wished)
     shares = [
-        (v.forward_mps * wished[0] + v.left_mps * wished[1] + v.turn_radps * wished[2]) / length
-        for _, v in told
+        (v.forward_mps * wished[0] + v.left_mps * wished[1] + v.turn_radps * wished[2]) / length for v in told
     ]
     return sum(shares) / len(shares)
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from services.launcher.checking.motion import Seen, below_above
+from services.launcher.checking.motion import LEAST_TOLD, Seen, below_above
 from shared.messages.sensors import Ranges
 
 STALE_S = 0.6
@@ -61,7 +61,7 @@ def move_line(one: Seen) -> tuple[str, str]:
 
 
 def _told(one: Seen) -> str:
-    if one.told_share < 0.5:
+    if one.told_share < LEAST_TOLD:
         return "not made: the base cannot, or something is near"
     turned = "" if one.match.yaw_rad is None else f", turned {math.degrees(one.match.yaw_rad):+.0f}"
     went = "cannot tell where to" if one.heading_rad is None else f"went {math.degrees(one.heading_rad):+.0f}"

@@ -29,22 +29,16 @@ class Hand:
         self._robot, self._who = robot, who[:64]
         self._told, self._wishes = bus.subscribe(VELOCITY, robot=robot), bus.publisher(MANUAL, robot=robot)
 
-    def move(
-        self, forward_mps: float, left_mps: float, turn_radps: float, seconds: float
-    ) -> list[tuple[float, Velocity]]:
-        """Wish so for a while, then let go.
-
-        Returns:
-            What drive told the base for it, and when that came, monotonic seconds.
-        """
-        answers: list[tuple[float, Velocity]] = []
+    def move(self, forward_mps: float, left_mps: float, turn_radps: float, seconds: float) -> list[Velocity]:
+        """Wish so for a while, then let go; returns what drive told the base for it."""
+        answers: list[Velocity] = []
         self._told.take_all()
         until_s = time.monotonic() + seconds
         try:
             while (now_s := time.monotonic()) < until_s:
                 self._say("drive", forward_mps, left_mps, turn_radps)
                 time.sleep(min(PERIOD_S, until_s - now_s))
-                answers += [(time.monotonic(), one) for one in self._told.take_all() if self._is_mine(one)]
+                answers += [one for one in self._told.take_all() if self._is_mine(one)]
         finally:
             self._say("release")
         return answers

@@ -23,9 +23,8 @@ def demo(
     timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
 ) -> None:
     """Explore the apartment, then find a hidden robot from its picture; ends with the report's path."""
-    from services.launcher.client.failure import ExperimentError
     from services.launcher.client.stack import StackChoice, open_stack
-    from services.launcher.evaluation.demo import Scene, explore_scene, report, seek_hidden_robot
+    from services.launcher.evaluation.demo import Scene, play, require_found
     from services.launcher.processes.stack_settings import Ports
     from services.launcher.terminal.output import new_run_folder, wide_console
     from shared.lifecycle import stop_on_signals
@@ -40,12 +39,8 @@ def demo(
     choice = StackChoice(scene.folder / "data", world, seed, lockstep=True, ports=ports, timeout_s=timeout_s)
     console.print(f"starting all services, logs in {choice.data_dir / 'launcher' / 'logs'}", highlight=False)
     with open_stack(choice) as stack:
-        console.print(f"all up; watch the robot on {stack.gateway_url}", highlight=False)
-        explored = explore_scene(console, stack, scene, choice.data_dir, explore_steps)
-        found = seek_hidden_robot(console, stack, scene, explored)
-        console.print(f"report: {report(scene, explored, found)}", highlight=False, soft_wrap=True)
+        found = play(console, stack, scene, choice.data_dir, explore_steps)
         if keep:
             console.print(f"everything stays up on {stack.gateway_url}; stop it with Ctrl+C", highlight=False)
             stop_on_signals().wait()
-    if not found.success:
-        raise ExperimentError(f"the hidden robot was not found: {found.run.status.reason}")
+    require_found(found)

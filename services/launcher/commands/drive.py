@@ -41,5 +41,5 @@ def drive(
         answers = Hand(bus, robot, who or getpass.getuser()).move(forward, left, turn, seconds)
     if not answers:
         raise ExperimentError(f"{robot} did not obey: somebody else drives it, or its emergency stop holds")
-    fastest_mps = max(velocity.speed_mps for _, velocity in answers)
+    fastest_mps = max(velocity.speed_mps for velocity in answers)
     typer.echo(f"{robot}: {len(answers)} velocities, at most {fastest_mps:.2f} m/s")

@@ -56,6 +56,25 @@ class Scene:
     folder: Path
 
 
+def play(console: Console, stack: Stack, scene: Scene, data_dir: Path, explore_steps: int) -> Round:
+    """All of it; returns how the seeking went."""
+    console.print(f"all up; watch the robot on {stack.gateway_url}", highlight=False)
+    explored = explore_scene(console, stack, scene, data_dir, explore_steps)
+    found = seek_hidden_robot(console, stack, scene, explored)
+    console.print(f"report: {report(scene, explored, found)}", highlight=False, soft_wrap=True)
+    return found
+
+
+def require_found(found: Round) -> None:
+    """Do nothing where the hidden robot was found.
+
+    Raises:
+        ExperimentError: it was not.
+    """
+    if not found.success:
+        raise ExperimentError(f"the hidden robot was not found: {found.run.status.reason}")
+
+
 def explore_scene(
     console: Console, stack: Stack, scene: Scene, data_dir: Path, max_steps: int
 ) -> Exploration:

@@ -69,8 +69,13 @@ def waiting_for(names: Sequence[str], now: Mapping[str, ServiceStatus], logs: Pa
     return ", ".join(names) + (f" ({started[0]}: {said})" if said else "")
 
 
+def log_lines(log: Path) -> list[str]:
+    """Lines of a service's log; none where there is none."""
+    return log.read_text(encoding="utf-8", errors="replace").splitlines() if log.exists() else []
+
+
 def _said(log: Path) -> str:
-    lines = log.read_text(encoding="utf-8", errors="replace").splitlines() if log.exists() else []
+    lines = log_lines(log)
     try:
         return str(json.loads(lines[-1])["text"])[:120]
     except (IndexError, KeyError, TypeError, ValueError):
@@ -80,5 +85,5 @@ def _said(log: Path) -> str:
 def hint(service: str, logs: Path) -> str:
     """Return the last line of a service's log, and where to read on."""
     path = logs / f"{service}.jsonl"
-    lines = path.read_text(encoding="utf-8", errors="replace").splitlines() if path.exists() else []
+    lines = log_lines(path)
     return f"{lines[-1][:300] if lines else 'its log is empty'} (see {path})"
