@@ -150,6 +150,18 @@ class Simulation:
         """
         return self._picture((x_m, y_m, yaw_rad), motion, rocked)
 
+    def measured_at(
+        self, x_m: float, y_m: float, yaw_rad: float, rocked: PitchRoll = LEVEL
+    ) -> tuple[Image, npt.NDArray[np.float32]]:
+        """What an undisturbed camera at rest sees, and the range of each pixel; for evaluation only.
+
+        Returns:
+            (height, width, 3) BGR, and (height, width) metres along the ray through the middle of the pixel.
+        """
+        pose = (x_m, y_m, yaw_rad)
+        lean = self._camera.lean(self._physics.time_s, (0.0, 0.0, 0.0), rocked)
+        return self._seeing().measured(pose, lean, self._bodies())
+
     def rocked(self) -> PitchRoll:
         """By how much the robot rocks: pitch (nose down) and roll (left up), radians; for evaluation only."""
         return self._camera.rocked()
@@ -226,15 +238,20 @@ class Simulation:
         return View(self.world, (self._parts, self._lights), self.settings, figures)
 
     def _picture(self, camera: Pose2, motion: Pose2, rocked: PitchRoll) -> Image:
+        moment = Moment(self._seed, self._physics.time_s, camera)
+        lean = self._camera.lean(self._physics.time_s, motion, rocked)
+        return self._seeing().picture(camera, motion, lean, self._bodies(), moment)
+
+    def _seeing(self) -> "View":
         if self._view is None:
             raise RuntimeError(
                 "this simulation was made with render=False; set SimulationSettings.render to take pictures"
             )
-        bodies = {name: link.entity.pose for name, link in self._physics.robot.links.items()}
-        walkers = [walker.pose() for walker in self._crowd.walkers]
-        moment = Moment(self._seed, self._physics.time_s, camera)
-        lean = self._camera.lean(self._physics.time_s, motion, rocked)
-        return self._view.picture(camera, motion, lean, Bodies(bodies, self._seen_hider(), walkers), moment)
+        return self._view
+
+    def _bodies(self) -> Bodies:
+        links = {name: link.entity.pose for name, link in self._physics.robot.links.items()}
+        return Bodies(links, self._seen_hider(), [walker.pose() for walker in self._crowd.walkers])
 
     def _seen_hider(self) -> Pose2 | None:
         x_m, y_m, _ = self._physics.robot.pose()

@@ -108,16 +108,29 @@ class RenderScene:
             pose: position on the floor and heading.
             lean: of the camera about its centre, see `simulator.sensors.attitude`.
         """
+        self._expose(pose, lean)
+        size = self._cameras[0].width
+        for k, camera in enumerate(self._cameras):
+            self._faces[k * size : (k + 1) * size] = camera.get_picture("Color")
+        return np.asarray(cv2.cvtColor(self._warp(self._faces), cv2.COLOR_RGBA2BGR), np.uint8)
+
+    def measured_panorama(
+        self, pose: Pose2, lean: Quaternion = UPRIGHT
+    ) -> tuple[Image, npt.NDArray[np.float32]]:
+        """The same picture and the range of each of its pixels: (width / 2, width) metres along the ray."""
+        picture = self.panorama(pose, lean)
+        near, far = self._cameras[0].near, self._cameras[0].far
+        shares = np.concatenate([camera.get_picture("GbufferDepth") for camera in self._cameras])
+        # What Vulkan's projection writes into the depth buffer is even in 1 / depth, 0 at near and 1 at far.
+        return picture, self._warp.ranges(near * far / (far - shares * (far - near)))
+
+    def _expose(self, pose: Pose2, lean: Quaternion) -> None:
         upright = flat_pose(*pose, z_m=self._settings.height_m)
         leans = lean != UPRIGHT
         self._mount.set_pose(upright * sapien.Pose([0.0, 0.0, 0.0], list(lean)) if leans else upright)
         self._scene.update_render()
         for camera in self._cameras:
             camera.take_picture()
-        size = self._cameras[0].width
-        for k, camera in enumerate(self._cameras):
-            self._faces[k * size : (k + 1) * size] = camera.get_picture("Color")
-        return np.asarray(cv2.cvtColor(self._warp(self._faces), cv2.COLOR_RGBA2BGR), np.uint8)
 
     def _add_static(
         self, world: WorldFile, parts: tuple[Part, ...], lights: tuple[Light, ...], cache: DiskCache

@@ -1,5 +1,7 @@
 """The rendered scene with all that moves, and what disturbs the camera."""
 
+import numpy as np
+import numpy.typing as npt
 import sapien
 
 from simulator.disturbances.blur import Motion, mean_picture, poses_of
@@ -67,6 +69,16 @@ class View:
             self._place_robot(bodies, pose[0] - camera[0], pose[1] - camera[1])
             pictures.append(self._scene.panorama(pose, lean))
         return degraded(mean_picture(pictures), self._levels, moment)
+
+    def measured(
+        self, camera: Pose2, lean: Quaternion, bodies: Bodies
+    ) -> tuple[Image, npt.NDArray[np.float32]]:
+        """The same of a camera at rest that nothing disturbs, and metres along the ray of each pixel."""
+        self._scene.move_flat(self._hider, bodies.hider)
+        for entity, pose in zip(self._walkers, bodies.walkers, strict=True):
+            self._scene.move_flat(entity, pose)
+        self._place_robot(bodies, 0.0, 0.0)
+        return self._scene.measured_panorama(camera, lean)
 
     def _place_robot(self, bodies: Bodies, dx_m: float, dy_m: float) -> None:
         """Put the robot's links where they were, which during an exposure is a little further back."""

@@ -7,12 +7,14 @@ within one face and no border shows.
 """
 
 import math
+from functools import cached_property
 
 import cv2
 import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+Float32Array = npt.NDArray[np.float32]
 Image = npt.NDArray[np.uint8]
 BORDER_PX = 2  # beyond 90 degrees on each side of a face: bilinear sampling needs one, rounding another
 
@@ -74,6 +76,7 @@ class CubeToEquirect:
             u[chosen] = face_px / 2.0 - focal * local[:, 1] / local[:, 0] - 0.5
             v[chosen] = face_px / 2.0 - focal * local[:, 2] / local[:, 0] - 0.5 + k * face_px
         self._map, self._weights = cv2.convertMaps(u.astype(np.float32), v.astype(np.float32), cv2.CV_16SC2)
+        self._source, self._forward = (u, v), scores.max(axis=-1).astype(np.float32)
 
     def __call__(self, faces: Image) -> Image:
         """Resample (6 * face_px, face_px, channels) bytes to (width / 2, width, channels)."""
@@ -82,3 +85,18 @@ class CubeToEquirect:
                 f"faces must have shape ({6 * self.face_px}, {self.face_px}, channels), got {faces.shape}"
             )
         return np.asarray(cv2.remap(faces, self._map, self._weights, cv2.INTER_LINEAR), np.uint8)
+
+    def ranges(self, depths_m: Float32Array) -> Float32Array:
+        """Metres along the ray of each pixel, (width / 2, width), from depths along the axes of the faces.
+
+        The nearest sample of a face counts: between two, an edge would get a range at which nothing is.
+
+        Args:
+            depths_m: (6 * face_px, face_px), stacked as the pictures are.
+        """
+        return np.asarray(depths_m.ravel()[self._nearest] / self._forward, np.float32)
+
+    @cached_property
+    def _nearest(self) -> npt.NDArray[np.intp]:
+        column, row = (np.rint(axis).astype(np.intp) for axis in self._source)
+        return row * self.face_px + column
