@@ -156,7 +156,7 @@ class Simulation:
         """What an undisturbed camera at rest sees, and the range of each pixel; for evaluation only.
 
         Returns:
-            (height, width, 3) BGR, and (height, width) metres along the ray through the middle of the pixel.
+            (height, width, 3) BGR, and (height, width) metres along each ray; inf for nothing.
         """
         pose = (x_m, y_m, yaw_rad)
         lean = self._camera.lean(self._physics.time_s, (0.0, 0.0, 0.0), rocked)

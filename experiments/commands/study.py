@@ -9,6 +9,7 @@ from experiments.commands import (
     failures,
     heading,
     heading_frames,
+    keypoints,
     latency,
     localisation,
     matching,
@@ -23,6 +24,7 @@ app = typer.Typer(
 for study in (
     heading,
     heading_frames,
+    keypoints,
     latency,
     localisation,
     cycles,

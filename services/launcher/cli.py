@@ -37,7 +37,7 @@ from services.launcher.commands import (
 ADDED = "topnav.commands"
 """Entry points of this group are Typer apps of further commands."""
 
-STUDIES = ("hide-and-seek", "ros-demo", "suite", "study", "calibrate", "bench", "soak")
+STUDIES = ("hide-and-seek", "ros-demo", "suite", "study", "calibrate", "bench", "soak", "train")
 """Commands of the distribution topnav-studies; without it they say where to get it."""
 
 app = typer.Typer(

@@ -117,12 +117,13 @@ class RenderScene:
     def measured_panorama(
         self, pose: Pose2, lean: Quaternion = UPRIGHT
     ) -> tuple[Image, npt.NDArray[np.float32]]:
-        """The same picture and the range of each of its pixels: (width / 2, width) metres along the ray."""
+        """The same picture and ranges of its pixels, (width / 2, width) metres, inf for nothing."""
         picture = self.panorama(pose, lean)
         near, far = self._cameras[0].near, self._cameras[0].far
         shares = np.concatenate([camera.get_picture("GbufferDepth") for camera in self._cameras])
         # What Vulkan's projection writes into the depth buffer is even in 1 / depth, 0 at near and 1 at far.
-        return picture, self._warp.ranges(near * far / (far - shares * (far - near)))
+        depths = np.where(shares < 1.0, near * far / (far - shares * (far - near)), np.inf)
+        return picture, self._warp.ranges(depths.astype(np.float32))
 
     def _expose(self, pose: Pose2, lean: Quaternion) -> None:
         upright = flat_pose(*pose, z_m=self._settings.height_m)

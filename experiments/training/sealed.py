@@ -1,0 +1,78 @@
+"""Files with the beginning of their checksum in their name: what was cut off or changed is seen and named."""
+
+import hashlib
+import io
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from services.launcher.client.failure import ExperimentError
+
+DIGITS = 16
+"""Of the SHA-256, hexadecimal: chance takes a changed file for whole once in 10^19."""
+
+
+def write_sealed(folder: Path, stem: str, suffix: str, data: bytes) -> Path:
+    """Write `folder`/`stem`-CHECKSUM`suffix` in one step, and take away what had the same stem."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{stem}-{_seal(data)}{suffix}"
+    new = path.with_name(path.name + ".new")
+    new.write_bytes(data)
+    new.replace(path)
+    for other in sealed_files(folder, stem, suffix):
+        if other != path:
+            other.unlink()
+    return path
+
+
+def sealed_files(folder: Path, stem: str, suffix: str) -> list[Path]:
+    """Files of a stem, which may hold wildcards, by name."""
+    return sorted(folder.glob(f"{stem}-{'[0-9a-f]' * DIGITS}{suffix}"))
+
+
+def read_sealed(path: Path, what: str, remedy: str) -> bytes:
+    """The contents.
+
+    Args:
+        path: of a file that `write_sealed` wrote.
+        what: it is, for the message.
+        remedy: what to do about a broken one, for the message.
+
+    Raises:
+        ExperimentError: it is not there, or not what was written.
+    """
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise ExperimentError(f"{what} {path} cannot be read ({error.strerror}): {remedy}") from error
+    wanted, found = path.name.removesuffix(path.suffix)[-DIGITS:], _seal(data)
+    if found != wanted:
+        raise ExperimentError(
+            f"{what} {path} is corrupted: its name promises checksum {wanted}, its {len(data)} bytes "
+            f"have {found}: {remedy}"
+        )
+    return data
+
+
+def packed(arrays: Mapping[str, npt.NDArray[Any]], about: Mapping[str, Any]) -> bytes:
+    """Arrays and a description (JSON) as one compressed file of numpy."""
+    stream = io.BytesIO()
+    text = np.frombuffer(json.dumps(about, sort_keys=True).encode(), np.uint8)
+    np.savez_compressed(stream, about=text, **arrays)
+    return stream.getvalue()
+
+
+def unpacked(data: bytes) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any]]:
+    """What `packed` put together."""
+    with np.load(io.BytesIO(data), allow_pickle=False) as kept:
+        arrays = {name: kept[name] for name in kept.files}
+    about: dict[str, Any] = json.loads(arrays.pop("about").tobytes())
+    return arrays, about
+
+
+def _seal(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()[:DIGITS]
