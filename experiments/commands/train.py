@@ -52,3 +52,84 @@ def data(
     count = sum(len(shard.pairs) for shard in found)
     bytes_ = sum(plan.done.stat().st_size for plan in plans if plan.done is not None)
     print_figures("pairs to train on", {**figures, "pairs": count, "megabytes": round(bytes_ / 1e6)})
+
+
+@app.command("residual")
+def residual(
+    pairs: Annotated[Path, typer.Option(help="Folder of shards of 'topnav train data'.")] = DATA,
+    into: Annotated[Path, typer.Option(help="Folder of checkpoints and log.")] = MODELS / "residual",
+    recipe: RecipeFile = None,
+    until: Annotated[int | None, typer.Option(min=1, help="Stop early after this step.")] = None,
+) -> None:
+    """A residual on root SIFT; goes on from the last checkpoint to the same result as if never cut off."""
+    from dataclasses import replace
+
+    from rich.progress import Progress
+
+    from experiments.training.data.shards import shard_files
+    from experiments.training.learning.running import run
+    from experiments.training.recipe import recipe_from
+    from experiments.training.residual.recipe import ResidualRecipe, batch_loss, network_of
+    from experiments.training.residual.samples import samples_of
+    from services.features.pipeline.named_pipelines import find_profile
+    from services.features.pipeline.pipeline import Pipeline
+    from services.launcher.client.failure import ExperimentError
+    from services.launcher.terminal.output import print_figures, wide_console
+
+    chosen = recipe_from(ResidualRecipe, recipe)
+    pipeline = Pipeline(replace(find_profile("sift"), keypoints=chosen.keypoints))
+    samples = samples_of(shard_files(pairs), pipeline)
+    if not samples:
+        raise ExperimentError(f"no pair in {pairs} has enough common keypoints: draw more pairs")
+    with Progress(console=wide_console(stderr=True), transient=True) as progress:
+        task = progress.add_task("steps", total=chosen.schedule.steps)
+        reached = run(
+            network_of(chosen),
+            lambda network, rng: batch_loss(network, samples, chosen, rng),
+            chosen.schedule,
+            chosen,
+            into,
+            lambda step: progress.update(task, completed=step),
+            until,
+        )
+    print_figures("residual", {"folder": str(into), "pairs": len(samples), "steps": reached})
+
+
+@app.command("evaluate")
+def evaluate(
+    trained: Annotated[Path, typer.Option(help="Folder of 'topnav train residual'.")] = MODELS / "residual",
+    against: Annotated[str, typer.Option(help="Pipelines to compare with.")] = "sift,aliked-t16,aliked-n16",
+    into: Annotated[Path, typer.Option(help="Folder of the pairs it is judged on.")] = MODELS / "judged",
+    worlds: Annotated[int, typer.Option(min=1, help="Validation worlds, kinds and sizes in turn.")] = 10,
+    pairs: Annotated[int, typer.Option(min=1, help="Per world, 0.3 to 6 m apart.")] = 20,
+    jobs: Jobs = 1,
+    seed: options.Seed = 1,
+    json_file: options.JsonFile = None,
+) -> None:
+    """Ours and others on the same pairs of validation worlds, as the simulated camera takes them."""
+    from experiments.training.data.drawn import make_missing, plan_shards
+    from experiments.training.data.recipe import DataRecipe
+    from experiments.training.data.shards import read_shard
+    from experiments.training.evaluation.measure import judge
+    from experiments.training.evaluation.models import there_already, trained_residual
+    from experiments.training.worlds import first_worlds
+    from services.features.networks.runtime import WeightsError
+    from services.launcher.terminal.output import print_rows, write_json
+
+    ours = trained_residual(trained)
+    recipe = DataRecipe.plain(seed, (0.3, 6.0))
+    plans = plan_shards(first_worlds("validation", worlds), "validation", 1, pairs, recipe, into)
+    make_missing(plans, jobs)
+    judged = [pair for plan in plans if plan.done is not None for pair in read_shard(plan.done).pairs]
+    rows = []
+    for name in [one.strip() for one in against.split(",") if one.strip()]:
+        try:
+            rows.append(judge(there_already(name), judged))
+        except WeightsError as error:
+            rows.append({"name": name, "status": f"no weights: {error}"})
+    rows.append(judge(ours, judged))
+    write_json(json_file, {"pairs": len(judged), "seed": seed, "models": rows})
+    measured = [row for row in rows if "status" not in row]
+    print_rows("on validation worlds", [
+        {k: row[k] for k in ("name", "bytes", "ms_frame", "ms_pair")} | row["renderings"] for row in measured
+    ])  # fmt: skip

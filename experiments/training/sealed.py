@@ -58,11 +58,11 @@ def read_sealed(path: Path, what: str, remedy: str) -> bytes:
     return data
 
 
-def packed(arrays: Mapping[str, npt.NDArray[Any]], about: Mapping[str, Any]) -> bytes:
+def packed(arrays: Mapping[str, Any], about: Mapping[str, Any]) -> bytes:
     """Arrays and a description (JSON) as one compressed file of numpy."""
     stream = io.BytesIO()
     text = np.frombuffer(json.dumps(about, sort_keys=True).encode(), np.uint8)
-    np.savez_compressed(stream, about=text, **arrays)
+    np.savez_compressed(stream, **{**arrays, "about": text})
     return stream.getvalue()
 
 

@@ -37,7 +37,7 @@ def draw_strangers(world: WorldFile, space: FreeSpace, rng: np.random.Generator)
 def _same_spot(
     first: Room, second: Room, rng: np.random.Generator
 ) -> tuple[tuple[float, float], tuple[float, float], float]:
-    """A place in the first room, its twin in the second, and by how much that is turned: by half if at all."""
+    """A place in the first room, its twin in the second, and the turn of the second: half or none."""
     share = rng.random(2)
     half = bool(rng.random() < 0.5)
     other = 1.0 - share if half else share

@@ -76,9 +76,11 @@ def make_shard(plan: ShardPlan) -> int:
     space = free_space(world)
     poses = [pair for _ in range(plan.pairs) if (pair := _draw(world, space, recipe, rng)) is not None]
     sights: list[list[Sight]] = []
-    for conditions, at in zip(ends, (lambda p: p.current, lambda p: p.target), strict=True):
+    for conditions, taken_at in zip(
+        ends, ([pair.current for pair in poses], [pair.target for pair in poses]), strict=True
+    ):
         photographer = Photographer(world, conditions, recipe.width_px)
-        sights.append([photographer.sight(at(pair), draw_tilt(rng, recipe.tilt_rad)) for pair in poses])
+        sights.append([photographer.sight(pose, draw_tilt(rng, recipe.tilt_rad)) for pose in taken_at])
     pairs = [
         Pair(one, two, (_overlap(one, two), _overlap(two, one))) for one, two in zip(*sights, strict=True)
     ]

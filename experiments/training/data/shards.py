@@ -79,7 +79,7 @@ def read_shard(path: Path) -> Shard:
         )
     ends = np.cumsum(arrays["jpeg_bytes"])[:-1]
     sights = [
-        Sight(_decoded(path, jpeg), ranges, CameraPose(*row[:4], tilt=(row[4], row[5])))
+        Sight(_decoded(path, jpeg), ranges, CameraPose(row[0], row[1], row[2], row[3], (row[4], row[5])))
         for jpeg, ranges, row in zip(
             np.split(arrays["jpegs"], ends), arrays["ranges_m"], arrays["poses"].tolist(), strict=True
         )

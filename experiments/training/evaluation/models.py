@@ -1,0 +1,83 @@
+"""What is compared: pipelines that are there, and a checkpoint of ours on top of SIFT."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from experiments.training.learning.checkpoints import SUFFIX, resume
+from experiments.training.learning.running import RECIPE
+from experiments.training.recipe import recipe_from
+from experiments.training.residual.network import context_of
+from experiments.training.residual.recipe import ResidualRecipe, network_of
+from experiments.training.sealed import sealed_files
+from experiments.training.sights import Image
+from services.features.networks.runtime import unit_descriptors
+from services.features.pipeline.extraction import extract
+from services.features.pipeline.interfaces import FeatureSet
+from services.features.pipeline.named_pipelines import find_profile
+from services.features.pipeline.pipeline import Pipeline
+from services.launcher.client.failure import ExperimentError
+
+OURS = "residual"
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """One row of the table.
+
+    Attributes:
+        name: of it.
+        size_bytes: of its weights; 0 for none of ours.
+        pipeline: whose matcher and verification answer.
+        features: of a panorama.
+    """
+
+    name: str
+    size_bytes: int
+    pipeline: Pipeline
+    features: Callable[[Image], FeatureSet]
+
+
+def there_already(name: str) -> Model:
+    """A pipeline by name.
+
+    Raises:
+        ValueError: no such pipeline.
+        WeightsError: its weights are not here.
+    """
+    pipeline = Pipeline(find_profile(name))
+    return Model(name, 0, pipeline, lambda picture: _extracted(picture, pipeline))
+
+
+def trained_residual(folder: Path) -> Model:
+    """The newest checkpoint of `topnav train residual`.
+
+    Raises:
+        ExperimentError: there is none, or it is corrupted.
+    """
+    files = sealed_files(folder, "step-*", SUFFIX)
+    if not files:
+        raise ExperimentError(
+            f"no checkpoint in {folder}: train one with 'topnav train residual --into {folder}'"
+        )
+    recipe = recipe_from(ResidualRecipe, folder / RECIPE)
+    network = network_of(recipe)
+    resume(folder, network, torch.optim.Adam(network.parameters()))
+    pipeline = Pipeline(replace(find_profile("sift"), keypoints=recipe.keypoints))
+
+    def features(picture: Image) -> FeatureSet:
+        found = _extracted(picture, pipeline)
+        with torch.inference_mode():
+            raw = torch.from_numpy(found.descriptors.astype(np.float32))
+            new = network(raw, torch.from_numpy(context_of(found)))
+        return replace(found, descriptors=unit_descriptors(new))
+
+    size = sum(4 * value.numel() for value in network.state_dict().values())
+    return Model(OURS, size, pipeline, features)
+
+
+def _extracted(picture: Image, pipeline: Pipeline) -> FeatureSet:
+    return extract(picture, pipeline.extractor, pipeline.representation, pipeline.profile)

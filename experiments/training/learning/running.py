@@ -1,0 +1,96 @@
+"""The loop of every recipe. Step k draws from a generator of (seed, k), wherever it was cut off."""
+
+import json
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from experiments.training.learning.checkpoints import keep, resume
+from experiments.training.recipe import Recipe
+from services.launcher.client.failure import ExperimentError
+
+LossOf = Callable[[torch.nn.Module, np.random.Generator], torch.Tensor]
+RECIPE, LOG = "recipe.json", "log.jsonl"
+
+
+class Schedule(Recipe):
+    """How long and how fast.
+
+    Attributes:
+        seed: of the network's first parameters and of every batch.
+        steps: batches in all.
+        rate: of Adam at first; it falls to 0 along half a cosine.
+        kept_every: steps between checkpoints and lines of the log.
+        threads: cores; another number may round otherwise.
+    """
+
+    seed: int = 1
+    steps: int = 2000
+    rate: float = 1e-3
+    kept_every: int = 100
+    threads: int = 2
+
+
+def run(
+    network: torch.nn.Module,
+    loss_of: LossOf,
+    schedule: Schedule,
+    recipe: Recipe,
+    folder: Path,
+    tick: Callable[[int], None] | None = None,
+    until: int | None = None,
+) -> int:
+    """Train from the last checkpoint on, to `until` or the end.
+
+    Args:
+        network: as it begins; changed in place.
+        loss_of: a step's loss, its batch drawn from the generator it gets.
+        schedule: how long.
+        recipe: everything that the result depends on; a folder belongs to one.
+        folder: of checkpoints and log.
+        tick: hears of every step.
+        until: stop early after this step, with a checkpoint.
+
+    Returns:
+        The step that was reached.
+
+    Raises:
+        ExperimentError: the folder is of another recipe, or its checkpoint is corrupted.
+    """
+    _require_same(recipe, folder)
+    torch.set_num_threads(schedule.threads)
+    optimiser = torch.optim.Adam(network.parameters(), lr=schedule.rate)
+    step, began = resume(folder, network, optimiser), time.monotonic()
+    last = min(schedule.steps, until if until is not None else schedule.steps)
+    while step < last:
+        for group in optimiser.param_groups:
+            group["lr"] = 0.5 * schedule.rate * (1.0 + np.cos(np.pi * step / schedule.steps))
+        optimiser.zero_grad()
+        loss = loss_of(network, np.random.default_rng([schedule.seed, step]))
+        loss.backward()
+        optimiser.step()
+        step += 1
+        if tick is not None:
+            tick(step)
+        if step % schedule.kept_every == 0 or step == last:
+            keep(folder, step, network, optimiser)
+            line = {
+                "step": step,
+                "loss": round(float(loss.detach()), 6),
+                "time_s": round(time.monotonic() - began, 1),
+            }
+            with (folder / LOG).open("a", encoding="utf-8") as log:
+                log.write(json.dumps(line) + "\n")
+    return step
+
+
+def _require_same(recipe: Recipe, folder: Path) -> None:
+    text, path = recipe.model_dump_json(indent=2) + "\n", folder / RECIPE
+    folder.mkdir(parents=True, exist_ok=True)
+    if not path.exists():
+        path.write_text(text, encoding="utf-8")
+    elif path.read_text(encoding="utf-8") != text:
+        raise ExperimentError(f"{path} is another recipe than the one asked for: choose another folder")
