@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from services.launcher.terminal import options
+
 app = typer.Typer(
     name="train", no_args_is_help=True, help="Train features and a matcher of our own on rendered worlds."
 )

@@ -16,7 +16,7 @@ SIZE_RAD, SCORE = 0.05, 0.1
 """Typical size and strength of SIFT's keypoints, so that their logarithms are about 0."""
 
 
-class Residual(torch.nn.Module):
+class Residual(torch.nn.Module):  # type: ignore[misc] # torch is not followed, see pyproject.toml
     """(N, 128) root SIFT and (N, 4) context to (N, 128) unit vectors."""
 
     def __init__(self, hidden: int) -> None:

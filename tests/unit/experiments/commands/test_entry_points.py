@@ -16,7 +16,7 @@ from tests.unit.services.launcher.test_cli import HEAVY
 PROJECT = Path(__file__).resolve().parents[4] / "experiments" / "pyproject.toml"
 DECLARED = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]["entry-points"][cli.ADDED]
 STUDIES = {"heading", "heading-frames", "disturbance", "disturbance-matches", "failures", "matching"}
-STUDIES |= {"photographs", "recovery", "scale"}
+STUDIES |= {"keypoints", "photographs", "recovery", "scale"}
 
 
 @pytest.fixture(scope="module")

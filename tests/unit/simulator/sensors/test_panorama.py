@@ -85,3 +85,16 @@ def test_faces_see_a_little_beyond_a_right_angle():
 def test_wrong_face_size_is_named():
     with pytest.raises(ValueError, match=r"\(1008, 168, channels\), got \(6, 4, 3\)"):
         CubeToEquirect(WIDTH, FACE)(np.zeros((6, 4, 3), np.uint8))
+
+
+def test_ranges_of_a_wall_are_along_the_rays_and_not_along_the_axes_of_the_faces():
+    """Faces of a cube 2 m before the camera on every side: each has one depth, corners are further away."""
+    ranges = CubeToEquirect(WIDTH, FACE).ranges(np.full((6 * FACE, FACE), 2.0, np.float32))
+    np.testing.assert_allclose(ranges, 2.0 / np.abs(directions(WIDTH)).max(axis=-1), rtol=1e-5)
+
+
+def test_ranges_take_one_sample_and_invent_none_between_two():
+    depths = np.where(np.arange(FACE) % 8 < 4, 1.0, 5.0).astype(np.float32) * np.ones((6 * FACE, 1), np.float32)
+    warp = CubeToEquirect(WIDTH, FACE)
+    along = warp.ranges(depths) * np.abs(directions(WIDTH)).max(axis=-1)
+    assert set(np.round(along, 3).ravel().tolist()) == {1.0, 5.0}
