@@ -24,14 +24,15 @@ class Schedule(Recipe):
         steps: batches in all.
         rate: of Adam at first; it falls to 0 along half a cosine.
         kept_every: steps between checkpoints and lines of the log.
-        threads: cores; another number may round otherwise.
+        threads: cores; another number may round otherwise. On two busy cores one made 100 steps of the
+            residual in 9 s, two did not in 80.
     """
 
     seed: int = 1
     steps: int = 2000
     rate: float = 1e-3
     kept_every: int = 100
-    threads: int = 2
+    threads: int = 1
 
 
 def run(
