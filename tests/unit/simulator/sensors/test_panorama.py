@@ -94,7 +94,8 @@ def test_ranges_of_a_wall_are_along_the_rays_and_not_along_the_axes_of_the_faces
 
 
 def test_ranges_take_one_sample_and_invent_none_between_two():
-    depths = np.where(np.arange(FACE) % 8 < 4, 1.0, 5.0).astype(np.float32) * np.ones((6 * FACE, 1), np.float32)
+    row = np.where(np.arange(FACE) % 8 < 4, 1.0, 5.0).astype(np.float32)
+    depths = np.tile(row, (6 * FACE, 1))
     warp = CubeToEquirect(WIDTH, FACE)
     along = warp.ranges(depths) * np.abs(directions(WIDTH)).max(axis=-1)
     assert set(np.round(along, 3).ravel().tolist()) == {1.0, 5.0}
