@@ -9,6 +9,7 @@ from shared.mapgraph.operations import Draft
 from shared.mapgraph.operations import EdgeKey as EdgeKey
 from shared.mapgraph.triangle import Sight
 from shared.messages.maps import AddNode, Edge, Node, Operation, UpdateNode
+from shared.messages.places import Place, Rule, key_of
 
 Made = TypeVar("Made")
 
@@ -22,11 +23,23 @@ def edge_key(first: int, second: int) -> EdgeKey:
 
 
 class MapGraph:
-    """Undirected graph of nodes (thesis section 4.2); once it was asked, only `apply` changes it."""
+    """Undirected graph of nodes (thesis section 4.2); once it was asked, only `apply` changes it.
 
-    def __init__(self, nodes: Iterable[Node] = (), edges: Iterable[Edge] = ()) -> None:
+    Attributes:
+        places, rules: marks that people made on the map, by the keys of their names.
+    """
+
+    def __init__(
+        self,
+        nodes: Iterable[Node] = (),
+        edges: Iterable[Edge] = (),
+        places: Iterable[Place] = (),
+        rules: Iterable[Rule] = (),
+    ) -> None:
         self.nodes = {node.node_id: node for node in nodes}
         self.edges = {(edge.a, edge.b): edge for edge in edges}
+        self.places = {key_of(place.name): place for place in places}
+        self.rules = {key_of(rule.name): rule for rule in rules}
         self._made: dict[Hashable, Any] = {}
 
     def apply(self, operations: Iterable[Operation]) -> None:
@@ -35,7 +48,7 @@ class MapGraph:
         Raises:
             GraphError: they do not fit; those before the one that does not are done.
         """
-        draft = Draft(self.nodes, self.edges)
+        draft = Draft(self.nodes, self.edges, self.places, self.rules)
         for operation in operations:
             match operation:
                 case AddNode(node=node):
@@ -48,7 +61,7 @@ class MapGraph:
                     draft.apply(operation)
 
     def made_once(self, key: Hashable, make: Callable[[], Made]) -> Made:
-        """What `make` makes of nodes' numbers and edges; kept under `key` until they change."""
+        """What `make` makes of nodes' numbers, edges and marks; kept under `key` until they change."""
         found = self._made.get(key, self)
         if found is self:
             found = make()

@@ -16,6 +16,8 @@ OPERATOR = frozenset(
     {
         ("DELETE", "/api/robots/{robot}/estop"),
         ("POST", "/api/maps"),
+        ("PUT", "/api/maps/{map_name}/places"),
+        ("DELETE", "/api/maps/{map_name}/places"),
         ("POST", "/api/robots/{robot}/drive"),
         ("POST", "/api/robots/{robot}/goal-check"),
         ("POST", "/api/robots/{robot}/missions"),

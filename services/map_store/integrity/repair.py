@@ -15,7 +15,7 @@ from services.map_store.storage import answers, blobs, catalogue
 from services.map_store.storage.catalogue import MapRecord
 from services.map_store.storage.graph import AddStoredNode, Graph, Step, apply
 from services.map_store.storage.missions import mend_missions
-from services.map_store.storage.tables import edges, map_blobs, maps, nodes
+from services.map_store.storage.tables import edges, map_blobs, maps, marks, nodes
 from shared.messages.maps import DeleteNode, PutEdge
 
 
@@ -123,7 +123,7 @@ def _give_up_blobs(
 def _remove_strays(connection: Connection) -> None:
     """Rows of maps that are not there: damage changed the number of their map."""
     known = select(maps.c.map_id)
-    for table in (edges, nodes):
+    for table in (edges, nodes, marks):
         rows = connection.execute(select(table).where(table.c.map_id.not_in(known))).all()
         for row in rows:
             if not intact(table, row):

@@ -209,7 +209,7 @@ def test_every_writing_route_is_guarded(store: MapStore):
     writes = [
         (m, p) for p, methods in paths.items() for m in methods if m in {"post", "put", "patch", "delete"}
     ]
-    assert len(writes) == 10
+    assert len(writes) == 14
     for method, path in writes:
         filled = path.format(map="flat", node_id=0, a=0, b=1)
         problem(client.request(method, filled, json={"name": "x"}), 401)

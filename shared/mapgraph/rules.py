@@ -1,0 +1,99 @@
+"""What the rules of a map say at one moment: nodes forbidden, edges closed or slow. Pure."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+from itertools import pairwise
+from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
+
+from shared.messages.places import DAYS, Hours, KeepOut, OneWay, OpeningHours, Place, Rule, Slow, key_of
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Rules as path planning and driving read them.
+
+    Attributes:
+        forbidden: nodes not to be gone to nor through, with the name of the rule.
+        closed: ways from one node to another that are not open now, likewise.
+        slow: share of the usual speed, by way.
+    """
+
+    forbidden: Mapping[int, str] = field(default_factory=dict)
+    closed: Mapping[tuple[int, int], str] = field(default_factory=dict)
+    slow: Mapping[tuple[int, int], float] = field(default_factory=dict)
+
+    def __bool__(self) -> bool:
+        """Whether there is any."""
+        return bool(self.forbidden or self.closed or self.slow)
+
+    def against(self, here: int, there: int) -> str:
+        """Name of the rule against going from one node to another; "" where there is none."""
+        return self.forbidden.get(there) or self.closed.get((here, there), "")
+
+    def against_path(self, path: Iterable[int]) -> str:
+        """Name of the first rule against going on along a path from its first node; "" without any."""
+        return next((rule for a, b in pairwise(path) if (rule := self.against(a, b))), "")
+
+    def speed_share(self, here: int, there: int) -> float:
+        """Of the speed that a robot would have from one node to another."""
+        return self.slow.get((here, there), 1.0)
+
+
+NO_LIMITS = Limits()
+
+
+def limits_at(places: Mapping[str, Place], rules: Iterable[Rule], moment: datetime) -> Limits:
+    """What the rules say.
+
+    Args:
+        places: by the keys of their names.
+        rules: those of the map.
+        moment: with its time zone.
+    """
+    forbidden: dict[int, str] = {}
+    closed: dict[tuple[int, int], str] = {}
+    slow: dict[tuple[int, int], float] = {}
+    for rule in rules:
+        match rule:
+            case KeepOut():
+                inside = (
+                    n for area in rule.areas if key_of(area) in places for n in places[key_of(area)].nodes
+                )
+                forbidden |= dict.fromkeys((*rule.nodes, *inside), rule.name)
+            case OneWay():
+                closed |= {(b, a): rule.name for a, b in rule.edges}
+            case Slow():
+                for way in _both_ways(rule.edges):
+                    slow[way] = min(slow.get(way, 1.0), rule.speed_share)
+            case OpeningHours():
+                if not is_open(rule, moment):
+                    closed |= dict.fromkeys(_both_ways(rule.edges), rule.name)
+    return Limits(forbidden, closed, slow)
+
+
+def is_open(rule: OpeningHours, moment: datetime) -> bool:
+    """Whether the edges are there; a time zone that is not known here is shut, which harms nobody.
+
+    Args:
+        rule: hours of local time.
+        moment: with its time zone.
+    """
+    try:
+        local = moment.astimezone(ZoneInfo(rule.time_zone))
+    except (ZoneInfoNotFoundError, ValueError, OSError):
+        return False
+    return any(_holds(hours, local) for hours in rule.hours)
+
+
+def _holds(hours: Hours, local: datetime) -> bool:
+    clock = f"{local:%H:%M}"
+    today = DAYS[local.weekday()] in hours.days
+    if hours.opens < hours.closes:
+        return today and hours.opens <= clock < hours.closes
+    yesterday = DAYS[(local - timedelta(days=1)).weekday()] in hours.days
+    return (today and clock >= hours.opens) or (yesterday and clock < hours.closes)
+
+
+def _both_ways(edges: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
+    return [way for a, b in edges for way in ((a, b), (b, a))]
