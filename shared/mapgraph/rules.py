@@ -35,6 +35,19 @@ class Limits:
         """Name of the first rule against going on along a path from its first node; "" without any."""
         return next((rule for a, b in pairwise(path) if (rule := self.against(a, b))), "")
 
+    def why_not(self, wanted: Mapping[int, float]) -> str:
+        """Why none of some nodes may be gone to, with the name of the rule.
+
+        Args:
+            wanted: nodes with the cost of the way from each to the goal.
+        """
+        nearest = min(wanted, key=lambda node: (wanted[node], node))
+        if nearest in self.forbidden:
+            return f"the goal is forbidden by rule {self.forbidden[nearest]!r}"
+        rules = [self.forbidden[node] for node in sorted(wanted) if node in self.forbidden]
+        rules += sorted({*self.forbidden.values()})
+        return f"every way to the goal leads through what rule {rules[0]!r} forbids"
+
     def speed_share(self, here: int, there: int) -> float:
         """Of the speed that a robot would have from one node to another."""
         return self.slow.get((here, there), 1.0)

@@ -1,0 +1,139 @@
+"""Whether a straight way comes near nodes that are forbidden, by where the edges put them. Pure."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime
+
+import numpy as np
+import numpy.typing as npt
+
+from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.displacement import Displacement
+from shared.mapgraph.local.hypotheses import NEAR_NODES
+from shared.mapgraph.local.relative_poses import RelativePose, relative_poses
+from shared.mapgraph.local.view_range import openness
+from shared.mapgraph.rules import NO_LIMITS, Limits, limits_at
+
+FloatArray = npt.NDArray[np.float64]
+
+CLEAR_M = 0.6
+"""Distance that a way keeps from a forbidden node in a room; chosen: a bit more than half of the way between
+two nodes there, so that none fits between those of an area."""
+HOPS = 4
+"""Edges from a forbidden node within which ways may lead to it; chosen: three metres in a room."""
+TOUCH_SHARE = 0.95
+"""Of the distance that either end has anyway: a way along an area is none into it; chosen."""
+
+
+@dataclass(frozen=True)
+class KeepClear:
+    """Spots that ways keep clear of, around one node.
+
+    Attributes:
+        poses: of the nodes around it, in its camera frame.
+        spots_m: (K, 2) of the forbidden ones, likewise.
+        clear_m: distance to keep.
+    """
+
+    poses: dict[int, RelativePose]
+    spots_m: FloatArray
+    clear_m: float
+
+    def is_crossed(self, start_m: Sequence[float] | FloatArray, end_m: Sequence[float] | FloatArray) -> bool:
+        """Whether the way between two points (2,) comes nearer to a spot than it may and its start is."""
+        return bool((self._nearest(start_m, end_m) < self._least(start_m)).any())
+
+    def is_crossed_to(self, start_m: Sequence[float] | FloatArray, node_id: int) -> bool:
+        """Whether the way to a node that is allowed crosses: it may end as near to a spot as the node is."""
+        if node_id not in self.poses:
+            return False
+        end_m = self.poses[node_id].position_m
+        least_m = np.minimum(self._least(start_m), self._least(end_m))
+        return bool((self._nearest(start_m, end_m) < least_m).any())
+
+    def _least(self, point_m: Sequence[float] | FloatArray) -> FloatArray:
+        away_m = np.linalg.norm(self.spots_m - np.asarray(point_m), axis=1)
+        return np.asarray(np.minimum(self.clear_m, TOUCH_SHARE * away_m))
+
+    def _nearest(
+        self, start_m: Sequence[float] | FloatArray, end_m: Sequence[float] | FloatArray
+    ) -> FloatArray:
+        """(K,) distance of each spot from the way."""
+        start, along = np.asarray(start_m, dtype=float), np.asarray(end_m, dtype=float) - np.asarray(start_m)
+        share = (self.spots_m - start) @ along / max(float(along @ along), 1e-12)
+        feet = start + np.clip(share, 0.0, 1.0)[:, None] * along
+        return np.asarray(np.linalg.norm(self.spots_m - feet, axis=1))
+
+
+def keep_clear(graph: MapGraph, root: int, forbidden: Collection[int]) -> KeepClear | None:
+    """What ways around a node keep clear of; None where no forbidden node is among those around it."""
+    around = graph.nearest(root, NEAR_NODES)
+    if not any(node in forbidden for node in around):
+        return None
+    poses = relative_poses(graph, root, around, NEAR_NODES)
+    spots = [pose.position_m for node, pose in poses.items() if node in forbidden]
+    return KeepClear(poses, np.array(spots).reshape(-1, 2), CLEAR_M * openness(graph, root))
+
+
+def current_limits(graph: MapGraph, moment: datetime) -> Limits:
+    """What the rules of a map say, edges that lead past a forbidden node too near to it closed as well.
+
+    Reckoned once a minute, and anew when the map changes.
+
+    Args:
+        graph: the map.
+        moment: with its time zone.
+    """
+    if not graph.rules:
+        return NO_LIMITS
+    minute = moment.replace(second=0, microsecond=0)
+    said = graph.made_once(("rules", minute), lambda: limits_at(graph.places, graph.rules.values(), minute))
+    if not said.forbidden:
+        return said
+    nodes = frozenset(said.forbidden)
+    crossing = graph.made_once(("crossing", nodes), lambda: _crossing(graph, said.forbidden))
+    return graph.made_once(("limits", minute), lambda: replace(said, closed={**crossing, **said.closed}))
+
+
+def near_forbidden(graph: MapGraph, forbidden: Collection[int]) -> set[int]:
+    """Nodes from which a way of a few edges may lead to a forbidden one; kept until the map changes."""
+    nodes = frozenset(forbidden)
+    return graph.made_once(
+        ("near forbidden", nodes),
+        lambda: {n for node in nodes if node in graph.nodes for n in graph.within(node, HOPS)},
+    )
+
+
+def _crossing(graph: MapGraph, forbidden: Mapping[int, str]) -> dict[tuple[int, int], str]:
+    """Both ways of the edges between allowed nodes that lead past a forbidden one, with its rule."""
+    found: dict[tuple[int, int], str] = {}
+    near = near_forbidden(graph, forbidden)
+    for node in sorted(near - forbidden.keys()):
+        ends = [n for n in graph.neighbours(node) if n > node and n not in forbidden]
+        around = keep_clear(graph, node, forbidden) if ends else None
+        if around is None:
+            continue
+        rule = next(forbidden[n] for n in around.poses if n in forbidden)
+        for end in ends:
+            if around.is_crossed_to((0.0, 0.0), end):
+                found |= {(node, end): rule, (end, node): rule}
+    return found
+
+
+def clear_nodes(
+    graph: MapGraph, here: Displacement | None, nodes: Collection[int], forbidden: Collection[int]
+) -> list[int]:
+    """Those nodes to which the straight way from the robot keeps clear of forbidden ones.
+
+    Args:
+        graph: the map.
+        here: where the robot is; None where nobody knows: then nothing is known of ways either.
+        nodes: allowed ones in sight.
+        forbidden: nodes not to come near.
+    """
+    if not forbidden or here is None or here.node_id not in graph.nodes:
+        return list(nodes)
+    around = keep_clear(graph, here.node_id, forbidden)
+    if around is None:
+        return list(nodes)
+    return [node for node in nodes if not around.is_crossed_to((here.x_m, here.y_m), node)]
