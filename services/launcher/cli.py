@@ -24,10 +24,12 @@ from services.launcher.commands import (
     map,
     mission,
     models,
+    place,
     record,
     recover,
     replay,
     robot,
+    rule,
     status,
     token,
     up,
@@ -49,7 +51,7 @@ app = typer.Typer(
 )
 for command in (demo, explore, goto, drive, estop, world, models, record, replay, recover, foxglove):
     app.add_typer(command.app)
-for command in (map, mission, camera, robot, certs, token, up, down, status, doctor):
+for command in (map, place, rule, mission, camera, robot, certs, token, up, down, status, doctor):
     app.add_typer(command.app)
 
 

@@ -1,4 +1,4 @@
-"""`topnav goto`: drive to where a picture was taken."""
+"""`topnav goto`: drive to where a picture was taken, to a place by its name, or home."""
 
 from pathlib import Path
 from typing import Annotated
@@ -12,7 +12,11 @@ app = typer.Typer()
 
 @app.command()
 def goto(
-    image: Annotated[Path, typer.Option(help="An equirectangular picture, twice as wide as high.")],
+    image: Annotated[
+        Path | None, typer.Option(help="An equirectangular picture, twice as wide as high.")
+    ] = None,
+    place: Annotated[str | None, typer.Option(help="A place by its name; see 'topnav place'.")] = None,
+    home: Annotated[bool, typer.Option("--home", help="The place called home.")] = False,
     map_name: options.MapName = "flat",
     world: options.World = "apartment",
     seed: options.Seed = 1,
@@ -25,7 +29,7 @@ def goto(
     endpoint: options.Endpoint = None,
     timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
 ) -> None:
-    """Drive to where a picture was taken."""
+    """Drive to where a picture was taken, to a named place, or home: one of the three."""
     from services.launcher.client import failure, maps, mission, stack, trail
     from services.launcher.drawing.pictures import frame_from_file
     from services.launcher.terminal.output import (
@@ -38,6 +42,9 @@ def goto(
     from services.launcher.terminal.progress import mission_progress
     from shared.messages.missions import MissionRequest
 
+    if sum((image is not None, place is not None, home)) != 1:
+        raise typer.BadParameter("one of --image, --place and --home says where to go")
+    goal_name = image.name if image is not None else place or "home"
     choice = stack.StackChoice(
         data_dir, world, seed, lockstep, profile, pipeline, endpoint, timeout_s=timeout_s
     )
@@ -45,13 +52,21 @@ def goto(
         print_warning(stack.other_world(opened, world))
         maps.require_map(opened, map_name)
         client = mission.MissionClient(opened.bus, opened.robot)
-        goal = mission.goal_features(opened.bus, frame_from_file(image, opened.robot))
-        request = MissionRequest(action="goto", map=map_name, goal=goal, seed=seed, max_steps=max_steps)
-        with mission_progress(wide_console(stderr=True), f"going to {image.name}") as watch:
+        goal = image and mission.goal_features(opened.bus, frame_from_file(image, opened.robot))
+        request = MissionRequest(
+            action="home" if home else "goto",
+            map=map_name,
+            goal=goal,
+            parameters={} if place is None else {"place": place},
+            seed=seed,
+            max_steps=max_steps,
+        )
+        with mission_progress(wide_console(stderr=True), f"going to {goal_name}") as watch:
             run = client.run(request, watch)
     report = {
         "map": map_name,
-        "image": str(image),
+        "image": None if image is None else str(image),
+        "place": "home" if home else place,
         "success": run.succeeded,
         "failure": run.status.failure,
         "reason": run.status.reason,
@@ -61,7 +76,7 @@ def goto(
         "steps_per_s": rounded(run.steps_per_s, 2),
     }
     write_json(json_file, report)
-    print_figures(f"goto {image.name}", report)
+    print_figures(f"goto {goal_name}", report)
     if not run.succeeded:
         why = run.status.failure or run.status.state
         raise failure.ExperimentError(f"did not arrive, {why}: {run.status.reason}")

@@ -9,7 +9,6 @@ from services.planner.similarity import ranked, similarity, tells_place, trusted
 from services.planner.surroundings import is_clear, length_m
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
-from shared.mapgraph.local.hypotheses import NEAR_NODES
 from shared.mapgraph.local.keep_clear import clear_nodes, keep_clear
 from shared.mapgraph.routing import HOP_M, UNSEEN_GROUND, EdgeCost, fewest_nodes, way_m
 from shared.mapgraph.rules import Limits
@@ -87,15 +86,6 @@ def allowed_targets(
     if not limits.forbidden:
         return dict(wanted)
     return {node: cost for node, cost in wanted.items() if is_allowed(node)}
-
-
-def is_near_forbidden(graph: MapGraph, here: Displacement | None, limits: Limits) -> bool:
-    """Whether a way across the map, rather than along it, may lead through a keep-out."""
-    if not limits.forbidden:
-        return False
-    if here is None or here.node_id not in graph.nodes:
-        return True
-    return any(node in limits.forbidden for node in graph.nearest(here.node_id, NEAR_NODES))
 
 
 def in_sight(match: NodeMatch, graph: MapGraph, ranges: Ranges, profile: Profile) -> bool:

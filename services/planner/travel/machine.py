@@ -17,7 +17,6 @@ from services.planner.travel.localisation import (
     allowed_targets,
     edge_cost,
     in_sight,
-    is_near_forbidden,
     starts_in_sight,
 )
 from services.planner.travel.path_follower import PathFollower
@@ -27,6 +26,7 @@ from services.planner.travel.tracking import Tracker
 from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.graph import EdgeKey
 from shared.mapgraph.local.displacement import Displacement
+from shared.mapgraph.local.keep_clear import is_near_forbidden
 from shared.mapgraph.routing import GOAL, plan_path
 from shared.messages.missions import FailureKind
 
@@ -108,7 +108,7 @@ class Travel:
         if goal is not None:
             destination.sees(goal, self.tracker.here)
             in_view = in_sight(goal, graph, observation.ranges, profile)
-            free = in_view and not is_near_forbidden(graph, self.tracker.here, limits)
+            free = in_view and not is_near_forbidden(graph, self.tracker.here, limits.forbidden)
             if free and destination.goes_straight(goal, self.tracker.here):
                 self._set_off([GOAL], Event.GOAL_IN_SIGHT)
                 return None

@@ -23,7 +23,7 @@ from services.planner.travel.waypoints import (
     way_left_m,
 )
 from shared.mapgraph.graph import EdgeKey, edge_key
-from shared.mapgraph.local.keep_clear import clear_nodes
+from shared.mapgraph.local.keep_clear import clear_nodes, is_near_forbidden
 from shared.mapgraph.routing import GOAL
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
@@ -206,9 +206,9 @@ class PathFollower:
         self.index, self._best_rad, self._best_s, self._stale = index, math.inf, 0, 0.0
 
     def _may_advance(self, here: NodeMatch | None, there: NodeMatch, later: int, ranges: Ranges) -> bool:
-        if later > self.index + 1 and self._crosses_keep_out(self.path[later]):
-            return False
         beside = later == self.index + 1 and self._is_at(here)
+        if not beside and self._crosses_keep_out(self.path[later]):
+            return False
         aliased_goal = self._destination.aliased and self.path[later] == GOAL
         return may_advance(
             here,
@@ -221,12 +221,13 @@ class PathFollower:
         )
 
     def _crosses_keep_out(self, waypoint: int) -> bool:
-        """Whether the short way past the next waypoint leads where the path goes round."""
-        forbidden, here = self._maps.limits().forbidden, self._tracker.here
+        """Whether the short way to a later waypoint leads where the path goes round."""
+        forbidden, here, graph = self._maps.limits().forbidden, self._tracker.here, self._maps.graph
         if not forbidden:
             return False
-        unknown = here is None or waypoint == GOAL
-        return unknown or waypoint not in clear_nodes(self._maps.graph, here, [waypoint], forbidden)
+        if waypoint == GOAL or here is None:  # where they are is not sure enough to cut a corner
+            return is_near_forbidden(graph, here, forbidden)
+        return waypoint not in clear_nodes(graph, here, [waypoint], forbidden)
 
     def _mark_driven(self, match: NodeMatch | None) -> tuple[Note, ...]:
         """The robot stands at a waypoint: the edge to it has been driven."""

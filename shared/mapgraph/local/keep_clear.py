@@ -120,6 +120,13 @@ def _crossing(graph: MapGraph, forbidden: Mapping[int, str]) -> dict[tuple[int, 
     return found
 
 
+def is_near_forbidden(graph: MapGraph, here: Displacement | None, forbidden: Collection[int]) -> bool:
+    """Whether a forbidden node is among those around the robot; without knowing where it is, one may be."""
+    if not forbidden or here is None or here.node_id not in graph.nodes:
+        return bool(forbidden)
+    return any(node in forbidden for node in graph.nearest(here.node_id, NEAR_NODES))
+
+
 def clear_nodes(
     graph: MapGraph, here: Displacement | None, nodes: Collection[int], forbidden: Collection[int]
 ) -> list[int]:
