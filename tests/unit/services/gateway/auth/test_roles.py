@@ -18,9 +18,13 @@ ADMIN = {
     ("POST", "/api/maps/{map_name}/undo"),
     ("POST", "/api/maps/{map_name}/merge"),
     ("DELETE", "/api/maps/{map_name}/merge"),
+    ("PUT", "/api/maps/{map_name}/rules"),
+    ("DELETE", "/api/maps/{map_name}/rules"),
 }
 OPERATOR = {
     ("POST", "/api/maps"),
+    ("PUT", "/api/maps/{map_name}/places"),
+    ("DELETE", "/api/maps/{map_name}/places"),
     ("POST", "/api/robots/{robot}/missions"),
     ("POST", "/api/robots/{robot}/missions/goto"),
     ("POST", "/api/robots/{robot}/missions/{action}"),
