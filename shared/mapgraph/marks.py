@@ -1,5 +1,6 @@
 """Places and rules of a map as they change: found by name, checked, and freed of nodes that go. Pure."""
 
+import unicodedata
 from collections.abc import Callable, Collection, Container, Iterable, Mapping
 from difflib import get_close_matches
 from typing import TypeVar
@@ -23,12 +24,24 @@ def by_key(marks: Iterable[M]) -> dict[str, M]:
 
 
 def search(text: str, marks: Iterable[M]) -> list[M]:
-    """Those whose names hold a text, those that begin with it first, then those whose names are like it."""
-    known = dict(sorted(by_key(marks).items()))
-    wanted = " ".join(text.split()).casefold()
-    holding = sorted((key for key in known if wanted in key), key=lambda key: not key.startswith(wanted))
-    alike = get_close_matches(wanted, [key for key in known if wanted not in key], NEAREST, ALIKE)
-    return [known[key] for key in (*holding, *alike)]
+    """Those whose names hold a text, those that begin with it first, then those whose names are like it.
+
+    Accents tell no two letters apart here.
+    """
+    known = sorted(by_key(marks).items())
+    plain = [_plain(key) for key, _ in known]
+    wanted = _plain(" ".join(text.split()).casefold())
+    holding = [number for number, key in enumerate(plain) if wanted in key]
+    holding.sort(key=lambda number: not plain[number].startswith(wanted))
+    others = sorted({key for key in plain if wanted not in key})
+    alike = get_close_matches(wanted, others, NEAREST, ALIKE)
+    found = [*holding, *(number for key in alike for number, other in enumerate(plain) if other == key)]
+    return [known[number][1] for number in found]
+
+
+def _plain(key: str) -> str:
+    letters = unicodedata.normalize("NFKD", key)
+    return "".join(letter for letter in letters if not unicodedata.combining(letter))
 
 
 def nothing_called(name: str, marks: Collection[M], what: str = "place") -> str:

@@ -1,4 +1,4 @@
-"""Places and rules in the console: named from a node, an area drawn, kept out of; each in four clicks at most."""
+"""Places and rules in the console: a node named, an area drawn, kept out of; in four clicks at most."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -53,7 +53,7 @@ def page(browser: Any, endpoint: str, store: MapStore, planner: Planner) -> Iter
             opened.wait_for_selector(f'#graph[data-nodes="{COUNT}"]', timeout=WAIT_MS)
             yield opened
             opened.close()
-            assert faults == []
+            assert [fault for fault in faults if "status of 422" not in fault] == []  # what one test provokes
 
 
 class Clicks:

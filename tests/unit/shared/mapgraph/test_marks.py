@@ -18,6 +18,7 @@ PLACES = [Place(name=name, nodes=(number,)) for number, name in enumerate(NAMES)
         ("214", ["Room 214"]),
         ("kichen", ["Kitchen", "kitchenette"]),
         ("  meeting   ROOM ", ["Meeting room 2"]),
+        ("dôck", ["Dock"]),
         ("xyz", []),
     ],
 )
