@@ -7,7 +7,6 @@ against distance are those measured on rendered frames; headings carry noise and
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from datetime import UTC, datetime
 
 import numpy as np
 
@@ -24,6 +23,7 @@ from shared.messages.maps import AddNode, Operation
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
 from shared.motion.motion import NO_MOTION, Motion, driven
+from shared.wall_clock import WallClock
 from simulator.scene.parts import Material, Part
 from simulator.scene.shapes import post
 from simulator.world.footprints import Footprints, cast_rays, clearance_m, footprints
@@ -38,7 +38,7 @@ KEYPOINTS = 300
 MAX_RANGE_M = 4.0
 STEP_S = 0.3
 BODY_RADIUS_M = 0.25
-NOON = datetime(2026, 11, 23, 12, tzinfo=UTC)
+NOON = WallClock(29_923_920)
 Pose = tuple[float, float, float]
 
 

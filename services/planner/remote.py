@@ -1,7 +1,6 @@
 """The mission's view of other services: matches from the feature service, the map from the map store."""
 
 from collections.abc import Sequence
-from datetime import UTC, datetime
 
 from services.planner.ports import Matches
 from shared.bus import Bus
@@ -16,6 +15,7 @@ from shared.messages.maps import AddNode, DeleteNode, MapDelta, MapReply, MapReq
 from shared.messages.matching import MatchRequest
 from shared.queries import RefusedError
 from shared.topics import MAP, MATCH
+from shared.wall_clock import WallClock
 
 AUTHOR = "planner"
 WRITE_TRIES = 10
@@ -74,7 +74,7 @@ class RemoteMap:
 
     def limits(self) -> Limits:
         """What the rules of the map say at this minute."""
-        return current_limits(self.graph, datetime.now(UTC))
+        return current_limits(self.graph, WallClock.now())
 
     def _create(self) -> None:
         """Make the map, if no other robot makes it just now."""

@@ -2,11 +2,32 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from datetime import datetime, timedelta
 from itertools import pairwise
-from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
+from typing import NamedTuple, Protocol
 
 from shared.messages.places import DAYS, Hours, KeepOut, OneWay, OpeningHours, Place, Rule, Slow, key_of
+
+
+class LocalTime(NamedTuple):
+    """Day of the week, 0 is Monday, and "HH:MM"."""
+
+    day: int
+    clock: str
+
+
+class Clock(Protocol):
+    """One minute, told in any time zone (`shared/wall_clock.py`).
+
+    Attributes:
+        minute: tells it from others.
+    """
+
+    @property
+    def minute(self) -> int:
+        """Its number."""
+
+    def local(self, time_zone: str) -> LocalTime | None:
+        """Day and time there; None where the time zone is not known."""
 
 
 @dataclass(frozen=True)
@@ -56,13 +77,13 @@ class Limits:
 NO_LIMITS = Limits()
 
 
-def limits_at(places: Mapping[str, Place], rules: Iterable[Rule], moment: datetime) -> Limits:
+def limits_at(places: Mapping[str, Place], rules: Iterable[Rule], clock: Clock) -> Limits:
     """What the rules say.
 
     Args:
         places: by the keys of their names.
         rules: those of the map.
-        moment: with its time zone.
+        clock: the minute asked about.
     """
     forbidden: dict[int, str] = {}
     closed: dict[tuple[int, int], str] = {}
@@ -80,32 +101,23 @@ def limits_at(places: Mapping[str, Place], rules: Iterable[Rule], moment: dateti
                 for way in _both_ways(rule.edges):
                     slow[way] = min(slow.get(way, 1.0), rule.speed_share)
             case OpeningHours():
-                if not is_open(rule, moment):
+                if not is_open(rule, clock):
                     closed |= dict.fromkeys(_both_ways(rule.edges), rule.name)
     return Limits(forbidden, closed, slow)
 
 
-def is_open(rule: OpeningHours, moment: datetime) -> bool:
-    """Whether the edges are there; a time zone that is not known here is shut, which harms nobody.
-
-    Args:
-        rule: hours of local time.
-        moment: with its time zone.
-    """
-    try:
-        local = moment.astimezone(ZoneInfo(rule.time_zone))
-    except (ZoneInfoNotFoundError, ValueError, OSError):
-        return False
-    return any(_holds(hours, local) for hours in rule.hours)
+def is_open(rule: OpeningHours, clock: Clock) -> bool:
+    """Whether the edges are there; shut where the time zone is not known, which harms nobody."""
+    local = clock.local(rule.time_zone)
+    return local is not None and any(_holds(hours, local) for hours in rule.hours)
 
 
-def _holds(hours: Hours, local: datetime) -> bool:
-    clock = f"{local:%H:%M}"
-    today = DAYS[local.weekday()] in hours.days
+def _holds(hours: Hours, local: LocalTime) -> bool:
+    today = DAYS[local.day] in hours.days
     if hours.opens < hours.closes:
-        return today and hours.opens <= clock < hours.closes
-    yesterday = DAYS[(local - timedelta(days=1)).weekday()] in hours.days
-    return (today and clock >= hours.opens) or (yesterday and clock < hours.closes)
+        return today and hours.opens <= local.clock < hours.closes
+    yesterday = DAYS[local.day - 1] in hours.days
+    return (today and local.clock >= hours.opens) or (yesterday and local.clock < hours.closes)
 
 
 def _both_ways(edges: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:

@@ -2,7 +2,6 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from datetime import datetime
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +11,7 @@ from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import NEAR_NODES
 from shared.mapgraph.local.relative_poses import RelativePose, relative_poses
 from shared.mapgraph.local.view_range import openness
-from shared.mapgraph.rules import NO_LIMITS, Limits, limits_at
+from shared.mapgraph.rules import NO_LIMITS, Clock, Limits, limits_at
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -75,24 +74,27 @@ def keep_clear(graph: MapGraph, root: int, forbidden: Collection[int]) -> KeepCl
     return KeepClear(poses, np.array(spots).reshape(-1, 2), CLEAR_M * openness(graph, root))
 
 
-def current_limits(graph: MapGraph, moment: datetime) -> Limits:
+def current_limits(graph: MapGraph, clock: Clock) -> Limits:
     """What the rules of a map say, edges that lead past a forbidden node too near to it closed as well.
 
     Reckoned once a minute, and anew when the map changes.
 
     Args:
         graph: the map.
-        moment: with its time zone.
+        clock: the minute asked about.
     """
     if not graph.rules:
         return NO_LIMITS
-    minute = moment.replace(second=0, microsecond=0)
-    said = graph.made_once(("rules", minute), lambda: limits_at(graph.places, graph.rules.values(), minute))
+    said = graph.made_once(
+        ("rules", clock.minute), lambda: limits_at(graph.places, graph.rules.values(), clock)
+    )
     if not said.forbidden:
         return said
     nodes = frozenset(said.forbidden)
     crossing = graph.made_once(("crossing", nodes), lambda: _crossing(graph, said.forbidden))
-    return graph.made_once(("limits", minute), lambda: replace(said, closed={**crossing, **said.closed}))
+    return graph.made_once(
+        ("limits", clock.minute), lambda: replace(said, closed={**crossing, **said.closed})
+    )
 
 
 def near_forbidden(graph: MapGraph, forbidden: Collection[int]) -> set[int]:

@@ -1,7 +1,5 @@
 """Ways that keep clear of forbidden nodes, by where the edges put them: on a grid of a metre."""
 
-from datetime import UTC, datetime
-
 import pytest
 
 from shared.mapgraph.local.displacement import Displacement
@@ -13,9 +11,10 @@ from shared.mapgraph.local.keep_clear import (
     keep_clear,
 )
 from shared.messages.places import KeepOut, PutRule
+from shared.wall_clock import WallClock
 from tests.unit.shared.mapgraph.local.grid import GRID_HALF_M, edge, grid
 
-NOON = datetime(2026, 11, 23, 12, tzinfo=UTC)
+NOON = WallClock(29_923_920)
 COLUMNS = 5
 CENTRE = 12
 CARRIES = GRID_HALF_M / 0.32
