@@ -11,7 +11,7 @@ from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
 from shared.bus import wait_until
 from shared.messages.maps import Edge, PutEdge
-from shared.messages.places import Place, PutPlace, PutRule, Slow
+from shared.messages.places import KeepOut, Place, PutPlace, PutRule, Slow
 from tests.browser import WAIT_MS, listen, needs_chromium
 from tests.integration.gateway.conftest import serve_gateway
 from tests.integration.gateway.gateway_process import WAIT_S
@@ -151,8 +151,11 @@ def test_the_view_with_places_and_rules_is_accessible(page: Any, store: MapStore
         Place(name="Meeting rooms of the second floor", nodes=(0, 1)),
     ]
     slow = Slow(name="wet floor", edges=((4, 5),), speed_share=0.3)
-    store.transact("flat", [*(PutPlace(place=place) for place in places), PutRule(rule=slow)])
+    shut = KeepOut(name="no robots", nodes=(6,), areas=("Kitchen",))
+    rules = [PutRule(rule=rule) for rule in (slow, shut)]
+    store.transact("flat", [*(PutPlace(place=place) for place in places), *rules])
     page.wait_for_selector('#graph[data-places="2"]', timeout=WAIT_MS)
+    assert page.get_attribute("#graph", "data-forbidden") == "2"
     page.wait_for_selector("#rules td:has-text('30 % of the speed')", timeout=WAIT_MS)
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
