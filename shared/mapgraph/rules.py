@@ -38,11 +38,13 @@ class Limits:
         forbidden: nodes not to be gone to nor through, with the name of the rule.
         closed: ways from one node to another that are not open now, likewise.
         slow: share of the usual speed, by way.
+        directions: sectors of nodes by which no robot leaves to explore, for they lead to forbidden nodes.
     """
 
     forbidden: Mapping[int, str] = field(default_factory=dict)
     closed: Mapping[tuple[int, int], str] = field(default_factory=dict)
     slow: Mapping[tuple[int, int], float] = field(default_factory=dict)
+    directions: Mapping[int, frozenset[int]] = field(default_factory=dict)
 
     def __bool__(self) -> bool:
         """Whether there is any."""

@@ -1,18 +1,13 @@
 """Unexplored directions of nodes by which the rules of the map let a robot leave."""
 
 import math
-from collections.abc import Collection
 
 from services.planner.ports import MapAccess
-from shared.mapgraph.frontiers import frontier_sectors, sector_rad
-from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.frontiers import frontier_sectors
 from shared.mapgraph.local.displacement import Displacement
-from shared.mapgraph.local.keep_clear import keep_clear, near_forbidden
+from shared.mapgraph.local.keep_clear import keep_clear
 from shared.mapgraph.local.view_range import openness
-from shared.messages.base import SECTORS
 
-REACH_M = 1.5
-"""So far a departure leads in a room before there is a new node, chosen: twice the way of two."""
 AHEAD_M = 0.4
 """Looked ahead during a departure; chosen: three steps, of which the last frame does not know yet."""
 
@@ -29,18 +24,12 @@ class AllowedDirections:
 
     def of(self, node_id: int) -> list[int]:
         """Sectors of a node; none of a forbidden one."""
-        graph, forbidden = self._maps.graph, self._maps.limits().forbidden
-        sectors = [s for s in frontier_sectors(graph.nodes[node_id]) if (node_id, s) not in self._refused]
-        if not forbidden or not sectors:
-            return sectors
-        if node_id in forbidden:
+        limits = self._maps.limits()
+        if node_id in limits.forbidden:
             return []
-        nodes = frozenset(forbidden)
-        if node_id not in near_forbidden(graph, nodes):
-            return sectors
-        key = ("directions to forbidden", node_id, nodes)
-        barred = graph.made_once(key, lambda: _barred(graph, node_id, nodes))
-        return [s for s in sectors if s not in barred]
+        barred = limits.directions.get(node_id, ())
+        sectors = frontier_sectors(self._maps.graph.nodes[node_id])
+        return [s for s in sectors if s not in barred and (node_id, s) not in self._refused]
 
     def refuse(self, node_id: int, sector: int) -> None:
         """A departure met a keep-out."""
@@ -65,12 +54,3 @@ class AllowedDirections:
         if not around.is_crossed(start_m, end_m):
             return ""
         return next(forbidden[node] for node in around.poses if node in forbidden)
-
-
-def _barred(graph: MapGraph, node_id: int, forbidden: Collection[int]) -> set[int]:
-    around = keep_clear(graph, node_id, forbidden)
-    if around is None:
-        return set()
-    reach_m = REACH_M * openness(graph, node_id)
-    ends = {s: (reach_m * math.cos(sector_rad(s)), reach_m * math.sin(sector_rad(s))) for s in range(SECTORS)}
-    return {sector for sector, end_m in ends.items() if around.is_crossed((0.0, 0.0), end_m)}

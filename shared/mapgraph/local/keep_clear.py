@@ -2,24 +2,27 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from shared.mapgraph.frontiers import sector_rad
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import NEAR_NODES
 from shared.mapgraph.local.relative_poses import RelativePose, relative_poses
 from shared.mapgraph.local.view_range import openness
 from shared.mapgraph.rules import NO_LIMITS, Clock, Limits, limits_at
+from shared.messages.base import SECTORS
 
 FloatArray = npt.NDArray[np.float64]
 
 CLEAR_M = 0.6
 """Distance that a way keeps from a forbidden node in a room; chosen: a bit more than half of the way between
 two nodes there, so that none fits between those of an area."""
-HOPS = 4
-"""Edges from a forbidden node within which ways may lead to it; chosen: three metres in a room."""
+REACH_M = 1.5
+"""So far a departure leads in a room before there is a new node, at most; chosen: twice the way of two."""
 TOUCH_SHARE = 0.95
 """Of the distance that either end has anyway: a way along an area is none into it; chosen."""
 
@@ -75,7 +78,7 @@ def keep_clear(graph: MapGraph, root: int, forbidden: Collection[int]) -> KeepCl
 
 
 def current_limits(graph: MapGraph, clock: Clock) -> Limits:
-    """What the rules of a map say, edges that lead past a forbidden node too near to it closed as well.
+    """What the rules of a map say, and the edges and directions that lead too near to what they forbid.
 
     Reckoned once a minute, and anew when the map changes.
 
@@ -85,41 +88,54 @@ def current_limits(graph: MapGraph, clock: Clock) -> Limits:
     """
     if not graph.rules:
         return NO_LIMITS
-    said = graph.made_once(
-        ("rules", clock.minute), lambda: limits_at(graph.places, graph.rules.values(), clock)
-    )
+    return graph.made_once(("limits", clock.minute), lambda: _limits(graph, clock))
+
+
+def _limits(graph: MapGraph, clock: Clock) -> Limits:
+    said = limits_at(graph.places, graph.rules.values(), clock)
     if not said.forbidden:
         return said
-    nodes = frozenset(said.forbidden)
-    crossing = graph.made_once(("crossing", nodes), lambda: _crossing(graph, said.forbidden))
-    return graph.made_once(
-        ("limits", clock.minute), lambda: replace(said, closed={**crossing, **said.closed})
-    )
+    key = ("barred", frozenset(said.forbidden.items()))
+    barred = graph.made_once(key, lambda: _barred(graph, said.forbidden))
+    return replace(said, closed={**barred.edges, **said.closed}, directions=barred.directions)
 
 
-def near_forbidden(graph: MapGraph, forbidden: Collection[int]) -> set[int]:
-    """Nodes from which a way of a few edges may lead to a forbidden one; kept until the map changes."""
-    nodes = frozenset(forbidden)
-    return graph.made_once(
-        ("near forbidden", nodes),
-        lambda: {n for node in nodes if node in graph.nodes for n in graph.within(node, HOPS)},
-    )
+class _Barred(NamedTuple):
+    """What leads too near to forbidden nodes: edges between allowed ones, both ways, and directions."""
+
+    edges: dict[tuple[int, int], str]
+    directions: dict[int, frozenset[int]]
 
 
-def _crossing(graph: MapGraph, forbidden: Mapping[int, str]) -> dict[tuple[int, int], str]:
-    """Both ways of the edges between allowed nodes that lead past a forbidden one, with its rule."""
-    found: dict[tuple[int, int], str] = {}
-    near = near_forbidden(graph, forbidden)
-    for node in sorted(near - forbidden.keys()):
-        ends = [n for n in graph.neighbours(node) if n > node and n not in forbidden]
-        around = keep_clear(graph, node, forbidden) if ends else None
-        if around is None:
+def _barred(graph: MapGraph, forbidden: Mapping[int, str]) -> _Barred:
+    """Each forbidden node that an edge joins to an allowed one is asked: it knows best what lies around it."""
+    edges: dict[tuple[int, int], str] = {}
+    directions: dict[int, frozenset[int]] = {}
+    for root in sorted(forbidden):
+        if root not in graph.nodes or not set(graph.neighbours(root)) - forbidden.keys():
             continue
-        rule = next(forbidden[n] for n in around.poses if n in forbidden)
-        for end in ends:
-            if around.is_crossed_to((0.0, 0.0), end):
-                found |= {(node, end): rule, (end, node): rule}
-    return found
+        around = keep_clear(graph, root, (root,))
+        assert around is not None
+        reach_m = REACH_M * openness(graph, root)
+        allowed = [node for node in around.poses if node not in forbidden]
+        for edge in graph.edges_among(allowed):
+            if around.is_crossed_to(around.poses[edge.a].position_m, edge.b):
+                edges |= {way: forbidden[root] for way in ((edge.a, edge.b), (edge.b, edge.a))}
+        for node in allowed:
+            found = _directions(around, node, reach_m)
+            if found:
+                directions[node] = directions.get(node, frozenset()) | found
+    return _Barred(edges, directions)
+
+
+def _directions(around: KeepClear, node: int, reach_m: float) -> frozenset[int]:
+    """Sectors of a node by which a departure of so many metres comes too near to a spot."""
+    pose = around.poses[node]
+    if np.linalg.norm(around.spots_m - pose.position_m, axis=1).min() > reach_m + around.clear_m:
+        return frozenset()
+    angles_rad = pose.yaw_rad + np.array([sector_rad(sector) for sector in range(SECTORS)])
+    ends_m = pose.position_m + reach_m * np.stack([np.cos(angles_rad), np.sin(angles_rad)], axis=1)
+    return frozenset(s for s, end_m in enumerate(ends_m) if around.is_crossed(pose.position_m, end_m))
 
 
 def is_near_forbidden(graph: MapGraph, here: Displacement | None, forbidden: Collection[int]) -> bool:
