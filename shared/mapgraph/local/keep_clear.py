@@ -108,7 +108,7 @@ class _Barred(NamedTuple):
 
 
 def _barred(graph: MapGraph, forbidden: Mapping[int, str]) -> _Barred:
-    """Each forbidden node that an edge joins to an allowed one is asked: it knows best what lies around it."""
+    """Each forbidden node that an edge joins to an allowed one knows best what lies around it."""
     edges: dict[tuple[int, int], str] = {}
     directions: dict[int, frozenset[int]] = {}
     for root in sorted(forbidden):
