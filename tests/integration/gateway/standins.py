@@ -164,7 +164,7 @@ class Planner:
     def _answer(self, wish: MissionRequest) -> None:
         self.asked.append(wish)
         states = {"pause": "paused", "cancel": "cancelled"}
-        if wish.goal_node == 404:
+        if 404 in (wish.goal_node, wish.parameters.get("goal_node")):
             raise MissionError("the map has no node 404", "missing")
         if wish.action not in CONTROLS:
             assert KINDS[wish.action].name == wish.action
