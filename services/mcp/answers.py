@@ -33,7 +33,9 @@ class Whereabouts(BaseModel):
     @classmethod
     def of(cls, told: dict[str, Any]) -> Self:
         """From the gateway's answer."""
-        return cls(verdict=told["verdict"], places=[SeenPlace.model_validate(place) for place in told["places"]])
+        return cls(
+            verdict=told["verdict"], places=[SeenPlace.model_validate(place) for place in told["places"]]
+        )
 
 
 class Mission(BaseModel):

@@ -12,9 +12,7 @@ from services.mcp.gateway import Gateway
 
 Search = Annotated[str, Field(max_length=64, description="names that hold this come first")]
 NewName = Annotated[str, Field(min_length=1, max_length=64, description="that no place has yet")]
-Node = Annotated[
-    int | None, Field(ge=0, lt=2**63, description="a node of the map; none: where the robot is")
-]
+Node = Annotated[int | None, Field(ge=0, lt=2**63, description="a node of the map; none: where the robot is")]
 
 
 def add_naming(server: MCPServer[Any], gateway: Gateway) -> None:
