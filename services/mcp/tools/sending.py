@@ -23,13 +23,16 @@ def add_sending(server: MCPServer[Any], gateway: Gateway) -> None:
     """Give the server its tools that start missions."""
 
     @server.tool(annotations=SENDS)
-    async def go_to(node: Node = None, photo: Photo = "", max_steps: Steps = 1500, seed: Seed = 0) -> Mission:
-        """Start driving to a node of the map or to where a panorama was taken; give one. Then `wait`."""
-        if (node is None) == (not photo):
-            raise ToolError("say where to: either node or photo")
-        if node is None:
+    async def go_to(
+        place: PlaceName = "", node: Node = None, photo: Photo = "", max_steps: Steps = 1500, seed: Seed = 0
+    ) -> Mission:
+        """Start driving to a named place, to a node or to where a panorama was taken; then `wait`."""
+        if [bool(place), node is not None, bool(photo)].count(True) != 1:
+            raise ToolError("say where to by one of place, node and photo")
+        if photo:
             return Mission.of(await gateway.goto_photo(picture_of(photo), seed, max_steps))
-        return Mission.of(await gateway.start("goto", {"goal_node": node}, seed, max_steps))
+        where = {"place": place} if place else {"goal_node": node}
+        return Mission.of(await gateway.start("goto", where, seed, max_steps))
 
     @server.tool(annotations=SENDS)
     async def explore(max_steps: Steps = 5000, seed: Seed = 0) -> Mission:

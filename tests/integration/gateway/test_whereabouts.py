@@ -9,7 +9,10 @@ from tests.integration.gateway.test_evidence import send_frame
 
 
 def test_a_robot_is_where_its_newest_picture_was_taken(
-    http: httpx.Client, robot_bus: Bus, features: FeatureService, map_store: None
+    http: httpx.Client,
+    robot_bus: Bus,
+    features: FeatureService,
+    map_store: None,  # noqa: ARG001
 ) -> None:
     send_frame(http, robot_bus, 91)
     answer = http.get("/api/robots/r1/whereabouts?map=flat").json()
