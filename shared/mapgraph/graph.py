@@ -16,6 +16,9 @@ Made = TypeVar("Made")
 MADE_MOST = 64
 """Things kept that were made of one state of the graph; chosen: the parts around 64 nodes, some 2 MB."""
 
+UNDRIVEN_EDGES = 3.0
+"""Chosen: how long an edge is that nobody drove is known to a factor of three (decision 0032)."""
+
 
 def edge_key(first: int, second: int) -> EdgeKey:
     """The key of the edge between two nodes, in either order."""
@@ -134,6 +137,20 @@ class MapGraph:
                     known.add(neighbour)
                     order.append(neighbour)
         return order
+
+    def way(self, start: int, end: int) -> list[int]:
+        """Nodes of a way over edges that may be used, rather driven ones than long jumps; [] if none leads.
+
+        An edge that nobody drove counts as UNDRIVEN_EDGES driven ones.
+        """
+        links = self._links()
+        if start not in links or end not in links or not nx.has_path(links, start, end):
+            return []
+        found = nx.dijkstra_path(links, start, end, lambda a, b, _: self._edges_apart(a, b))
+        return [int(node) for node in found]
+
+    def _edges_apart(self, a: int, b: int) -> float:
+        return 1.0 if self.edges[edge_key(a, b)].length_m is not None else UNDRIVEN_EDGES
 
     def components(self) -> int:
         """Number of connected parts, suspended edges excluded."""
