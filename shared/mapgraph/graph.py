@@ -143,10 +143,10 @@ class MapGraph:
 
         An edge that nobody drove counts as UNDRIVEN_EDGES driven ones.
         """
-        links = self._links()
-        if start not in links or end not in links or not nx.has_path(links, start, end):
+        try:
+            found = nx.dijkstra_path(self._links(), start, end, lambda a, b, _: self._edges_apart(a, b))
+        except (nx.NodeNotFound, nx.NetworkXNoPath):
             return []
-        found = nx.dijkstra_path(links, start, end, lambda a, b, _: self._edges_apart(a, b))
         return [int(node) for node in found]
 
     def _edges_apart(self, a: int, b: int) -> float:

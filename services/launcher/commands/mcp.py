@@ -36,6 +36,6 @@ def mcp(
     running = StateFolder(data_dir.resolve()).read()
     chosen: dict[str, object] = {"map": map_name, "transport": "http" if http else "stdio"}
     chosen |= {"host": host, "port": port}
-    if gateway_url or running is not None:
-        chosen["gateway_url"] = gateway_url or (running.gateway_url if running else "")
+    if url := gateway_url or (running.gateway_url if running else ""):
+        chosen["gateway_url"] = url
     asyncio.run(serve(McpSettings.model_validate({**McpSettings.from_environment().model_dump(), **chosen})))

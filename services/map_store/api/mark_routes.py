@@ -12,6 +12,7 @@ from services.map_store.api.schemas import Changed
 from services.map_store.errors import ConflictError, InvalidError, MissingError
 from services.map_store.storage.graph import Graph
 from services.map_store.store import MapStore
+from shared.mapgraph.graph import edge_key
 from shared.mapgraph.marks import search, users_of
 from shared.messages.places import (
     DeletePlace,
@@ -151,7 +152,7 @@ def _check_rule(rule: Rule, name: str, graph: Graph) -> None:
     if not rule.edges:
         raise InvalidError(f"rule {rule.name!r}: at least one edge expected, got none")
     for a, b in rule.edges:
-        if (min(a, b), max(a, b)) not in graph.edges:
+        if edge_key(a, b) not in graph.edges:
             raise MissingError(f"map {name!r}, rule {rule.name!r}: edge {a}-{b} does not exist")
     if isinstance(rule, OpeningHours) and zone_called(rule.time_zone) is None:
         expected = "the name of a time zone as IANA has it, such as Europe/Berlin"
