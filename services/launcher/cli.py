@@ -22,12 +22,15 @@ from services.launcher.commands import (
     foxglove,
     goto,
     map,
+    mcp,
     mission,
     models,
+    place,
     record,
     recover,
     replay,
     robot,
+    rule,
     status,
     token,
     up,
@@ -47,9 +50,9 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (demo, explore, goto, drive, estop, world, models, record, replay, recover, foxglove):
+for command in (demo, explore, goto, drive, estop, world, models, record, replay, recover, foxglove, mcp):
     app.add_typer(command.app)
-for command in (map, mission, camera, robot, certs, token, up, down, status, doctor):
+for command in (map, place, rule, mission, camera, robot, certs, token, up, down, status, doctor):
     app.add_typer(command.app)
 
 

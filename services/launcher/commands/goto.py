@@ -1,4 +1,4 @@
-"""`topnav goto`: drive to where a picture was taken."""
+"""`topnav goto`: drive to where a picture was taken, to a place by its name, or home."""
 
 from pathlib import Path
 from typing import Annotated
@@ -9,10 +9,16 @@ from services.launcher.terminal import options
 
 app = typer.Typer()
 
+Image = Annotated[Path | None, typer.Option(help="An equirectangular picture, twice as wide as high.")]
+PlaceName = Annotated[str | None, typer.Option(help="A place by its name; see 'topnav place'.")]
+Home = Annotated[bool, typer.Option("--home", help="The place called home.")]
+
 
 @app.command()
 def goto(
-    image: Annotated[Path, typer.Option(help="An equirectangular picture, twice as wide as high.")],
+    image: Image = None,
+    place: PlaceName = None,
+    home: Home = False,
     map_name: options.MapName = "flat",
     world: options.World = "apartment",
     seed: options.Seed = 1,
@@ -25,43 +31,45 @@ def goto(
     endpoint: options.Endpoint = None,
     timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
 ) -> None:
-    """Drive to where a picture was taken."""
+    """Drive to where a picture was taken, to a named place, or home: one of the three."""
     from services.launcher.client import failure, maps, mission, stack, trail
     from services.launcher.drawing.pictures import frame_from_file
-    from services.launcher.terminal.output import (
-        print_figures,
-        print_warning,
-        rounded,
-        wide_console,
-        write_json,
-    )
+    from services.launcher.terminal import output
     from services.launcher.terminal.progress import mission_progress
-    from shared.messages.missions import MissionRequest
+    from shared.messages.missions import MissionRequest, Parameters
 
+    if sum((image is not None, place is not None, home)) != 1:
+        raise typer.BadParameter("one of --image, --place and --home says where to go")
+    goal_name = image.name if image is not None else place or "home"
     choice = stack.StackChoice(
         data_dir, world, seed, lockstep, profile, pipeline, endpoint, timeout_s=timeout_s
     )
     with stack.open_stack(choice) as opened:
-        print_warning(stack.other_world(opened, world))
+        output.print_warning(stack.other_world(opened, world))
         maps.require_map(opened, map_name)
         client = mission.MissionClient(opened.bus, opened.robot)
-        goal = mission.goal_features(opened.bus, frame_from_file(image, opened.robot))
-        request = MissionRequest(action="goto", map=map_name, goal=goal, seed=seed, max_steps=max_steps)
-        with mission_progress(wide_console(stderr=True), f"going to {image.name}") as watch:
+        goal = image and mission.goal_features(opened.bus, frame_from_file(image, opened.robot))
+        given: Parameters = {} if place is None else {"place": place}
+        kind = "home" if home else "goto"
+        request = MissionRequest(
+            action=kind, map=map_name, goal=goal, parameters=given, seed=seed, max_steps=max_steps
+        )
+        with mission_progress(output.wide_console(stderr=True), f"going to {goal_name}") as watch:
             run = client.run(request, watch)
     report = {
         "map": map_name,
-        "image": str(image),
+        "image": None if image is None else str(image),
+        "place": "home" if home else place,
         "success": run.succeeded,
         "failure": run.status.failure,
         "reason": run.status.reason,
         "steps": run.status.step,
-        "driven_m": rounded(trail.driven_m(run.truths), 3),
-        "wall_s": rounded(run.wall_s, 2),
-        "steps_per_s": rounded(run.steps_per_s, 2),
+        "driven_m": output.rounded(trail.driven_m(run.truths), 3),
+        "wall_s": output.rounded(run.wall_s, 2),
+        "steps_per_s": output.rounded(run.steps_per_s, 2),
     }
-    write_json(json_file, report)
-    print_figures(f"goto {image.name}", report)
+    output.write_json(json_file, report)
+    output.print_figures(f"goto {goal_name}", report)
     if not run.succeeded:
         why = run.status.failure or run.status.state
         raise failure.ExperimentError(f"did not arrive, {why}: {run.status.reason}")
