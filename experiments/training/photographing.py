@@ -1,7 +1,6 @@
 """Pairs of panoramas of one world with all that is known of them; loads SAPIEN where pictures are taken."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,9 +12,6 @@ from simulator.disturbances.levels import Disturbances
 from simulator.settings import CameraSettings, SimulationSettings
 from simulator.world.freespace import FreeSpace
 from simulator.world.world_file import WorldFile
-
-if TYPE_CHECKING:
-    pass
 
 TRIES = 4
 """Distances that are tried where a world has no room for the first; chosen."""
@@ -48,7 +44,7 @@ class Photographer:
         levels = Disturbances(illumination=conditions.illumination, furniture=conditions.furniture)
         camera = CameraSettings(width_px=width_px, height_m=conditions.height_m)
         settings = SimulationSettings(camera=camera, cache_dir=user_cache_dir(), disturbances=levels)
-        self._simulation: Simulation = Simulation(world, settings, conditions.seed)
+        self._simulation = Simulation(world, settings, conditions.seed)
         self._height_m = conditions.height_m
 
     def sight(self, pose: Pose, tilt: tuple[float, float] = (0.0, 0.0)) -> Sight:

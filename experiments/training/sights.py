@@ -2,10 +2,11 @@
 
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 import numpy.typing as npt
 
+from experiments.photographs.tilting import rotation_of
+from shared.geometry.perspective import rotation_z
 from shared.geometry.sphere import EquirectGrid, FloatArray, bearings_from_lonlat, lonlat_from_bearings
 from simulator.sensors.attitude import PitchRoll
 
@@ -41,10 +42,7 @@ class CameraPose:
     @property
     def rotation(self) -> FloatArray:
         """(3, 3) from the camera frame to the world, see `simulator.sensors.attitude`."""
-        pitch_rad, roll_rad = self.tilt
-        cos, sin = np.cos(self.yaw_rad), np.sin(self.yaw_rad)
-        level = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
-        return np.asarray(level @ cv2.Rodrigues(np.array([roll_rad, pitch_rad, 0.0]))[0], np.float64)
+        return rotation_z(self.yaw_rad) @ rotation_of(*self.tilt)
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from pydantic import NonNegativeInt, PositiveFloat, PositiveInt
 
 from experiments.training.learning.checkpoints import keep, resume
 from experiments.training.recipe import Recipe
@@ -24,15 +25,15 @@ class Schedule(Recipe):
         steps: batches in all.
         rate: of Adam at first; it falls to 0 along half a cosine.
         kept_every: steps between checkpoints and lines of the log.
-        threads: cores; another number may round otherwise. On two busy cores one made 100 steps of the
-            residual in 9 s, two did not in 80.
+        threads: cores; another number may round otherwise. Of cores that others use, too, every step waits for
+            the slowest.
     """
 
-    seed: int = 1
-    steps: int = 2000
-    rate: float = 1e-3
-    kept_every: int = 100
-    threads: int = 1
+    seed: NonNegativeInt = 1
+    steps: PositiveInt = 2000
+    rate: PositiveFloat = 1e-3
+    kept_every: PositiveInt = 100
+    threads: PositiveInt = 1
 
 
 def run(

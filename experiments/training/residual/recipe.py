@@ -35,8 +35,9 @@ class ResidualRecipe(Recipe):
 
 def network_of(recipe: ResidualRecipe) -> Residual:
     """The network as it begins."""
-    torch.manual_seed(recipe.schedule.seed)
-    return Residual(recipe.hidden)
+    with torch.random.fork_rng(devices=()):  # torch draws first parameters from its global generator only
+        torch.manual_seed(recipe.schedule.seed)
+        return Residual(recipe.hidden)
 
 
 def batch_loss(
