@@ -32,10 +32,10 @@ def data(
     seed: Annotated[int | None, typer.Option(min=0, help="Of every draw; default: the recipe's.")] = None,
 ) -> None:
     """Pairs with exact correspondences, from development worlds only; goes on where it stopped."""
-    from experiments.training.data.drawing import draw_pairs
+    from experiments.training.data.drawing import draw_pairs, require_picture_name
     from experiments.training.data.drawn import make_missing, plan_shards
     from experiments.training.data.recipe import DataRecipe
-    from experiments.training.data.shards import trainable
+    from experiments.training.data.shards import about_shard, trainable
     from experiments.training.recipe import recipe_from
     from experiments.training.worlds import TRAINED_ON, WorldName, first_worlds, require_trainable
     from services.launcher.terminal.output import print_figures
@@ -45,14 +45,15 @@ def data(
     names = named or first_worlds(TRAINED_ON, worlds)
     require_trainable(names, "train data")
     plans = plan_shards(names, TRAINED_ON, shards, pairs, chosen, into)
-    made = make_missing(plans, jobs)
-    found = [trainable(plan.done) for plan in plans if plan.done is not None]
     if draw is not None:
-        some = [pair for shard in found for pair in shard.pairs[:2]]
-        draw_pairs(draw, some[:8], chosen.seed)
+        require_picture_name(draw)
+    made = make_missing(plans, jobs)
+    found = [plan.done for plan in plans if plan.done is not None]
+    if draw is not None:
+        draw_pairs(draw, [pair for path in found[:4] for pair in trainable(path).pairs[:2]], chosen.seed)
     figures = {"folder": str(into), "shards": len(found), "made now": len(made)}
-    count = sum(len(shard.pairs) for shard in found)
-    bytes_ = sum(plan.done.stat().st_size for plan in plans if plan.done is not None)
+    count = sum(about_shard(path)["pairs"] for path in found)
+    bytes_ = sum(path.stat().st_size for path in found)
     print_figures("pairs to train on", {**figures, "pairs": count, "megabytes": round(bytes_ / 1e6)})
 
 

@@ -66,12 +66,17 @@ def packed(arrays: Mapping[str, Any], about: Mapping[str, Any]) -> bytes:
     return stream.getvalue()
 
 
-def unpacked(data: bytes) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any]]:
-    """What `packed` put together."""
+def unpacked(data: bytes) -> dict[str, npt.NDArray[Any]]:
+    """The arrays that `packed` put in."""
     with np.load(io.BytesIO(data), allow_pickle=False) as kept:
-        arrays = {name: kept[name] for name in kept.files}
-    about: dict[str, Any] = json.loads(arrays.pop("about").tobytes())
-    return arrays, about
+        return {name: kept[name] for name in kept.files if name != "about"}
+
+
+def description(data: bytes) -> dict[str, Any]:
+    """The description that `packed` put in; the arrays stay packed."""
+    with np.load(io.BytesIO(data), allow_pickle=False) as kept:
+        about: dict[str, Any] = json.loads(kept["about"].tobytes())
+    return about
 
 
 def _seal(data: bytes) -> str:

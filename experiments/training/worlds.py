@@ -6,6 +6,7 @@ from itertools import islice
 
 from services.launcher.client.failure import ExperimentError
 from simulator.generation.generate import generate
+from simulator.generation.kinds import KINDS, SIZES
 from simulator.generation.splits import Split, split_of, worlds_of
 from simulator.world.world_file import WorldFile
 
@@ -42,8 +43,11 @@ class WorldName:
         """
         kind, _, rest = text.rpartition("-")
         kind, _, seed = kind.rpartition("-")
-        if not kind or not seed.isdigit():
-            raise ExperimentError(f"a generated world is named as flat-3-small is, got {text!r}")
+        if kind not in KINDS or not seed.isdigit() or rest not in SIZES:
+            raise ExperimentError(
+                f"a generated world is named as flat-3-small is, got {text!r}; kinds are {', '.join(KINDS)}, "
+                f"sizes {', '.join(SIZES)}"
+            )
         return cls(kind, int(seed), rest)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from experiments.training.data.shards import Pair
 from experiments.training.sights import Image, Sight, projected
+from services.launcher.client.failure import ExperimentError
 from shared.geometry.sphere import EquirectGrid, FloatArray
 
 LINES, BAND_RAD = 40, 0.9
@@ -16,12 +17,28 @@ GAP_PX = 6
 
 
 def draw_pairs(path: Path, pairs: Sequence[Pair], seed: int = 0) -> None:
-    """One row for each pair, both panoramas one above the other; a line joins the same point in both."""
+    """One row for each pair, both panoramas one above the other; a line joins the same point in both.
+
+    Raises:
+        ExperimentError: there are no pairs.
+    """
+    if not pairs:
+        raise ExperimentError(f"no pairs to draw into {path}: the worlds have no room for any")
     rng = np.random.default_rng(seed)
     rows = [_drawn(pair, rng) for pair in pairs]
     path.parent.mkdir(parents=True, exist_ok=True)
     if not cv2.imwrite(str(path), np.concatenate(rows)):
-        raise OSError(f"{path} could not be written: expected a name that ends in .png or .jpg")
+        raise OSError(f"{path} could not be written")
+
+
+def require_picture_name(path: Path) -> None:
+    """Refuse a name whose ending says nothing to OpenCV, before hours of work end there.
+
+    Raises:
+        ExperimentError: the name does not end as that of a picture does.
+    """
+    if not cv2.haveImageWriter(str(path)):
+        raise ExperimentError(f"a picture's name ends in .png or .jpg, got {path}")
 
 
 def _drawn(pair: Pair, rng: np.random.Generator) -> Image:

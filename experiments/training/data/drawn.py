@@ -1,14 +1,15 @@
 """All shards of a folder, side by side; what an earlier run finished is kept."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import as_completed
 from pathlib import Path
+from typing import Any
 
 from rich.progress import Progress
 
 from experiments.training.data.making import ShardPlan, make_shard
 from experiments.training.data.recipe import DataRecipe
-from experiments.training.data.shards import read_shard
+from experiments.training.data.shards import about_shard
 from experiments.training.worlds import WorldName
 from experiments.work.workers import workers
 from services.launcher.client.failure import ExperimentError
@@ -36,7 +37,7 @@ def make_missing(
         The plans of those that were made.
 
     Raises:
-        ExperimentError: a shard that is there is corrupted, or was drawn by another recipe.
+        ExperimentError: a shard that is there is corrupted, or of another recipe or length.
     """
     missing = [plan for plan in plans if plan.done is None]
     for plan in plans:
@@ -53,8 +54,16 @@ def make_missing(
 
 
 def _require_same(plan: ShardPlan, path: Path) -> None:
-    about = read_shard(path).about
-    if about["recipe"] != plan.recipe.model_dump(mode="json"):
+    was, asked = (_flat(about) for about in (about_shard(path), plan.about))
+    other = [
+        f"{name} {was.get(name)}, now {value}" for name, value in asked.items() if was.get(name) != value
+    ]
+    if other:
         raise ExperimentError(
-            f"shard {path} was drawn by another recipe: choose another folder, or the recipe it was drawn by"
+            f"shard {path} was drawn by another recipe ({'; '.join(other)}): choose another folder, or the "
+            "recipe it was drawn by"
         )
+
+
+def _flat(about: Mapping[str, Any]) -> dict[str, Any]:
+    return {"pairs of a shard": about.get("planned"), **about["recipe"]}

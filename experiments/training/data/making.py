@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -52,6 +53,16 @@ class ShardPlan:
         return f"{self.world}-{self.number:03d}"
 
     @property
+    def about(self) -> dict[str, Any]:
+        """What stands in the shard: all that its pairs depend on."""
+        return {
+            "split": self.split,
+            "number": self.number,
+            "planned": self.pairs,
+            "recipe": self.recipe.model_dump(mode="json"),
+        }
+
+    @property
     def done(self) -> Path | None:
         """The shard if an earlier run finished it."""
         return next(iter(sealed_files(Path(self.folder), self.stem, SUFFIX)), None)
@@ -85,8 +96,7 @@ def make_shard(plan: ShardPlan) -> int:
         Pair(one, two, (_overlap(one, two), _overlap(two, one))) for one, two in zip(*sights, strict=True)
     ]
     jpegs = [_delivered(sight, recipe, rng) for pair in pairs for sight in (pair.here, pair.there)]
-    about = {"split": plan.split, "number": plan.number, "recipe": recipe.model_dump(mode="json")}
-    write_shard(Path(plan.folder), plan.stem, Shard(plan.world, pairs, about), jpegs)
+    write_shard(Path(plan.folder), plan.stem, Shard(plan.world, pairs, plan.about), jpegs)
     return len(pairs)
 
 

@@ -1,10 +1,12 @@
 """What pairs training sees: how far apart, in what light, through what camera."""
 
-from typing import Self
+from typing import Annotated, Self
 
-from pydantic import Field, NonNegativeFloat, PositiveFloat, PositiveInt
+from pydantic import Field, NonNegativeFloat, PositiveFloat, PositiveInt, field_validator
 
 from experiments.training.recipe import Recipe
+
+Percent = Annotated[int, Field(ge=1, le=100)]
 
 
 class DataRecipe(Recipe):
@@ -39,10 +41,17 @@ class DataRecipe(Recipe):
     noise: float = Field(default=0.4, ge=0.0, le=1.0)
     blur_px: NonNegativeFloat = 1.2
     smear_px: NonNegativeFloat = 6.0
-    jpeg: tuple[int, int] = (60, 95)
+    jpeg: tuple[Percent, Percent] = (60, 95)
     seam: NonNegativeFloat = 0.08
     seam_px: NonNegativeFloat = 2.0
     disturbed: float = Field(default=0.7, ge=0.0, le=1.0)
+
+    @field_validator("apart_m", "jpeg")
+    @classmethod
+    def _rises(cls, ends: tuple[float, float]) -> tuple[float, float]:
+        if ends[0] > ends[1]:
+            raise ValueError(f"from and to must rise, got {ends[0]} and {ends[1]}")
+        return ends
 
     @classmethod
     def plain(cls, seed: int, apart_m: tuple[float, float]) -> Self:

@@ -8,7 +8,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from experiments.training.sealed import packed, read_sealed, sealed_files, unpacked, write_sealed
+from experiments.training.sealed import description, packed, read_sealed, sealed_files, unpacked, write_sealed
 from experiments.training.sights import CameraPose, Image, Sight
 from experiments.training.worlds import WorldName, require_trainable
 from services.launcher.client.failure import ExperimentError
@@ -62,7 +62,7 @@ def write_shard(folder: Path, stem: str, shard: Shard, jpegs: Sequence[bytes]) -
         "poses": np.array([_pose_row(sight.pose) for sight in sights], np.float64).reshape(-1, 6),
         "overlaps": np.array([pair.overlap for pair in shard.pairs], np.float32).reshape(-1, 2),
     }
-    about = {**shard.about, "format": FORMAT, "world": str(shard.world)}
+    about = {**shard.about, "format": FORMAT, "world": str(shard.world), "pairs": len(shard.pairs)}
     return write_sealed(folder, stem, SUFFIX, packed(arrays, about))
 
 
@@ -72,21 +72,36 @@ def read_shard(path: Path) -> Shard:
     Raises:
         ExperimentError: it was changed, cut off, or is no shard.
     """
-    arrays, about = unpacked(read_sealed(path, "shard", AGAIN))
-    if about.get("format") != FORMAT:
-        raise ExperimentError(
-            f"shard {path} has format {about.get('format')!r}, expected {FORMAT!r}: {AGAIN}"
-        )
-    ends = np.cumsum(arrays["jpeg_bytes"])[:-1]
+    data = read_sealed(path, "shard", AGAIN)
+    about, arrays = _about(path, data), unpacked(data)
+    ends = np.cumsum(arrays["jpeg_bytes"])
     sights = [
         Sight(_decoded(path, jpeg), ranges, CameraPose(row[0], row[1], row[2], row[3], (row[4], row[5])))
         for jpeg, ranges, row in zip(
-            np.split(arrays["jpegs"], ends), arrays["ranges_m"], arrays["poses"].tolist(), strict=True
+            np.split(arrays["jpegs"], ends)[:-1], arrays["ranges_m"], arrays["poses"].tolist(), strict=True
         )
     ]
     overlaps: list[tuple[float, float]] = [(one, other) for one, other in arrays["overlaps"].tolist()]
     pairs = [Pair(*both) for both in zip(sights[::2], sights[1::2], overlaps, strict=True)]
     return Shard(WorldName.parse(about["world"]), pairs, about)
+
+
+def about_shard(path: Path) -> dict[str, Any]:
+    """World and recipe of a shard, and how many pairs were planned and are there; no picture is decoded.
+
+    Raises:
+        ExperimentError: it was changed, cut off, or is no shard.
+    """
+    return _about(path, read_sealed(path, "shard", AGAIN))
+
+
+def _about(path: Path, data: bytes) -> dict[str, Any]:
+    about = description(data)
+    if about.get("format") != FORMAT:
+        raise ExperimentError(
+            f"shard {path} has format {about.get('format')!r}, expected {FORMAT!r}: {AGAIN}"
+        )
+    return about
 
 
 def shard_files(folder: Path) -> list[Path]:

@@ -25,8 +25,8 @@ class Schedule(Recipe):
         steps: batches in all.
         rate: of Adam at first; it falls to 0 along half a cosine.
         kept_every: steps between checkpoints and lines of the log.
-        threads: cores; another number may round otherwise. Of cores that others use, too, every step waits for
-            the slowest.
+        threads: cores; another number may round otherwise. Every step waits for the slowest of
+            them, which others may use, too.
     """
 
     seed: NonNegativeInt = 1

@@ -1,13 +1,25 @@
 """Shards: what was written is read, what was changed is named, what judges is never trained on."""
 
+import json
+from pathlib import Path
+
 import cv2
 import numpy as np
 import pytest
 
+from experiments.training.data.drawing import draw_pairs, require_picture_name
 from experiments.training.data.drawn import make_missing, plan_shards
 from experiments.training.data.making import make_shard
 from experiments.training.data.recipe import DataRecipe
-from experiments.training.data.shards import Pair, Shard, read_shard, shard_files, trainable, write_shard
+from experiments.training.data.shards import (
+    Pair,
+    Shard,
+    about_shard,
+    read_shard,
+    shard_files,
+    trainable,
+    write_shard,
+)
 from experiments.training.recipe import recipe_from
 from experiments.training.sights import CameraPose, Sight
 from experiments.training.worlds import WorldName, first_worlds, require_trainable
@@ -72,6 +84,46 @@ def test_shards_of_another_recipe_are_not_mixed_in(written):
         make_missing(plans, 1)
 
 
+def plans_beside(world, folder, pairs=2, **changes):
+    """A shard of two pairs drawn by the recipe of `changes`, and the plan for as many as asked."""
+    recipe = DataRecipe(**changes)
+    (drawn,) = plan_shards([world], "development", 1, 2, recipe, folder)
+    shard, jpegs = shard_of(world)
+    write_shard(folder, drawn.stem, Shard(world, shard.pairs, drawn.about), jpegs)
+    return plan_shards([world], "development", 1, pairs, DataRecipe(), folder)
+
+
+def test_a_shard_of_the_same_recipe_is_kept_though_the_world_had_room_for_fewer_pairs(tmp_path):
+    (world,) = first_worlds("development", 1)
+    plans = plans_beside(world, tmp_path)
+    assert make_missing(plans, 1) == []
+    assert about_shard(plans[0].done)["pairs"] == 1
+
+
+@pytest.mark.parametrize(
+    ("pairs", "changes", "other"),
+    [(3, {}, "pairs of a shard 2, now 3"), (2, {"width_px": 512}, "width_px 512, now 1024")],
+)
+def test_what_differs_from_the_shards_that_are_there_is_named(tmp_path, pairs, changes, other):
+    (world,) = first_worlds("development", 1)
+    with pytest.raises(ExperimentError, match=other):
+        make_missing(plans_beside(world, tmp_path, pairs, **changes), 1)
+
+
+def test_a_shard_of_a_world_without_room_comes_back_empty(tmp_path):
+    (world,) = first_worlds("development", 1)
+    path = write_shard(tmp_path, f"{world}-000", Shard(world, [], {"recipe": {}}), [])
+    assert trainable(path).pairs == []
+    with pytest.raises(ExperimentError, match="no room"):
+        draw_pairs(tmp_path / "pairs.png", [])
+
+
+def test_an_ending_that_is_of_no_picture_is_refused_at_once():
+    require_picture_name(Path("pairs.png"))
+    with pytest.raises(ExperimentError, match=r"\.png or \.jpg, got pairs\.text"):
+        require_picture_name(Path("pairs.text"))
+
+
 def test_an_empty_folder_says_what_to_do(tmp_path):
     with pytest.raises(ExperimentError, match="topnav train data"):
         shard_files(tmp_path)
@@ -82,11 +134,19 @@ def test_a_recipe_file_replaces_values_and_a_wrong_name_is_named(tmp_path):
     file.write_text('{"width_px": 512}')
     assert recipe_from(DataRecipe, file, seed=7) == DataRecipe(width_px=512, seed=7)
     file.write_text('{"width": 512}')
-    with pytest.raises(ExperimentError, match="width"):
+    with pytest.raises(ExperimentError, match="width: Extra inputs"):
         recipe_from(DataRecipe, file)
 
 
-@pytest.mark.parametrize("text", ["flat", "flat-x-small", "-3-small"])
+@pytest.mark.parametrize("values", [{"jpeg": [95, 60]}, {"jpeg": [0, 101]}, {"apart_m": [6.0, 0.2]}, []])
+def test_values_that_nothing_can_be_drawn_by_are_named(tmp_path, values):
+    file = tmp_path / "r.json"
+    file.write_text(json.dumps(values))
+    with pytest.raises(ExperimentError, match=next(iter(values), "no JSON object")):
+        recipe_from(DataRecipe, file)
+
+
+@pytest.mark.parametrize("text", ["flat", "flat-x-small", "-3-small", "flut-3-small", "flat-3-tiny"])
 def test_a_name_that_is_no_generated_world_is_refused(text):
     with pytest.raises(ExperimentError, match="flat-3-small"):
         WorldName.parse(text)
