@@ -39,6 +39,8 @@ def keypoints(
     rows: list[dict[str, Any]] = run(worlds, pairs, names, kept, WIDTH_PX, seed, jobs, json_file)
     table = recurrence_table(rows, names)
     print_rows("keypoints that recur within 1 degree", [row for row in table if "status" not in row])
-    print_rows("without weights", [row for row in table if "status" in row])
+    absent = [row for row in table if "status" in row]
+    if absent:
+        print_rows("without weights", absent)
     print_rows("answers with SIFT's keypoints", answer_table(rows))
     return len(rows)

@@ -70,7 +70,7 @@ def residual(
     from rich.progress import Progress
 
     from experiments.training.data.shards import shard_files
-    from experiments.training.learning.running import run
+    from experiments.training.learning.running import require_same_shards, run
     from experiments.training.recipe import recipe_from
     from experiments.training.residual.recipe import ResidualRecipe, batch_loss, network_of
     from experiments.training.residual.samples import samples_of
@@ -81,7 +81,9 @@ def residual(
 
     chosen = recipe_from(ResidualRecipe, recipe)
     pipeline = Pipeline(replace(find_profile("sift"), keypoints=chosen.keypoints))
-    samples = samples_of(shard_files(pairs), pipeline)
+    files = shard_files(pairs)
+    require_same_shards(files, into)
+    samples = samples_of(files, pipeline)
     if not samples:
         raise ExperimentError(f"no pair in {pairs} has enough common keypoints: draw more pairs")
     with Progress(console=wide_console(stderr=True), transient=True) as progress:
@@ -114,25 +116,18 @@ def evaluate(
     from experiments.training.data.recipe import DataRecipe
     from experiments.training.data.shards import read_shard
     from experiments.training.evaluation.measure import judge
-    from experiments.training.evaluation.models import there_already, trained_residual
+    from experiments.training.evaluation.models import available, trained_residual
     from experiments.training.worlds import first_worlds
-    from services.features.networks.runtime import WeightsError
     from services.launcher.terminal.output import print_rows, write_json
 
     ours = trained_residual(trained)
+    others, absent = available([name.strip() for name in against.split(",") if name.strip()])
     recipe = DataRecipe.plain(seed, (0.3, 6.0))
     plans = plan_shards(first_worlds("validation", worlds), "validation", 1, pairs, recipe, into)
     make_missing(plans, jobs)
     judged = [pair for plan in plans if plan.done is not None for pair in read_shard(plan.done).pairs]
-    rows = []
-    for name in [one.strip() for one in against.split(",") if one.strip()]:
-        try:
-            rows.append(judge(there_already(name), judged))
-        except WeightsError as error:
-            rows.append({"name": name, "status": f"no weights: {error}"})
-    rows.append(judge(ours, judged))
-    write_json(json_file, {"pairs": len(judged), "seed": seed, "models": rows})
-    measured = [row for row in rows if "status" not in row]
-    print_rows("on validation worlds", [
-        {k: row[k] for k in ("name", "bytes", "ms_frame", "ms_pair")} | row["renderings"] for row in measured
-    ])  # fmt: skip
+    rows = [judge(model, judged) for model in (*others, ours)]
+    write_json(json_file, {"pairs": len(judged), "seed": seed, "models": rows, "without_weights": absent})
+    print_rows("on validation worlds", rows)
+    if absent:
+        print_rows("without weights", [{"name": name, "why": why} for name, why in absent.items()])

@@ -42,9 +42,7 @@ def judge(model: Model, pairs: Sequence[Pair]) -> Row:
         "bytes": model.size_bytes,
         "ms_frame": rounded(1e3 * np.median(frame_s), 1),
         "ms_pair": rounded(1e3 * np.median(pair_s), 2),
-        "renderings": summary(answers),
-        "photographs": None,
-        "map": None,
+        **summary(answers),
     }
 
 

@@ -1,7 +1,8 @@
 """What is compared: pipelines that are there, and a checkpoint of ours on top of SIFT."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ from experiments.training.residual.network import context_of
 from experiments.training.residual.recipe import ResidualRecipe, network_of
 from experiments.training.sealed import sealed_files
 from experiments.training.sights import Image
-from services.features.networks.runtime import unit_descriptors
+from services.features.networks.runtime import WeightsError, unit_descriptors
 from services.features.pipeline.extraction import extract
 from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.named_pipelines import find_profile
@@ -41,15 +42,24 @@ class Model:
     features: Callable[[Image], FeatureSet]
 
 
-def there_already(name: str) -> Model:
-    """A pipeline by name.
+def available(names: Sequence[str]) -> tuple[list[Model], dict[str, str]]:
+    """Pipelines by name.
+
+    Returns:
+        Those that can be had, and why the others cannot: their weights are not here.
 
     Raises:
         ValueError: no such pipeline.
-        WeightsError: its weights are not here.
     """
-    pipeline = Pipeline(find_profile(name))
-    return Model(name, 0, pipeline, lambda picture: _extracted(picture, pipeline))
+    models, absent = [], {}
+    for name in names:
+        try:
+            pipeline = Pipeline(find_profile(name))
+        except WeightsError as error:
+            absent[name] = str(error)
+        else:
+            models.append(Model(name, 0, pipeline, partial(_extracted, pipeline=pipeline)))
+    return models, absent
 
 
 def trained_residual(folder: Path) -> Model:

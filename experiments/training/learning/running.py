@@ -2,7 +2,7 @@
 
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,7 @@ from experiments.training.recipe import Recipe
 from services.launcher.client.failure import ExperimentError
 
 LossOf = Callable[[torch.nn.Module, np.random.Generator], torch.Tensor]
-RECIPE, LOG = "recipe.json", "log.jsonl"
+RECIPE, SHARDS, LOG = "recipe.json", "shards.txt", "log.jsonl"
 
 
 class Schedule(Recipe):
@@ -51,7 +51,7 @@ def run(
         network: as it begins; changed in place.
         loss_of: a step's loss, its batch drawn from the generator it gets.
         schedule: how long.
-        recipe: everything that the result depends on; a folder belongs to one.
+        recipe: everything but the data that the result depends on; a folder belongs to one.
         folder: of checkpoints and log.
         tick: hears of every step.
         until: stop early after this step, with a checkpoint.
@@ -62,7 +62,7 @@ def run(
     Raises:
         ExperimentError: the folder is of another recipe, or its checkpoint is corrupted.
     """
-    _require_same(recipe, folder)
+    _require_same(folder / RECIPE, recipe.model_dump_json(indent=2) + "\n", "another recipe")
     torch.set_num_threads(schedule.threads)
     optimiser = torch.optim.Adam(network.parameters(), lr=schedule.rate)
     step, began = resume(folder, network, optimiser), time.monotonic()
@@ -89,10 +89,18 @@ def run(
     return step
 
 
-def _require_same(recipe: Recipe, folder: Path) -> None:
-    text, path = recipe.model_dump_json(indent=2) + "\n", folder / RECIPE
-    folder.mkdir(parents=True, exist_ok=True)
+def require_same_shards(shards: Sequence[Path], folder: Path) -> None:
+    """A folder of checkpoints belongs to the shards it was begun with, whose names tell their contents.
+
+    Raises:
+        ExperimentError: it was begun with others.
+    """
+    _require_same(folder / SHARDS, "".join(f"{path.name}\n" for path in shards), "other pairs")
+
+
+def _require_same(path: Path, text: str, other: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
     if not path.exists():
         path.write_text(text, encoding="utf-8")
     elif path.read_text(encoding="utf-8") != text:
-        raise ExperimentError(f"{path} is another recipe than the one asked for: choose another folder")
+        raise ExperimentError(f"{path} tells of {other} than asked for: choose another folder")

@@ -3,7 +3,7 @@
 import pytest
 
 from experiments.training.evaluation.measure import summary
-from experiments.training.evaluation.models import trained_residual
+from experiments.training.evaluation.models import available, trained_residual
 from experiments.training.keypoints.tables import answer_table, recurrence_table
 from services.launcher.client.failure import ExperimentError
 
@@ -34,6 +34,15 @@ def test_a_detector_without_weights_is_listed_and_measures_nothing():
     assert first["recurring_share"] == 0.25
     assert second == {"detector": "aliked-t16", "status": "no weights"}
     assert [one["matcher"] for one in answer_table([measured])] == ["mutual ratio", "oracle"]
+
+
+def test_a_pipeline_without_weights_is_named_and_an_unknown_one_refused(monkeypatch, tmp_path):
+    monkeypatch.setenv("TORCH_HOME", str(tmp_path))
+    models, absent = available(["sift", "aliked-n16"])
+    assert [model.name for model in models] == ["sift"]
+    assert list(absent) == ["aliked-n16"]
+    with pytest.raises(ValueError, match="got 'soft'"):
+        available(["soft"])
 
 
 def test_a_folder_without_a_checkpoint_says_what_to_do(tmp_path):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from experiments.training.learning.running import LOG, Schedule, run
+from experiments.training.learning.running import LOG, Schedule, require_same_shards, run
 from experiments.training.residual.network import CONTEXT, WIDTH
 from experiments.training.residual.recipe import ResidualRecipe, batch_loss, network_of, triplets
 from experiments.training.residual.samples import Sample
@@ -77,6 +77,28 @@ def test_a_folder_of_another_recipe_is_not_gone_on_with(tmp_path):
     trained(tmp_path, until=3)
     with pytest.raises(ExperimentError, match="another recipe"):
         trained(tmp_path, recipe=RECIPE.model_copy(update={"margin": 0.5}))
+
+
+def test_a_folder_begun_with_other_pairs_is_not_gone_on_with(tmp_path):
+    begun = [tmp_path / "flat-3-small-000-0123456789abcdef.npz"]
+    for _ in range(2):
+        require_same_shards(begun, tmp_path / "into")
+    with pytest.raises(ExperimentError, match="other pairs"):
+        require_same_shards([tmp_path / "flat-3-small-000-fedcba9876543210.npz"], tmp_path / "into")
+
+
+def test_the_global_generator_of_torch_is_left_alone():
+    torch.manual_seed(5)
+    expected = torch.rand(1)
+    torch.manual_seed(5)
+    network_of(RECIPE)
+    assert torch.equal(torch.rand(1), expected)
+
+
+@pytest.mark.parametrize("name", ["steps", "rate", "kept_every", "threads"])
+def test_a_schedule_of_nothing_is_refused_by_name(name):
+    with pytest.raises(ValueError, match=name):
+        Schedule.model_validate({name: 0})
 
 
 def test_training_lowers_the_loss(tmp_path):
