@@ -23,7 +23,9 @@ Jobs = Annotated[int, typer.Option(min=1, help="Worlds at a time.")]
 def data(
     into: Annotated[Path, typer.Option(help="Folder of the shards.")] = DATA,
     worlds: Annotated[int, typer.Option(min=1, help="Development worlds, kinds and sizes in turn.")] = WORLDS,
-    only: Annotated[str, typer.Option(help='Worlds by name, as "hostel-0-medium,school-0-small", instead.')] = "",
+    only: Annotated[
+        str, typer.Option(help='Worlds by name, as "hostel-0-medium,school-0-small", instead.')
+    ] = "",
     shards: Annotated[int, typer.Option(min=1, help="Per world, each in its own light.")] = SHARDS,
     pairs: Annotated[int, typer.Option(min=1, help="Per shard.")] = PAIRS,
     draw: Annotated[Path | None, typer.Option(help="Draw some pairs with lines into this picture.")] = None,

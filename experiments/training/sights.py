@@ -15,6 +15,10 @@ BoolArray = npt.NDArray[np.bool_]
 
 SAME_SHARE, SAME_M = 0.03, 0.03
 """A point is seen where the range measured there is its distance to this: 3 %, or the width of an edge."""
+CHECKED = (24, 48)
+"""Rows and columns of directions by which overlap is measured: 1152, a share is known to 1.5 points."""
+BAND_RAD = float(np.deg2rad(65.0))
+"""Latitudes that are looked at (thesis, section 6.1.1)."""
 
 
 @dataclass(frozen=True)
@@ -105,3 +109,13 @@ def projected(lonlat_rad: npt.ArrayLike, here: Sight, there: Sight) -> tuple[Flo
     lonlat = lonlat_from_bearings(seen)
     visible = known & there.shows(lonlat, np.linalg.norm(seen, axis=-1))
     return lonlat, visible
+
+
+def overlap(here: Sight, there: Sight) -> float:
+    """Share of the directions of `here` within the band, evenly over the sphere, that `there` sees."""
+    rows, columns = CHECKED
+    heights = np.sin(BAND_RAD) * (2.0 * (np.arange(rows) + 0.5) / rows - 1.0)
+    turns = 2.0 * np.pi * (np.arange(columns) + 0.5) / columns - np.pi
+    lon, lat = np.meshgrid(turns, np.arcsin(heights))
+    _, visible = projected(np.stack([lon.ravel(), lat.ravel()], axis=-1), here, there)
+    return float(visible.mean())

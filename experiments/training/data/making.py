@@ -14,17 +14,12 @@ from experiments.training.data.recipe import DataRecipe
 from experiments.training.data.shards import SUFFIX, Pair, Shard, write_shard
 from experiments.training.photographing import Conditions, Photographer, draw_apart, draw_tilt
 from experiments.training.sealed import sealed_files
-from experiments.training.sights import Sight, projected
+from experiments.training.sights import Sight, overlap
 from experiments.training.worlds import WorldName
 from services.launcher.client.failure import ExperimentError
 from simulator.generation.splits import Split
 from simulator.world.freespace import FreeSpace, free_space
 from simulator.world.world_file import WorldFile
-
-CHECKED = (24, 48)
-"""Rows and columns of directions by which overlap is measured: 1152, a share is known to 1.5 points."""
-BAND_RAD = float(np.deg2rad(65.0))
-"""Latitudes that are looked at (thesis, section 6.1.1)."""
 
 
 @dataclass(frozen=True)
@@ -92,9 +87,7 @@ def make_shard(plan: ShardPlan) -> int:
     ):
         photographer = Photographer(world, conditions, recipe.width_px)
         sights.append([photographer.sight(pose, draw_tilt(rng, recipe.tilt_rad)) for pose in taken_at])
-    pairs = [
-        Pair(one, two, (_overlap(one, two), _overlap(two, one))) for one, two in zip(*sights, strict=True)
-    ]
+    pairs = [Pair(one, two, (overlap(one, two), overlap(two, one))) for one, two in zip(*sights, strict=True)]
     jpegs = [_delivered(sight, recipe, rng) for pair in pairs for sight in (pair.here, pair.there)]
     write_shard(Path(plan.folder), plan.stem, Shard(plan.world, pairs, plan.about), jpegs)
     return len(pairs)
@@ -119,16 +112,6 @@ def _draw(
 ) -> PosePair | None:
     strangers = draw_strangers(world, space, rng) if rng.random() < recipe.negatives else None
     return strangers or draw_apart(space, rng, recipe.apart_m)
-
-
-def _overlap(here: Sight, there: Sight) -> float:
-    """Share of the directions of `here` within the band, evenly over the sphere, that `there` sees."""
-    rows, columns = CHECKED
-    heights = np.sin(BAND_RAD) * (2.0 * (np.arange(rows) + 0.5) / rows - 1.0)
-    turns = 2.0 * np.pi * (np.arange(columns) + 0.5) / columns - np.pi
-    lon, lat = np.meshgrid(turns, np.arcsin(heights))
-    _, visible = projected(np.stack([lon.ravel(), lat.ravel()], axis=-1), here, there)
-    return float(visible.mean())
 
 
 def _delivered(sight: Sight, recipe: DataRecipe, rng: np.random.Generator) -> bytes:

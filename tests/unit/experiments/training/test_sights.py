@@ -6,21 +6,9 @@ import numpy as np
 import pytest
 
 from experiments.training.correspondences import correspondences
-from experiments.training.sights import CameraPose, Sight, projected
+from experiments.training.sights import CameraPose, Sight, overlap, projected
 from shared.geometry.sphere import bearings_from_lonlat, lonlat_from_bearings
-from simulator.sensors.panorama import directions
-
-HALF_M, WIDTH = np.array([4.0, 3.0, 2.0]), 512
-
-
-def in_a_box(pose: CameraPose, hidden: bool = False) -> Sight:
-    """What a camera sees in an empty box round the origin; if hidden, something stands before everything."""
-    rays = directions(WIDTH) @ pose.rotation.T
-    with np.errstate(divide="ignore"):
-        ways = (np.where(rays > 0, HALF_M, -HALF_M) - pose.position_m) / rays
-    ranges = np.nanmin(np.where(ways > 0, ways, np.inf), axis=-1)
-    return Sight(np.zeros((WIDTH // 2, WIDTH, 3), np.uint8), 0.3 * ranges if hidden else ranges, pose)
-
+from tests.unit.experiments.training.boxes import in_a_box
 
 HERE = CameraPose(0.5, 0.2, 0.3, 0.1)
 THERE = CameraPose(-1.0, 1.0, -2.0, 0.15, (0.05, -0.03))
@@ -40,6 +28,14 @@ def test_what_is_hidden_is_not_seen():
     directions_rad = np.array([[0.0, 0.0], [2.0, 0.3]])
     assert projected(directions_rad, in_a_box(HERE), in_a_box(THERE))[1].all()
     assert not projected(directions_rad, in_a_box(HERE), in_a_box(THERE, hidden=True))[1].any()
+
+
+def test_overlap_is_all_of_an_empty_room_and_nothing_of_what_is_hidden():
+    assert overlap(in_a_box(HERE), in_a_box(THERE)) > 0.99
+    assert overlap(in_a_box(HERE), in_a_box(THERE, hidden=True)) == 0.0
+    half = in_a_box(THERE)
+    half.ranges_m[:, : half.ranges_m.shape[1] // 2] = np.inf
+    assert 0.2 < overlap(in_a_box(HERE), half) < 0.8
 
 
 def test_where_nothing_is_nothing_recurs():
