@@ -1,6 +1,7 @@
 """The loop of every recipe. Step k draws from a generator of (seed, k), wherever it was cut off."""
 
 import json
+import math
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -34,6 +35,10 @@ class Schedule(Recipe):
     rate: PositiveFloat = 1e-3
     kept_every: PositiveInt = 100
     threads: PositiveInt = 1
+
+    def rate_at(self, step: int) -> float:
+        """Adam's rate for the batch after so many steps."""
+        return 0.5 * self.rate * (1.0 + math.cos(math.pi * step / self.steps))
 
 
 def run(
@@ -69,7 +74,7 @@ def run(
     last = min(schedule.steps, until if until is not None else schedule.steps)
     while step < last:
         for group in optimiser.param_groups:
-            group["lr"] = 0.5 * schedule.rate * (1.0 + np.cos(np.pi * step / schedule.steps))
+            group["lr"] = schedule.rate_at(step)
         optimiser.zero_grad()
         loss = loss_of(network, np.random.default_rng([schedule.seed, step]))
         loss.backward()

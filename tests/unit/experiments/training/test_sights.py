@@ -14,6 +14,14 @@ HERE = CameraPose(0.5, 0.2, 0.3, 0.1)
 THERE = CameraPose(-1.0, 1.0, -2.0, 0.15, (0.05, -0.03))
 
 
+def test_a_camera_turns_leans_and_rolls_as_the_simulated_one_does():
+    cos, sin = math.cos(0.1), math.sin(0.1)
+    ahead = CameraPose(0.0, 0.0, math.pi / 2, 0.8, (0.1, 0.0)).rotation @ [1.0, 0.0, 0.0]
+    np.testing.assert_allclose(ahead, [0.0, cos, -sin], atol=1e-12)  # towards y, nose down
+    left = CameraPose(0.0, 0.0, 0.0, 0.8, (0.0, 0.1)).rotation @ [0.0, 1.0, 0.0]
+    np.testing.assert_allclose(left, [0.0, cos, sin], atol=1e-12)  # left side up
+
+
 def test_a_point_on_a_wall_is_found_where_the_other_camera_sees_it():
     here, there = in_a_box(HERE), in_a_box(THERE)
     point = np.array([4.0, -1.0, 0.7])
@@ -52,6 +60,15 @@ def test_partners_are_one_to_one_and_wrong_matches_are_told():
     truth = correspondences(first, second, here, there)
     assert truth.pairs.tolist() == [[0, 1], [2, 0]]
     assert truth.right(np.array([[0, 1], [0, 3], [2, 0], [1, 0]])).tolist() == [True, False, True, False]
+
+
+def test_of_two_keypoints_beside_one_another_the_nearer_gets_the_partner():
+    here, there = in_a_box(HERE), in_a_box(THERE)
+    first = np.array([[0.105, 0.1], [0.1, 0.1]])
+    expected, _ = projected(first, here, there)
+    truth = correspondences(first, expected[1:], here, there)
+    assert truth.recurring.tolist() == [True, True]
+    assert truth.pairs.tolist() == [[1, 0]]
 
 
 @pytest.mark.parametrize("count", [0, 3])

@@ -101,6 +101,12 @@ def test_a_schedule_of_nothing_is_refused_by_name(name):
         Schedule.model_validate({name: 0})
 
 
+def test_the_rate_falls_along_half_a_cosine():
+    schedule = Schedule(steps=12, rate=0.2)
+    assert [schedule.rate_at(step) for step in (0, 6, 12)] == pytest.approx([0.2, 0.1, 0.0])
+    assert schedule.rate_at(3) == pytest.approx(0.1 + 0.1 * 0.5**0.5)
+
+
 def test_training_lowers_the_loss(tmp_path):
     longer = RECIPE.model_copy(update={"schedule": Schedule(steps=60, kept_every=60, rate=3e-3, threads=1)})
     begin, end = network_of(longer), network_of(longer)
