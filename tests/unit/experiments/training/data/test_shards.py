@@ -55,6 +55,15 @@ def test_a_shard_comes_back_as_it_was(written):
     assert shard_files(written.parent) == [written]
 
 
+def test_a_shard_drawn_again_takes_the_place_of_the_one_before(written):
+    shard, jpegs = shard_of(read_shard(written).world)
+    again = write_shard(
+        written.parent, written.name[:-21], Shard(shard.world, shard.pairs, {"recipe": 1}), jpegs
+    )
+    assert again != written
+    assert shard_files(written.parent) == [again]
+
+
 @pytest.mark.parametrize("damage", ["flipped", "cut"])
 def test_a_corrupted_shard_is_refused_by_name(written, damage):
     data = bytearray(written.read_bytes())

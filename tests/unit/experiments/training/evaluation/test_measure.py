@@ -15,7 +15,10 @@ def row(distance_m: float, same: bool = True, off_deg: float | None = 1.0) -> di
 
 
 def test_only_pairs_2_to_3_m_apart_count_as_wide_and_other_places_are_apart():
-    figures = summary([row(1.0), row(2.5) | {"verified_right": 6}, row(9.0, same=False, off_deg=170.0)])
+    figures = summary(
+        [row(1.0), row(2.5) | {"verified_right": 6}, row(9.0, same=False, off_deg=170.0) | {"right": 0}]
+    )
+    assert figures["pairs"] == 2
     assert figures["precision"] == 0.75
     assert figures["recall"] == 0.5
     assert figures["verified_2_3_m"] == 6

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from experiments.rendered.pairs import PosePair
-from experiments.training.keypoints.measure import answers, profile_of, recurrence
+from experiments.training.correspondences import correspondences
+from experiments.training.keypoints.measure import answer, answers, profile_of, recurrence
 from experiments.training.sights import CameraPose, projected
 from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.named_pipelines import find_profile
@@ -53,6 +54,16 @@ def test_the_matcher_takes_what_looks_alike_and_the_oracle_what_is_true(seen):
         assert one["answered"]
         assert one["verified_right"] > 0.9 * (COUNT - WRONG)
         assert one["heading_off_deg"] < 2.0
+
+
+def test_what_is_verified_but_not_true_is_not_right(seen):
+    here, _, (first, second) = seen
+    pipeline = Pipeline(find_profile("sift"))
+    (matched,) = pipeline.matcher.match(first, [second])
+    nothing = correspondences(first.lonlat_rad, second.lonlat_rad, here, in_a_box(THERE, hidden=True))
+    row = answer(first, second, matched, nothing, PAIR, pipeline)
+    assert row["verified"] > 0.9 * (COUNT - WRONG)
+    assert row["right"] == row["verified_right"] == row["possible"] == 0
 
 
 def test_an_unknown_detector_is_named_with_those_there_are():

@@ -54,6 +54,7 @@ def test_interrupted_training_goes_on_to_the_same_bits(tmp_path):
     pieces = trained(tmp_path / "pieces")
     assert all(torch.equal(whole[name], pieces[name]) for name in whole)
     assert not torch.equal(whole["inner.0.weight"], network_of(RECIPE).state_dict()["inner.0.weight"])
+    assert len(list((tmp_path / "pieces").glob("step-*"))) == 2  # the last one, and one should that break
     assert (tmp_path / "pieces" / LOG).read_text().count("\n") >= 4
 
 
@@ -114,6 +115,19 @@ def test_training_lowers_the_loss(tmp_path):
     with torch.no_grad():
         before, after = (triplets(net, SAMPLES[0], 1.0).mean() for net in (begin, end))
     assert after < 0.9 * before
+
+
+def test_the_loss_of_two_partners_is_that_of_paper_and_pencil():
+    """Beside the partners, equal to the bit, the second picture has a keypoint 0.765 from both."""
+    first = np.eye(2, dtype=np.float32)
+    second = np.concatenate([first, np.full((1, 2), 0.5**0.5, np.float32)])
+    none = np.zeros((3, 0), np.float32)
+    plain = Sample((first, second), (none[:2], none), np.array([[0, 0], [1, 1]]), np.eye(2, 3, dtype=bool))
+    to_it, from_it = 1.0 - (2.0 - 2.0**0.5) ** 0.5, 0.0  # of the first's, nothing is nearer than 2^0.5
+    loss = triplets(lambda descriptors, _: descriptors, plain, 1.0)
+    assert loss.tolist() == pytest.approx(
+        [to_it, to_it, from_it, from_it], abs=2e-3
+    )  # 1e-3: root of the clamp
 
 
 def test_what_is_near_the_true_place_is_no_negative():
