@@ -82,6 +82,14 @@ class FeatureService:
         features = self._pipeline.features_of(frame)
         return features.model_copy(update={"extract_ms": (time.perf_counter() - start_s) * 1e3})
 
+    def _extract_any(self, request: ExtractRequest) -> Features:
+        if request.photo is None:
+            assert request.frame is not None  # one of them is there, see ExtractRequest
+            return self._extract(request.frame)
+        start_s = time.perf_counter()
+        features = self._pipeline.features_of_photo(request.photo)
+        return features.model_copy(update={"extract_ms": (time.perf_counter() - start_s) * 1e3})
+
     def _on_match(self, robot: RobotStreams, request: Request[MatchRequest, MatchReply]) -> None:
         try:
             reply = self._match(robot, request.message)
@@ -118,7 +126,7 @@ class FeatureService:
 
     def _on_extract(self, request: Request[ExtractRequest, Features]) -> None:
         try:
-            features = self._extract(request.message.frame)
+            features = self._extract_any(request.message)
         except BadPictureError as error:
             self._bus.counters.count("bad_picture", str(error))
             request.refuse(str(error))
