@@ -24,7 +24,8 @@ def verify_photo(
     photo, node = query.lonlat_rad[pairs[:, 0]], other.lonlat_rad[pairs[:, 1]]
     cues = cues_of(query, other, matched)
     rng = np.random.default_rng([seq, candidate.node_id & 0xFFFF_FFFF])
-    plane, there = plane_from_lonlat(photo, focal_of(view.fov_rad)), bearings_from_lonlat(node)
+    plane = plane_from_lonlat(photo.astype(np.float64), focal_of(view.fov_rad))
+    there = bearings_from_lonlat(node)
     fovs = (view.fov_rad,) if view.fov_known else FOVS_RAD
     votes = [vote(rays(plane, focal_of(fov))[0], there, matched.right, rng) for fov in fovs]
     best = max((v.count for v in votes if v is not None), default=0)

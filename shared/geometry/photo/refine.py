@@ -1,6 +1,7 @@
 """The pose of a photo from matches with panoramas of known places, by reweighted Gauss-Newton. Pure."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,8 +23,9 @@ FINE_RAD = tuple(np.deg2rad([1.1, 0.8, 0.55, 0.4, 0.4, 0.4]).tolist())
 LEVEL_M, HIGHER_M = 1.2, 0.4
 """How far from the start, along the floor and upwards, a photo usually is; chosen: nodes stand 0.7 m apart,
 and people hold a phone half a metre above the camera of the robot."""
-LOG_FOCAL = 0.35
-"""Spread of ln f of phones about the usual one: 50 and 110 degrees are 1.5 of it away."""
+UNKNOWN_LOG_FOCAL, KNOWN_LOG_FOCAL = 0.35, 0.03
+"""Spread of ln f of phones about the usual one, of which 50 and 110 degrees are 1.5 away; and of what a file
+says: whole millimetres of a film's, a lens that bends lines."""
 MOST_STEP = np.array([0.15, 0.15, 0.15, 0.35, 0.35, 0.35, 0.15])
 """Longest step of a turn (rad), a way (m) and ln f; chosen: none leaves what it refines."""
 DIFFERENCE = np.array([1e-4, 1e-4, 1e-4, 1e-3, 1e-3, 1e-3, 1e-4])
@@ -31,7 +33,12 @@ DIFFERENCE = np.array([1e-4, 1e-4, 1e-4, 1e-3, 1e-3, 1e-3, 1e-4])
 
 
 def refine(
-    seen: Sightings, start: PhotoPose, noises_rad: Sequence[float], *, usual_log_focal: float | None
+    seen: Sightings,
+    start: PhotoPose,
+    noises_rad: Sequence[float],
+    usual_log_focal: float,
+    *,
+    focal_known: bool,
 ) -> PhotoPose:
     """Maximum a posteriori pose.
 
@@ -39,28 +46,36 @@ def refine(
         seen: the matches.
         start: where to begin.
         noises_rad: noise assumed in each step, from wide to narrow.
-        usual_log_focal: about what ln f is; None where the start's is known.
+        usual_log_focal: about what ln f is.
+        focal_known: it is that of the photo, not that of phones.
     """
-    pose, free = start, 6 if usual_log_focal is None else 7
-    information = np.array([0.0, 0.0, 0.0, LEVEL_M**-2, LEVEL_M**-2, HIGHER_M**-2, LOG_FOCAL**-2])[:free]
+    pose = start
+    spread = np.array([LEVEL_M, LEVEL_M, HIGHER_M, KNOWN_LOG_FOCAL if focal_known else UNKNOWN_LOG_FOCAL])
+    information = np.concatenate([np.zeros(3), spread**-2])
     for noise_rad in noises_rad:
         weight = np.sqrt(belonging(seen, likelihood_ratio(seen, misses(seen, pose), noise_rad)))
         base = _residuals(seen, pose, weight, noise_rad)
         columns = [
             (_residuals(seen, _moved(pose, DIFFERENCE[k] * np.eye(7)[k]), weight, noise_rad) - base)
             / DIFFERENCE[k]
-            for k in range(free)
+            for k in range(7)
         ]
         jacobian = np.stack(columns, axis=1)
         off = np.zeros(7)
         off[3:6] = pose.position_m - start.position_m
         off[5] = pose.position_m[2]
-        off[6] = pose.log_focal - (usual_log_focal or 0.0)
+        off[6] = pose.log_focal - usual_log_focal
         normal = jacobian.T @ jacobian + np.diag(information + 1e-6)
-        step = np.zeros(7)
-        step[:free] = -np.linalg.solve(normal, jacobian.T @ base + information * off[:free])
+        step = -np.linalg.solve(normal, jacobian.T @ base + information * off)
         pose = _moved(pose, np.clip(step, -MOST_STEP, MOST_STEP))
+        if not focal_known:
+            pose = replace(pose, log_focal=float(np.clip(pose.log_focal, *_phones())))
     return pose
+
+
+def _phones() -> tuple[float, float]:
+    """Least and greatest ln f that is looked for."""
+    return float(np.log(focal_of(WIDEST_RAD))), float(np.log(focal_of(NARROWEST_RAD)))
 
 
 def _residuals(seen: Sightings, pose: PhotoPose, weight: FloatArray, noise_rad: float) -> FloatArray:
@@ -71,9 +86,6 @@ def _residuals(seen: Sightings, pose: PhotoPose, weight: FloatArray, noise_rad: 
 
 
 def _moved(pose: PhotoPose, step: FloatArray) -> PhotoPose:
-    log_focal = pose.log_focal
-    if step[6]:
-        narrow, wide = np.log(focal_of(NARROWEST_RAD)), np.log(focal_of(WIDEST_RAD))
-        log_focal = float(np.clip(log_focal + step[6], wide, narrow))
+    log_focal = pose.log_focal + float(step[6])
     turned = exponential(step[None, :3])[0] @ pose.rotation
     return PhotoPose(turned, pose.position_m + step[3:6], log_focal)

@@ -16,6 +16,8 @@ from shared.messages.matching import NodeMatch
 
 AROUND_M = 2.5
 """Nodes so near to one are reckoned with; chosen: at this distance few matches are left."""
+PHOTO_NODES = 60
+"""Nodes, most alike first, whose matches are asked for; chosen: more than any ten places of three nodes."""
 PART_NODES = 40
 """Nodes whose places are solved for together; chosen: those within some three metres."""
 

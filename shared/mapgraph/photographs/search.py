@@ -124,12 +124,12 @@ def _coarse(
     ahead = start.vote.rotation[:, 0] * np.array([1.0, 1.0, 0.0])
     at = off_m * ahead / max(float(np.linalg.norm(ahead)), 1e-9)
     begun = PhotoPose(start.vote.rotation, at, math.log(start.focal))
-    pose = refine(around.seen, begun, COARSE_RAD, usual_log_focal=_usual(matches))
+    pose = refine(around.seen, begun, COARSE_RAD, _usual(matches), focal_known=matches.view.fov_known)
     return score(around.seen, pose)[0], around, pose
 
 
 def _fine(matches: PhotoMatches, around: Surroundings, coarse: PhotoPose) -> PhotoPlace | None:
-    pose = refine(around.seen, coarse, FINE_RAD, usual_log_focal=_usual(matches))
+    pose = refine(around.seen, coarse, FINE_RAD, _usual(matches), focal_known=matches.view.fov_known)
     node, off_m = around.nearest(pose.position_m)
     if off_m > OFF_THE_MAP_M:
         return None
@@ -148,8 +148,9 @@ def _fine(matches: PhotoMatches, around: Surroundings, coarse: PhotoPose) -> Pho
     )
 
 
-def _usual(matches: PhotoMatches) -> float | None:
-    return None if matches.view.fov_known else math.log(focal_of(USUAL_RAD))
+def _usual(matches: PhotoMatches) -> float:
+    """About what ln f is."""
+    return math.log(matches.focal if matches.view.fov_known else focal_of(USUAL_RAD))
 
 
 def _turned(xy: FloatArray, angle_rad: float) -> tuple[float, float]:

@@ -12,6 +12,7 @@ from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.relative_poses import relative_poses
 from shared.mapgraph.photographs.photo_matches import PART_NODES, PhotoMatches
 from shared.mapgraph.photographs.search import PhotoPlace, poses_of
+from shared.messages.features import PhotoView
 
 # Chosen by `topnav study phone-photos` in the apartment, RIVAL_SHARE in the hostel, whose rooms are equal.
 LEAST_NATS = 25.0
@@ -45,10 +46,21 @@ class PhotoAnswer:
         verdict: `found` at one place; `ambiguous`: at one of several that look alike; `weak`: about there,
             where within some metres is not clear; `not_found`: the map explains too little of it.
         places: the likeliest first; empty where it is not found.
+        fov_rad: of the likeliest pose, however little speaks for it; None without any.
     """
 
     verdict: PhotoVerdict
     places: tuple[PhotoPlace, ...]
+    fov_rad: float | None = None
+
+    def looked_again(self, view: PhotoView) -> PhotoView | None:
+        """The view with which to extract its features once more, nearer to the truth; None where it is known.
+
+        Drawn with another field of view than its own a photo is distorted: with the found one more matches.
+        """
+        if view.fov_known or self.fov_rad is None:
+            return None
+        return view.model_copy(update={"fov_rad": self.fov_rad})
 
 
 @dataclass(frozen=True)
@@ -67,8 +79,9 @@ def located(graph: MapGraph, matches: PhotoMatches, rng: np.random.Generator) ->
 
 def judged(graph: MapGraph, poses: Sequence[PhotoPlace]) -> PhotoAnswer:
     """The same from poses, the likeliest first."""
+    fov_rad = poses[0].fov_rad if poses else None
     if not poses or poses[0].score < LEAST_NATS:
-        return PhotoAnswer("not_found", ())
+        return PhotoAnswer("not_found", (), fov_rad)
     left, floor = list(poses), LISTED_SHARE * poses[0].score
     places: list[PhotoPlace] = []
     spreads_m: list[float] = []
@@ -78,8 +91,8 @@ def judged(graph: MapGraph, poses: Sequence[PhotoPlace]) -> PhotoAnswer:
         places.append(place)
         spreads_m.append(spread_m)
     if len(places) > 1 and places[1].score >= RIVAL_SHARE * places[0].score:
-        return PhotoAnswer("ambiguous", tuple(places))
-    return PhotoAnswer("found" if spreads_m[0] <= SURE_M else "weak", tuple(places[:1]))
+        return PhotoAnswer("ambiguous", tuple(places), fov_rad)
+    return PhotoAnswer("found" if spreads_m[0] <= SURE_M else "weak", tuple(places[:1]), fov_rad)
 
 
 def _split(graph: MapGraph, poses: Sequence[PhotoPlace]) -> tuple[list[_Near], list[PhotoPlace]]:
