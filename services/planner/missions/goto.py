@@ -7,7 +7,16 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from services.planner.mapping.reach import claims
 from services.planner.mission_kinds import MissionContext, MissionError, MissionKind
-from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
+from services.planner.ports import (
+    Decision,
+    MapAccess,
+    Matcher,
+    Matches,
+    Mission,
+    Note,
+    Observation,
+    Progress,
+)
 from services.planner.profiles import Profile
 from services.planner.similarity import ranked, trusted
 from services.planner.similarity import similarity as similarity_of
@@ -17,6 +26,7 @@ from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.goal_places import GoalPlaces, Ruling
 from services.planner.travel.localisation import reachable_nodes
 from services.planner.travel.machine import Travel
+from services.planner.travel.photo_goal import PhotoGoto
 from services.planner.travel.place_evidence import Visit
 from services.planner.travel.states import Event, State
 from services.planner.travel.tracking import Tracker
@@ -284,7 +294,7 @@ class Goto:
         return replace(decision, outcome="succeeded") if travel.state is State.ARRIVED else decision
 
 
-def _make(context: MissionContext, parameters: GotoParameters) -> Goto:
+def _make(context: MissionContext, parameters: GotoParameters) -> Mission:
     node_id = parameters.goal_node
     if (context.goal is None) == (node_id is None):
         raise MissionError("goto needs a goal picture's features or a goal_node, exactly one of them")
@@ -293,7 +303,14 @@ def _make(context: MissionContext, parameters: GotoParameters) -> Goto:
         if node_id not in context.maps.graph.nodes:
             raise MissionError(f"the map has no node {node_id}", "missing")
         goal = context.maps.features_of(node_id)
-    return Goto(context.profile, context.maps, context.matcher, goal, context.whereabouts)
+    profile, maps, matcher = context.profile, context.maps, context.matcher
+    if goal.photo is None:
+        return Goto(profile, maps, matcher, goal, context.whereabouts)
+
+    def travel_to(node: Features) -> Goto:
+        return Goto(profile, maps, matcher, node, context.whereabouts)
+
+    return PhotoGoto(profile, maps, matcher, goal, goal.photo, travel_to, context.rng)
 
 
 KIND = MissionKind(

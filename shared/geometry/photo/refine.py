@@ -23,7 +23,7 @@ FINE_RAD = tuple(np.deg2rad([1.1, 0.8, 0.55, 0.4, 0.4, 0.4]).tolist())
 LEVEL_M, HIGHER_M = 1.2, 0.4
 """How far from the start, along the floor and upwards, a photo usually is; chosen: nodes stand 0.7 m apart,
 and people hold a phone half a metre above the camera of the robot."""
-UNKNOWN_LOG_FOCAL, KNOWN_LOG_FOCAL = 0.35, 0.03
+UNKNOWN_LOG_FOCAL, KNOWN_LOG_FOCAL = 0.35, 0.015
 """Spread of ln f of phones about the usual one, of which 50 and 110 degrees are 1.5 away; and of what a file
 says: whole millimetres of a film's, a lens that bends lines."""
 MOST_STEP = np.array([0.15, 0.15, 0.15, 0.35, 0.35, 0.35, 0.15])
@@ -50,7 +50,7 @@ def refine(
         focal_known: it is that of the photo, not that of phones.
     """
     pose = start
-    spread = np.array([LEVEL_M, LEVEL_M, HIGHER_M, KNOWN_LOG_FOCAL if focal_known else UNKNOWN_LOG_FOCAL])
+    spread = np.array([LEVEL_M, LEVEL_M, HIGHER_M, focal_spread(focal_known)])
     information = np.concatenate([np.zeros(3), spread**-2])
     for noise_rad in noises_rad:
         weight = np.sqrt(belonging(seen, likelihood_ratio(seen, misses(seen, pose), noise_rad)))
@@ -71,6 +71,11 @@ def refine(
         if not focal_known:
             pose = replace(pose, log_focal=float(np.clip(pose.log_focal, *_phones())))
     return pose
+
+
+def focal_spread(focal_known: bool) -> float:
+    """Spread of ln f about what is told or usual."""
+    return KNOWN_LOG_FOCAL if focal_known else UNKNOWN_LOG_FOCAL
 
 
 def _phones() -> tuple[float, float]:

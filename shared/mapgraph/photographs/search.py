@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from shared.geometry.photo.plane import FOVS_RAD, USUAL_RAD, focal_of, fov_of, rays
-from shared.geometry.photo.refine import COARSE_RAD, FINE_RAD, refine
+from shared.geometry.photo.refine import COARSE_RAD, FINE_RAD, HIGHER_M, focal_spread, refine
 from shared.geometry.photo.sightings import PhotoPose, score
 from shared.geometry.photo.votes import Vote, vote
 from shared.geometry.sphere import FloatArray, wrap_rad
@@ -136,7 +136,8 @@ def _fine(matches: PhotoMatches, around: Surroundings, coarse: PhotoPose) -> Pho
     nats, explained = score(around.seen, pose)
     keypoints = around.seen.keypoint[explained]
     matches_of = frozenset(zip(around.of[explained].tolist(), keypoints.tolist(), strict=True))
-    nats -= 0.5 * ((off_m / NEAR_A_NODE_M) ** 2 + (pose.position_m[2] / 0.4) ** 2)
+    focal_off = (pose.log_focal - _usual(matches)) / focal_spread(matches.view.fov_known)
+    nats -= 0.5 * ((off_m / NEAR_A_NODE_M) ** 2 + (pose.position_m[2] / HIGHER_M) ** 2 + focal_off**2)
     of = around.poses[node]
     x_m, y_m = _turned(pose.position_m[:2] - of.position_m, -of.yaw_rad)
     ahead = pose.rotation[:, 0]

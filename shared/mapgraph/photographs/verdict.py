@@ -15,8 +15,9 @@ from shared.mapgraph.photographs.search import PhotoPlace, poses_of
 from shared.messages.features import PhotoView
 
 # Chosen by `topnav study phone-photos` in the apartment, RIVAL_SHARE in the hostel, whose rooms are equal.
-LEAST_NATS = 25.0
-"""Evidence below which nothing is claimed: blank walls and floors give so little."""
+LEAST_NATS, LEAST_KEYPOINTS, LEAST_EACH = 25.0, 6, 1.2
+"""Evidence, keypoints that are explained, and evidence of each, below which nothing is claimed: blank walls
+and floors give so little, and chance explains many keypoints poorly."""
 RIVAL_SHARE = 0.5
 """A place elsewhere with this share of the evidence may be it as well: rooms furnished alike reach it."""
 LISTED_SHARE = 0.45
@@ -80,7 +81,7 @@ def located(graph: MapGraph, matches: PhotoMatches, rng: np.random.Generator) ->
 def judged(graph: MapGraph, poses: Sequence[PhotoPlace]) -> PhotoAnswer:
     """The same from poses, the likeliest first."""
     fov_rad = poses[0].fov_rad if poses else None
-    if not poses or poses[0].score < LEAST_NATS:
+    if not poses or not _is_claim(poses[0]):
         return PhotoAnswer("not_found", (), fov_rad)
     left, floor = list(poses), LISTED_SHARE * poses[0].score
     places: list[PhotoPlace] = []
@@ -93,6 +94,11 @@ def judged(graph: MapGraph, poses: Sequence[PhotoPlace]) -> PhotoAnswer:
     if len(places) > 1 and places[1].score >= RIVAL_SHARE * places[0].score:
         return PhotoAnswer("ambiguous", tuple(places), fov_rad)
     return PhotoAnswer("found" if spreads_m[0] <= SURE_M else "weak", tuple(places[:1]), fov_rad)
+
+
+def _is_claim(pose: PhotoPlace) -> bool:
+    least = max(LEAST_NATS, LEAST_EACH * pose.keypoints)
+    return pose.score >= least and pose.keypoints >= LEAST_KEYPOINTS
 
 
 def _split(graph: MapGraph, poses: Sequence[PhotoPlace]) -> tuple[list[_Near], list[PhotoPlace]]:
