@@ -21,6 +21,7 @@ from services.launcher.commands import (
     explore,
     foxglove,
     goto,
+    locate,
     map,
     mission,
     models,
@@ -47,7 +48,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (demo, explore, goto, drive, estop, world, models, record, replay, recover, foxglove):
+for command in (demo, explore, goto, locate, drive, estop, world, models, record, replay, recover, foxglove):
     app.add_typer(command.app)
 for command in (map, mission, camera, robot, certs, token, up, down, status, doctor):
     app.add_typer(command.app)
