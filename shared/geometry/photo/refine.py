@@ -18,7 +18,7 @@ from shared.geometry.sphere import FloatArray
 from shared.geometry.tilted.refine import exponential
 
 COARSE_RAD = tuple(np.deg2rad([5.0, 3.5, 2.4, 1.6]).tolist())
-FINE_RAD = tuple(np.deg2rad([1.1, 0.8, 0.55, 0.4, 0.4, 0.4]).tolist())
+FINE_RAD = tuple(np.deg2rad([1.1, 0.8, 0.55, 0.4, 0.3, 0.3]).tolist())
 """Noise assumed step by step, down to that of sightings."""
 LEVEL_M, HIGHER_M = 1.2, 0.4
 """How far from the start, along the floor and upwards, a photo usually is; chosen: nodes stand 0.7 m apart,

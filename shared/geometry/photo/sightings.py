@@ -19,9 +19,9 @@ from shared.geometry.tilted.match_evidence import CHANCE_SCALE, TAIL_SHARE, TAIL
 NEAR_M, FAR_M = 0.6, 30.0
 """Nearest and furthest things; chosen: the robot comes no nearer to what it can recognise, and further off
 nothing moves."""
-NOISE_RAD = float(np.deg2rad(0.4))
-"""Spread of right matches about their arcs: 0.2 degrees at true poses, the rest for the places."""
-SCALE_NOISE = 0.2
+NOISE_RAD = float(np.deg2rad(0.3))
+"""Spread of right matches about their arcs: 0.2 degrees measured at true poses, the rest for the places."""
+SCALE_NOISE = 0.14
 """Spread of ln(size ratio): 0.11 measured at true poses; keypoints of wide photos are drawn out."""
 TINY_M = 1e-6
 """Keeps a direction from a place to itself finite."""
