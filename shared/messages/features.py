@@ -25,7 +25,7 @@ class PhotoView(Part):
         aspect: width over height, upright.
     """
 
-    fov_rad: float = Field(gt=0.1, lt=3.0)
+    fov_rad: float = Field(ge=0.1, le=3.0)
     fov_known: bool = False
     aspect: float = Field(default=1.0, ge=0.1, le=10.0)
 
@@ -91,15 +91,16 @@ class Photo(Part):
 
 
 class ExtractRequest(Message):
-    """Ask for the features of any picture, for example a goal: of an equirectangular frame or of a photo."""
+    """Ask for the features of any equirectangular picture, for example a goal."""
 
     SCHEMA: ClassVar[str] = "extract_request.v1"
 
-    frame: Frame | None = None
-    photo: Photo | None = None
+    frame: Frame
 
-    @model_validator(mode="after")
-    def _one_picture(self) -> "ExtractRequest":
-        if (self.frame is None) == (self.photo is None):
-            raise ValueError("a request needs a frame or a photo, exactly one of them")
-        return self
+
+class ExtractPhotoRequest(Message):
+    """Ask for the features of an ordinary photo, which compare with those of panoramas."""
+
+    SCHEMA: ClassVar[str] = "extract_photo_request.v1"
+
+    photo: Photo

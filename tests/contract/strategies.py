@@ -14,7 +14,7 @@ from pydantic.fields import FieldInfo
 
 from shared.messages.arrays import ArraySpec
 from shared.messages.body import Imu
-from shared.messages.features import Features
+from shared.messages.features import Features, Photo
 from shared.messages.maps import Edge
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Frame
@@ -123,7 +123,7 @@ def _fit_features(fields: Fields, count: int, seed: int) -> Fields:
 
 
 def _fit_match(fields: Fields, count: int, seed: int) -> Fields:
-    names = ("matches_rad", "inlier_mask")
+    names = ("matches_rad", "inlier_mask", "right", "log_scale")
     if seed % 4 == 0:
         return fields | dict.fromkeys(names)
     return fields | {name: _array(_spec(NodeMatch, name), count, seed) for name in names}
@@ -134,6 +134,11 @@ def _fit_frame(fields: Fields, count: int, seed: int) -> Fields:
     size = 6 * height * height if fields["encoding"] == "bgr8" else count
     data = np.random.default_rng(seed).bytes(size)
     return _fit_gravity(fields, count, seed) | {"height_px": height, "width_px": 2 * height, "data": data}
+
+
+def _fit_photo(fields: Fields, count: int, seed: int) -> Fields:
+    data = np.random.default_rng(seed).bytes(3 * 64 * (64 + count))
+    return fields | {"width_px": 64, "height_px": 64 + count, "data": data}
 
 
 def _fit_gravity(fields: Fields, _count: int, seed: int) -> Fields:
@@ -153,6 +158,7 @@ FITS: dict[type[BaseModel], Callable[[Fields, int, int], Fields]] = {
     NodeMatch: _fit_match,
     Imu: _fit_gravity,
     Frame: _fit_frame,
+    Photo: _fit_photo,
     Edge: _fit_edge,
 }
 """What fields of one message owe each other, beyond what each of them must be by itself."""

@@ -8,10 +8,10 @@ from services.gateway.state import Gateway
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.photographs.photo_matches import PHOTO_NODES, photo_matches
 from shared.mapgraph.photographs.verdict import PhotoAnswer, located
-from shared.messages.features import ExtractRequest, Features, Photo
+from shared.messages.features import ExtractPhotoRequest, Features, Photo
 from shared.messages.maps import MapReply, MapRequest
 from shared.messages.matching import MatchReply, MatchRequest
-from shared.topics import EXTRACT, MAP, MATCH
+from shared.topics import EXTRACT_PHOTO, MAP, MATCH
 
 SEED = 0
 """Of the draws of an answer: one question, one answer."""
@@ -43,7 +43,8 @@ async def locate_photo(gateway: Gateway, robot: str, map_name: str, photo: Photo
 
 async def _asked(gateway: Gateway, robot: str, found: MapReply, photo: Photo) -> LocatedPhoto:
     timeout_s = gateway.settings.compute_timeout_s
-    features = await gateway.asker.ask("features", EXTRACT, ExtractRequest(photo=photo), timeout_s)
+    wish = ExtractPhotoRequest(photo=photo)
+    features = await gateway.asker.ask("features", EXTRACT_PHOTO, wish, timeout_s)
     question = MatchRequest(map=found.map, features=features, best_k=PHOTO_NODES)
     reply = await gateway.asker_for(robot).ask("features", MATCH, question, timeout_s, robot=robot)
     graph = MapGraph(found.nodes, found.edges)

@@ -14,10 +14,10 @@ from shared.geometry.photo.plane import USUAL_RAD
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.photographs.photo_matches import PHOTO_NODES, photo_matches
 from shared.mapgraph.photographs.verdict import PhotoAnswer, located
-from shared.messages.features import MAX_PHOTO_PX, ExtractRequest, Features, Photo, PhotoView
+from shared.messages.features import MAX_PHOTO_PX, ExtractPhotoRequest, Features, Photo, PhotoView
 from shared.messages.maps import MapReply
 from shared.messages.matching import MatchRequest
-from shared.topics import EXTRACT, MATCH
+from shared.topics import EXTRACT_PHOTO, MATCH
 
 TIMEOUT_S = 60.0
 """A learned extractor takes seconds for its first picture, a busy machine as many to match sixty nodes."""
@@ -66,7 +66,7 @@ def locate_photo(bus: Bus, robot: str, known: MapReply, photo: Photo) -> Located
 
 
 def _asked(bus: Bus, robot: str, known: MapReply, photo: Photo) -> LocatedPhoto:
-    features = bus.ask(EXTRACT, ExtractRequest(photo=photo), TIMEOUT_S)
+    features = bus.ask(EXTRACT_PHOTO, ExtractPhotoRequest(photo=photo), TIMEOUT_S)
     question = MatchRequest(map=known.map, features=features, best_k=PHOTO_NODES)
     reply = bus.ask(MATCH, question, TIMEOUT_S, robot=robot)
     graph, matches = MapGraph(known.nodes, known.edges), photo_matches(photo.view, reply.results)
