@@ -64,7 +64,10 @@ def ask(known: KnownMap, name: str, photo: Photo) -> PhotoAnswer:
     """Locate a photo, as the gateway does: once more where its field of view had to be found."""
     answer = _ask(known, name, photo)
     again = answer.looked_again(photo.view)
-    return answer if again is None else _ask(known, name, photo.model_copy(update={"view": again}))
+    if again is None:
+        return answer
+    second = _ask(known, name, photo.model_copy(update={"view": again}))
+    return max(answer, second, key=lambda each: each.score)
 
 
 def _ask(known: KnownMap, name: str, photo: Photo) -> PhotoAnswer:

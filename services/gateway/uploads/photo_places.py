@@ -38,7 +38,8 @@ async def locate_photo(gateway: Gateway, robot: str, map_name: str, photo: Photo
     again = first.answer.looked_again(photo.view)
     if again is None:
         return first
-    return await _asked(gateway, robot, found, photo.model_copy(update={"view": again}))
+    second = await _asked(gateway, robot, found, photo.model_copy(update={"view": again}))
+    return max(first, second, key=lambda looked: looked.answer.score)
 
 
 async def _asked(gateway: Gateway, robot: str, found: MapReply, photo: Photo) -> LocatedPhoto:

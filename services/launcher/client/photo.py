@@ -62,7 +62,10 @@ def locate_photo(bus: Bus, robot: str, known: MapReply, photo: Photo) -> Located
     """Where in a map a photo was taken; asked once more where its field of view had to be found first."""
     first = _asked(bus, robot, known, photo)
     again = first.answer.looked_again(photo.view)
-    return first if again is None else _asked(bus, robot, known, photo.model_copy(update={"view": again}))
+    if again is None:
+        return first
+    second = _asked(bus, robot, known, photo.model_copy(update={"view": again}))
+    return max(first, second, key=lambda looked: looked.answer.score)
 
 
 def _asked(bus: Bus, robot: str, known: MapReply, photo: Photo) -> LocatedPhoto:

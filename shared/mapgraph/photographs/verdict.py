@@ -48,16 +48,19 @@ class PhotoAnswer:
             where within some metres is not clear; `not_found`: the map explains too little of it.
         places: the likeliest first; empty where it is not found.
         fov_rad: of the likeliest pose, however little speaks for it; None without any.
+        score: its evidence, nats.
     """
 
     verdict: PhotoVerdict
     places: tuple[PhotoPlace, ...]
     fov_rad: float | None = None
+    score: float = -math.inf
 
     def looked_again(self, view: PhotoView) -> PhotoView | None:
         """The view with which to extract its features once more, nearer to the truth; None where it is known.
 
-        Drawn with another field of view than its own a photo is distorted: with the found one more matches.
+        Drawn with another field of view than its own a photo is distorted: with the found one more matches,
+        where it was found rightly. Of both answers the one with more evidence counts.
         """
         if view.fov_known or self.fov_rad is None:
             return None
@@ -80,9 +83,11 @@ def located(graph: MapGraph, matches: PhotoMatches, rng: np.random.Generator) ->
 
 def judged(graph: MapGraph, poses: Sequence[PhotoPlace]) -> PhotoAnswer:
     """The same from poses, the likeliest first."""
-    fov_rad = poses[0].fov_rad if poses else None
-    if not poses or not _is_claim(poses[0]):
-        return PhotoAnswer("not_found", (), fov_rad)
+    if not poses:
+        return PhotoAnswer("not_found", ())
+    fov_rad, score = poses[0].fov_rad, poses[0].score
+    if not _is_claim(poses[0]):
+        return PhotoAnswer("not_found", (), fov_rad, score)
     left, floor = list(poses), LISTED_SHARE * poses[0].score
     places: list[PhotoPlace] = []
     spreads_m: list[float] = []
@@ -92,8 +97,8 @@ def judged(graph: MapGraph, poses: Sequence[PhotoPlace]) -> PhotoAnswer:
         places.append(place)
         spreads_m.append(spread_m)
     if len(places) > 1 and places[1].score >= RIVAL_SHARE * places[0].score:
-        return PhotoAnswer("ambiguous", tuple(places), fov_rad)
-    return PhotoAnswer("found" if spreads_m[0] <= SURE_M else "weak", tuple(places[:1]), fov_rad)
+        return PhotoAnswer("ambiguous", tuple(places), fov_rad, score)
+    return PhotoAnswer("found" if spreads_m[0] <= SURE_M else "weak", tuple(places[:1]), fov_rad, score)
 
 
 def _is_claim(pose: PhotoPlace) -> bool:
