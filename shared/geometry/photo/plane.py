@@ -42,6 +42,11 @@ def plane_from_lonlat(lonlat_rad: FloatArray, focal: float) -> FloatArray:
     return np.asarray(focal * bearing[:, 1:] / bearing[:, :1], dtype=np.float64)
 
 
+def area_sr(focal: float, short: float) -> float:
+    """Solid angle of a photo whose shorter side is `short` of its longer one (of a pyramid, exactly)."""
+    return 4.0 * float(np.arcsin(short / np.sqrt((1.0 + focal**2) * (short**2 + focal**2))))
+
+
 def log_angle(focal: float, far: FloatArray) -> FloatArray:
     """Ln (N,) of the angle that something of size 1 on the plane covers, so far from the camera's centre."""
     return np.asarray(0.5 * np.log(focal) - 1.5 * np.log(far), dtype=np.float64)

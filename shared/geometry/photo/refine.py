@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from shared.geometry.photo.plane import NARROWEST_RAD, WIDEST_RAD, focal_of
+from shared.geometry.photo.plane import NARROWEST_RAD, WIDEST_RAD, area_sr, focal_of
 from shared.geometry.photo.sightings import (
     SCALE_NOISE,
     PhotoPose,
@@ -18,8 +18,8 @@ from shared.geometry.sphere import FloatArray
 from shared.geometry.tilted.refine import exponential
 
 COARSE_RAD = tuple(np.deg2rad([5.0, 3.5, 2.4, 1.6]).tolist())
-FINE_RAD = tuple(np.deg2rad([1.1, 0.8, 0.55, 0.4, 0.3, 0.3]).tolist())
-"""Noise assumed step by step, down to that of sightings."""
+FINE_RAD = tuple(np.deg2rad([1.1, 0.8, 0.55, 0.4, *[0.3] * 10]).tolist())
+"""Noise assumed step by step, down to that of sightings; then on along the valley of nearer by and wider."""
 LEVEL_M, HIGHER_M = 1.2, 0.4
 """How far from the start, along the floor and upwards, a photo usually is; chosen: nodes stand 0.7 m apart,
 and people hold a phone half a metre above the camera of the robot."""
@@ -53,7 +53,7 @@ def refine(
     spread = np.array([LEVEL_M, LEVEL_M, HIGHER_M, focal_spread(focal_known)])
     information = np.concatenate([np.zeros(3), spread**-2])
     for noise_rad in noises_rad:
-        weight = np.sqrt(belonging(seen, likelihood_ratio(seen, misses(seen, pose), noise_rad)))
+        weight = np.sqrt(belonging(seen, likelihood_ratio(misses(seen, pose), noise_rad)))
         base = _residuals(seen, pose, weight, noise_rad)
         columns = [
             (_residuals(seen, _moved(pose, DIFFERENCE[k] * np.eye(7)[k]), weight, noise_rad) - base)
@@ -66,11 +66,19 @@ def refine(
         off[5] = pose.position_m[2]
         off[6] = pose.log_focal - usual_log_focal
         normal = jacobian.T @ jacobian + np.diag(information + 1e-6)
-        step = -np.linalg.solve(normal, jacobian.T @ base + information * off)
+        gradient = jacobian.T @ base + information * off
+        gradient[6] -= float(weight @ weight) * _log_area_by_log_focal(seen, pose)
+        step = -np.linalg.solve(normal, gradient)
         pose = _moved(pose, np.clip(step, -MOST_STEP, MOST_STEP))
         if not focal_known:
             pose = replace(pose, log_focal=float(np.clip(pose.log_focal, *_phones())))
     return pose
+
+
+def _log_area_by_log_focal(seen: Sightings, pose: PhotoPose) -> float:
+    """Derivative of ln(solid angle of the photo): where it is small, small errors mean less."""
+    at, beside = (area_sr(float(np.exp(pose.log_focal + d)), seen.short) for d in (0.0, DIFFERENCE[6]))
+    return float(np.log(beside / at) / DIFFERENCE[6])
 
 
 def focal_spread(focal_known: bool) -> float:

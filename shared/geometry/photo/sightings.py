@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shared.geometry.photo.plane import log_angle, rays
+from shared.geometry.photo.plane import area_sr, log_angle, rays
 from shared.geometry.sphere import BoolArray, FloatArray, IndexArray
 from shared.geometry.tilted.match_evidence import CHANCE_SCALE, TAIL_SHARE, TAIL_WIDTH
 
@@ -38,7 +38,7 @@ class Sightings:
         right: (M,) probability that the match is right, by its descriptors.
         log_size: (M,) ln of the size on the photo's plane over that in the panorama, radians.
         keypoint: (M,) number of the photo's keypoint.
-        area_sr: solid angle that the photo shows.
+        short: the photo's shorter side over its longer one.
     """
 
     plane: FloatArray
@@ -47,7 +47,7 @@ class Sightings:
     right: FloatArray
     log_size: FloatArray
     keypoint: IndexArray
-    area_sr: float
+    short: float
 
     def __len__(self) -> int:
         return len(self.right)
@@ -70,12 +70,15 @@ class Misses:
         across_rad: off the plane of the arc; beyond_rad: beyond its ends.
         log_scale: ln of the size ratio less what the pose foretells.
         arc_rad: length of the arc.
+        area_sr: solid angle that the photo shows: a wrong match lies anywhere in it. A narrow view has small
+            errors, and small chances.
     """
 
     across_rad: FloatArray
     beyond_rad: FloatArray
     log_scale: FloatArray
     arc_rad: FloatArray
+    area_sr: float
 
 
 def misses(seen: Sightings, pose: PhotoPose) -> Misses:
@@ -100,15 +103,16 @@ def misses(seen: Sightings, pose: PhotoPose) -> Misses:
         angle - on_arc,
         seen.log_size + log_angle(focal, far) - np.log(from_place_m / np.maximum(from_photo_m, TINY_M)),
         most - least,
+        area_sr(focal, seen.short),
     )
 
 
-def likelihood_ratio(seen: Sightings, missed: Misses, noise_rad: float) -> FloatArray:
+def likelihood_ratio(missed: Misses, noise_rad: float) -> FloatArray:
     """How much better than chance a pose explains each match, (M,)."""
     far = (missed.across_rad**2 + missed.beyond_rad**2) / noise_rad**2
     dense = _tailed(far, TAIL_WIDTH**2)
     width = np.sqrt(2.0 * np.pi) * noise_rad
-    ratio = seen.area_sr * dense / (width * (missed.arc_rad + width))
+    ratio = missed.area_sr * dense / (width * (missed.arc_rad + width))
     size = _tailed((missed.log_scale / SCALE_NOISE) ** 2, TAIL_WIDTH)
     return np.asarray(ratio * size * CHANCE_SCALE / SCALE_NOISE, dtype=np.float64)
 
@@ -126,7 +130,7 @@ def score(seen: Sightings, pose: PhotoPose) -> tuple[float, BoolArray]:
     Matches of one keypoint with several panoramas are neither independent nor the same: their sum counts by
     the root of their number. Of sum, mean, greatest and this, it keeps wrong poses lowest.
     """
-    ratio = likelihood_ratio(seen, misses(seen, pose), NOISE_RAD)
+    ratio = likelihood_ratio(misses(seen, pose), NOISE_RAD)
     nats = np.log1p(seen.right * (ratio - 1.0))
     count = np.bincount(seen.keypoint)
     total = np.bincount(seen.keypoint, weights=nats) / np.sqrt(np.maximum(count, 1))

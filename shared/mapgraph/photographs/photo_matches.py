@@ -51,10 +51,9 @@ class PhotoMatches:
         return focal_of(self.view.fov_rad)
 
     @property
-    def area_sr(self) -> float:
-        """Solid angle that the photo shows, about."""
-        short = min(self.view.aspect, 1.0 / self.view.aspect)
-        return 4.0 * math.atan(1.0 / self.focal) * math.sin(math.atan(short / self.focal))
+    def short(self) -> float:
+        """The photo's shorter side over its longer one."""
+        return min(self.view.aspect, 1.0 / self.view.aspect)
 
 
 def photo_matches(view: PhotoView, matches: Collection[NodeMatch]) -> PhotoMatches:
@@ -114,7 +113,7 @@ def surroundings(graph: MapGraph, matches: PhotoMatches, root: int) -> Surroundi
         right=np.concatenate([part.right for _, part in parts]),
         log_size=np.concatenate([part.log_size for _, part in parts]),
         keypoint=np.concatenate([part.keypoint for _, part in parts]),
-        area_sr=matches.area_sr,
+        short=matches.short,
     )
     return Surroundings(root, poses, seen, np.concatenate(of).astype(np.intp))
 

@@ -1,4 +1,4 @@
-"""Photos: their features are those of the panorama that they are a part of, where they are, not at the border."""
+"""Photos: their features are those of the panorama they are a part of, none at the border."""
 
 import numpy as np
 import pytest
@@ -46,7 +46,7 @@ def test_a_photo_matches_the_panorama_it_was_cut_from_under_one_turn(room, portr
     (matched,) = PIPELINE.matcher.match(query, [node.features])
     answer = verify_photo(query, photo.view, node, matched, 0)
     assert answer.inliers >= 12
-    assert answer.inliers >= 0.7 * answer.raw_matches
+    assert answer.inliers >= 0.6 * answer.raw_matches
     assert answer.right is not None
     assert len(answer.right) == answer.raw_matches
     assert answer.heading_rad is None  # one node alone does not tell where the photo was taken

@@ -87,5 +87,5 @@ def sightings(rng, shot, places, wrong=0.4):
         right=np.full(len(keypoint), 1.0 - wrong),
         log_size=np.concatenate([size for _, _, _, size in parts]),
         keypoint=keypoint.astype(np.intp),
-        area_sr=1.2,
+        short=min(shot.aspect, 1.0 / shot.aspect),
     )

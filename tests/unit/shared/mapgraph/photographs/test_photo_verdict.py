@@ -22,7 +22,7 @@ APART_M = 20.0
 
 
 def graph_of(rooms):
-    """Nodes at the same spots of each room, cameras along x, each joined to each; rooms joined by one edge."""
+    """Nodes at the same spots of each room, cameras along x, all joined; rooms joined by one edge."""
     spots = [(x + APART_M * k, y) for k in range(rooms) for x, y in SPOTS]
     edges = []
     for a, b in itertools.combinations(range(len(spots)), 2):
