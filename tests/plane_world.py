@@ -15,12 +15,15 @@ from services.drive.limits import DriveLimits
 from services.planner.ports import Decision, Mission, Observation
 from services.planner.profiles import DEFAULT
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.keep_clear import current_limits
+from shared.mapgraph.rules import Limits
 from shared.messages.drive import Heading
 from shared.messages.features import Features
 from shared.messages.maps import AddNode, Operation
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
 from shared.motion.motion import NO_MOTION, Motion, driven
+from shared.wall_clock import WallClock
 from simulator.scene.parts import Material, Part
 from simulator.scene.shapes import post
 from simulator.world.footprints import Footprints, cast_rays, clearance_m, footprints
@@ -35,6 +38,7 @@ KEYPOINTS = 300
 MAX_RANGE_M = 4.0
 STEP_S = 0.3
 BODY_RADIUS_M = 0.25
+NOON = WallClock(29_923_920)
 Pose = tuple[float, float, float]
 
 
@@ -188,6 +192,10 @@ class PlaneMap:
 
     graph: MapGraph = field(default_factory=MapGraph)
     poses: dict[int, Pose] = field(default_factory=dict)
+
+    def limits(self) -> Limits:
+        """What the rules say on a Monday at noon."""
+        return current_limits(self.graph, NOON)
 
     def commit(self, operations: Sequence[Operation]) -> None:
         """Apply, and remember where new nodes were seen from."""

@@ -9,7 +9,18 @@ import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 PACKAGES = ("services", "shared", "simulator", "experiments")
-SERVICES = ("camera", "features", "map_store", "planner", "drive", "gateway", "recorder", "launcher", "ros")
+SERVICES = (
+    "camera",
+    "features",
+    "map_store",
+    "planner",
+    "drive",
+    "gateway",
+    "recorder",
+    "launcher",
+    "ros",
+    "mcp",
+)
 
 # Pure code: the same input gives the same output, whatever the clock, the bus and the environment say.
 PURE = (
@@ -84,6 +95,7 @@ FORBIDDEN = {
     "recorder": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
     "launcher": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
     "ros": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
+    "mcp": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy", "zenoh"},
 }
 ROOMS = ("compose", "processes", "terminal", "client", "drawing", "evaluation", "checking", "commands")
 """Of the launcher, from the ground up: a room imports itself and those before it."""
@@ -99,6 +111,7 @@ JOINS = {
     "commands/explore.py": {"simulator"},
     "commands/foxglove.py": {"recorder"},
     "commands/map.py": {"map_store"},
+    "commands/mcp.py": {"mcp"},
     "commands/models.py": {"features"},
     "commands/record.py": {"recorder"},
     "commands/recover.py": {"recorder"},

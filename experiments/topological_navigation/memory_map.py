@@ -9,6 +9,7 @@ from services.map_store.storage.blobs import checksum, pack_features, unpack_fea
 from services.map_store.storage.contents import Kind
 from services.map_store.storage.graph import AddStoredNode, Graph, StoredNode
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.rules import NO_LIMITS, Limits
 from shared.messages.features import Features
 from shared.messages.maps import AddNode, Operation, PutEdge
 
@@ -21,6 +22,10 @@ class MemoryMap:
     def __init__(self) -> None:
         self.graph = MapGraph()
         self.features: dict[int, Features] = {}
+
+    def limits(self) -> Limits:
+        """A map of an experiment has no rules."""
+        return NO_LIMITS
 
     def commit(self, operations: Sequence[Operation]) -> None:
         """Change the graph; new nodes bring their features."""

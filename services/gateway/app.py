@@ -34,6 +34,7 @@ from services.gateway.routes import (
     robots,
     runs,
     session,
+    whereabouts,
 )
 from services.gateway.settings import GatewaySettings
 from services.gateway.state import STRANGERS, Gateway
@@ -78,7 +79,7 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
     app.state.access = Access(settings, ValidTokens.chosen(settings))
     problems.install(app, metrics)
     app.add_middleware(ResponseHeaders, metrics=metrics)
-    for resource in (driving, estop, evidence, goals, missions, maps, robots, runs, session):
+    for resource in (driving, estop, evidence, goals, missions, maps, robots, runs, session, whereabouts):
         app.include_router(resource.router, dependencies=[Depends(guard)])
     for open_to_all in (live, health):
         app.include_router(open_to_all.router)

@@ -23,12 +23,15 @@ from services.launcher.commands import (
     goto,
     locate,
     map,
+    mcp,
     mission,
     models,
+    place,
     record,
     recover,
     replay,
     robot,
+    rule,
     status,
     token,
     up,
@@ -48,9 +51,23 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (demo, explore, goto, locate, drive, estop, world, models, record, replay, recover, foxglove):
+for command in (
+    demo,
+    explore,
+    goto,
+    locate,
+    drive,
+    estop,
+    world,
+    models,
+    record,
+    replay,
+    recover,
+    foxglove,
+    mcp,
+):
     app.add_typer(command.app)
-for command in (map, mission, camera, robot, certs, token, up, down, status, doctor):
+for command in (map, place, rule, mission, camera, robot, certs, token, up, down, status, doctor):
     app.add_typer(command.app)
 
 

@@ -70,7 +70,10 @@ def answer_map(store: MapStore, name: str, request: MapRequest) -> MapReply:
         return MapReply(map=name, revision=found.revision, features=features)
     revision, graph = store.graph(name)
     nodes = tuple(stored.node for stored in graph.nodes.values())
-    return MapReply(map=name, revision=revision, nodes=nodes, edges=tuple(graph.edges.values()))
+    edges, marks = tuple(graph.edges.values()), graph.marks
+    return MapReply(
+        map=name, revision=revision, nodes=nodes, edges=edges, places=marks.places, rules=marks.rules
+    )
 
 
 def answer_reader(store: MapStore, name: str, request: MapRequest) -> MapReply:

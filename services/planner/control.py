@@ -190,7 +190,9 @@ class MissionControl:
         self._finish("failed", kind, f"the map is gone: {error}")
 
     def _has_goal(self) -> bool:
-        return self._record.goal is not None or "goal_node" in _parameters(self._record)
+        return self._record.goal is not None or not {"goal_node", "place"}.isdisjoint(
+            _parameters(self._record)
+        )
 
     def _notice_lost_nodes(self) -> Decision | None:
         """Somebody took nodes away: plan anew, from what is left, and never lead to one that is gone.
@@ -209,7 +211,8 @@ class MissionControl:
         try:
             self._mission = self._make(self._record, self.map, self._matcher)
         except MissionError as error:
-            return Decision("hold", why=f"{why}: {error}", outcome="failed", failure="goal_not_in_map")
+            kind: FailureKind = "forbidden" if error.code == "forbidden" else "goal_not_in_map"
+            return Decision("hold", why=f"{why}: {error}", outcome="failed", failure=kind)
         log.info("%s: planning anew", why)
         self._known = self.map.graph
         return None

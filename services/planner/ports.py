@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.rules import Limits
 from shared.messages.features import Features
 from shared.messages.maps import Operation
 from shared.messages.matching import NodeMatch
@@ -59,6 +60,9 @@ class MapAccess(Protocol):
     """The map as the planner knows it, and the way to change it."""
 
     graph: MapGraph
+
+    def limits(self) -> Limits:
+        """What the rules of the map say now."""
 
     def commit(self, operations: Sequence[Operation]) -> None:
         """Write all operations or none; the graph shows them afterwards."""

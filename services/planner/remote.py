@@ -5,14 +5,17 @@ from collections.abc import Sequence
 from services.planner.ports import Matches
 from shared.bus import Bus
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.keep_clear import current_limits
 from shared.mapgraph.operations import GraphError
 from shared.mapgraph.rebasing import rebased
 from shared.mapgraph.routing import GOAL
+from shared.mapgraph.rules import Limits
 from shared.messages.features import Features
 from shared.messages.maps import AddNode, DeleteNode, MapDelta, MapReply, MapRequest, Operation
 from shared.messages.matching import MatchRequest
 from shared.queries import RefusedError
 from shared.topics import MAP, MATCH
+from shared.wall_clock import WallClock
 
 AUTHOR = "planner"
 WRITE_TRIES = 10
@@ -36,7 +39,7 @@ class RemoteMap:
                 raise
             self._create()
             reply = self._ask(MapRequest(action="read"))
-        self.graph = MapGraph(reply.nodes, reply.edges)
+        self.graph = MapGraph(reply.nodes, reply.edges, reply.places, reply.rules)
         self.revision = reply.revision
 
     def follow(self, delta: MapDelta) -> None:
@@ -68,6 +71,10 @@ class RemoteMap:
                     return
         self.graph.apply(operations)
         self.revision = reply.revision
+
+    def limits(self) -> Limits:
+        """What the rules of the map say at this minute."""
+        return current_limits(self.graph, WallClock.now())
 
     def _create(self) -> None:
         """Make the map, if no other robot makes it just now."""

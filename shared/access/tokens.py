@@ -12,8 +12,9 @@ from typing import Annotated, Literal, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-Role = Literal["viewer", "operator", "admin"]
-"""viewer looks; operator moves robots and lets them go again; admin also changes and removes maps."""
+Role = Literal["viewer", "agent", "operator", "admin"]
+"""viewer looks; agent starts and ends missions; operator also drives by hand and lets a stopped robot go;
+admin also changes and removes maps."""
 ROLES: tuple[Role, ...] = get_args(Role)
 
 PREFIX = "topnav_"

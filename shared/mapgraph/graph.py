@@ -9,11 +9,15 @@ from shared.mapgraph.operations import Draft
 from shared.mapgraph.operations import EdgeKey as EdgeKey
 from shared.mapgraph.triangle import Sight
 from shared.messages.maps import AddNode, Edge, Node, Operation, UpdateNode
+from shared.messages.places import Place, Rule, key_of
 
 Made = TypeVar("Made")
 
 MADE_MOST = 64
 """Things kept that were made of one state of the graph; chosen: the parts around 64 nodes, some 2 MB."""
+
+UNDRIVEN_EDGES = 3.0
+"""Chosen: how long an edge is that nobody drove is known to a factor of three (decision 0032)."""
 
 
 def edge_key(first: int, second: int) -> EdgeKey:
@@ -22,11 +26,23 @@ def edge_key(first: int, second: int) -> EdgeKey:
 
 
 class MapGraph:
-    """Undirected graph of nodes (thesis section 4.2); once it was asked, only `apply` changes it."""
+    """Undirected graph of nodes (thesis section 4.2); once it was asked, only `apply` changes it.
 
-    def __init__(self, nodes: Iterable[Node] = (), edges: Iterable[Edge] = ()) -> None:
+    Attributes:
+        places, rules: marks that people made on the map, by the keys of their names.
+    """
+
+    def __init__(
+        self,
+        nodes: Iterable[Node] = (),
+        edges: Iterable[Edge] = (),
+        places: Iterable[Place] = (),
+        rules: Iterable[Rule] = (),
+    ) -> None:
         self.nodes = {node.node_id: node for node in nodes}
         self.edges = {(edge.a, edge.b): edge for edge in edges}
+        self.places = {key_of(place.name): place for place in places}
+        self.rules = {key_of(rule.name): rule for rule in rules}
         self._made: dict[Hashable, Any] = {}
 
     def apply(self, operations: Iterable[Operation]) -> None:
@@ -35,7 +51,7 @@ class MapGraph:
         Raises:
             GraphError: they do not fit; those before the one that does not are done.
         """
-        draft = Draft(self.nodes, self.edges)
+        draft = Draft(self.nodes, self.edges, self.places, self.rules)
         for operation in operations:
             match operation:
                 case AddNode(node=node):
@@ -48,7 +64,7 @@ class MapGraph:
                     draft.apply(operation)
 
     def made_once(self, key: Hashable, make: Callable[[], Made]) -> Made:
-        """What `make` makes of nodes' numbers and edges; kept under `key` until they change."""
+        """What `make` makes of nodes' numbers, edges and marks; kept under `key` until they change."""
         found = self._made.get(key, self)
         if found is self:
             found = make()
@@ -121,6 +137,20 @@ class MapGraph:
                     known.add(neighbour)
                     order.append(neighbour)
         return order
+
+    def way(self, start: int, end: int) -> list[int]:
+        """Nodes of a way over edges that may be used, rather driven ones than long jumps; [] if none leads.
+
+        An edge that nobody drove counts as UNDRIVEN_EDGES driven ones.
+        """
+        try:
+            found = nx.dijkstra_path(self._links(), start, end, lambda a, b, _: self._edges_apart(a, b))
+        except (nx.NodeNotFound, nx.NetworkXNoPath):
+            return []
+        return [int(node) for node in found]
+
+    def _edges_apart(self, a: int, b: int) -> float:
+        return 1.0 if self.edges[edge_key(a, b)].length_m is not None else UNDRIVEN_EDGES
 
     def components(self) -> int:
         """Number of connected parts, suspended edges excluded."""

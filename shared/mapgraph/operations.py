@@ -5,29 +5,20 @@ The map store keeps checksums with each node, a planner only its record: `N` is 
 
 from typing import Generic, NamedTuple, TypeVar
 
-from shared.messages.maps import DeleteEdge, DeleteNode, Edge, PutEdge
+from shared.mapgraph.mark_draft import FullError as FullError
+from shared.mapgraph.mark_draft import GraphError as GraphError
+from shared.mapgraph.mark_draft import InUseError as InUseError
+from shared.mapgraph.mark_draft import MarkDraft, MarkWrite
+from shared.mapgraph.mark_draft import TakenError as TakenError
+from shared.mapgraph.mark_draft import UnknownError as UnknownError
+from shared.messages.maps import DeleteEdge, DeleteNode, Edge, MarkOperation, PutEdge
+from shared.messages.places import Place, Rule
 from shared.wire import MAX_CONTAINER
 
 N = TypeVar("N")
 
 EdgeKey = tuple[int, int]
 """The two nodes of an edge, a < b."""
-
-
-class GraphError(ValueError):
-    """An operation that does not fit the graph; it changed nothing."""
-
-
-class UnknownError(GraphError):
-    """It names a node or an edge that is not there."""
-
-
-class TakenError(GraphError):
-    """It adds a node whose number another one has."""
-
-
-class FullError(GraphError):
-    """The graph would be larger than one message about it may be."""
 
 
 class NodeWrite(NamedTuple, Generic[N]):
@@ -51,12 +42,22 @@ class Draft(Generic[N]):
 
     Attributes:
         nodes, edges: as they are by now, by number and by pair of numbers.
+        marks: places and rules likewise, by the keys of their names.
         writes: what was done; backwards, with before and after exchanged, it leads back.
     """
 
-    def __init__(self, nodes: dict[int, N], edges: dict[EdgeKey, Edge]) -> None:
+    def __init__(
+        self,
+        nodes: dict[int, N],
+        edges: dict[EdgeKey, Edge],
+        places: dict[str, Place] | None = None,
+        rules: dict[str, Rule] | None = None,
+    ) -> None:
         self.nodes, self.edges = nodes, edges
-        self.writes: list[NodeWrite[N] | EdgeWrite] = []
+        self.writes: list[NodeWrite[N] | EdgeWrite | MarkWrite] = []
+        self.marks = MarkDraft(
+            {} if places is None else places, {} if rules is None else rules, nodes, self.writes.append
+        )
         self._neighbours: dict[int, set[int]] | None = None
 
     def add(self, node_id: int, node: N) -> None:
@@ -78,8 +79,8 @@ class Draft(Generic[N]):
             raise UnknownError(f"node {node_id} does not exist")
         return self.nodes[node_id]
 
-    def apply(self, operation: DeleteNode | PutEdge | DeleteEdge) -> None:
-        """Do what is the same whatever a node is. Raises UnknownError, FullError."""
+    def apply(self, operation: DeleteNode | PutEdge | DeleteEdge | MarkOperation) -> None:
+        """Do what is the same whatever a node is. Raises UnknownError, InUseError, FullError."""
         match operation:
             case DeleteNode(node_id=node_id):
                 self._delete(node_id)
@@ -87,9 +88,13 @@ class Draft(Generic[N]):
                 self._put_edge(edge)
             case DeleteEdge(a=a, b=b):
                 self._delete_edge((a, b))
+            case _:
+                self.marks.apply(operation)
 
     def _delete(self, node_id: int) -> None:
+        """Marks go first: on the way back the node and its edges are there again before them."""
         self.node(node_id)
+        self.marks.forget_node(node_id)
         for other in sorted(self._adjacency().get(node_id, ())):
             self._delete_edge((min(node_id, other), max(node_id, other)))
         self._write_node(node_id, None)

@@ -42,6 +42,8 @@ def _again(operation: Operation, before: MapGraph, now: MapGraph, ids: Mapping[i
             return operation if (a, b) in now.edges else None
         case DeleteNode(node_id=node_id):
             return operation if node_id in now.nodes else None
+        case _:  # places and rules, which no robot writes
+            return operation
 
 
 def _put(edge: Edge, before: MapGraph, now: MapGraph, ids: Mapping[int, int]) -> PutEdge | None:

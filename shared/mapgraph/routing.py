@@ -7,6 +7,7 @@ import networkx as nx
 
 from shared.mapgraph.graph import EdgeKey, MapGraph, edge_key
 from shared.mapgraph.local.view_range import edge_length_m
+from shared.mapgraph.rules import NO_LIMITS, Limits
 from shared.messages.maps import Edge
 
 EdgeCost = Callable[[Edge], float]
@@ -49,6 +50,7 @@ def plan_path(
     edge_cost: EdgeCost,
     unclear: Collection[EdgeKey] = (),
     banned: Collection[EdgeKey] = (),
+    limits: Limits = NO_LIMITS,
 ) -> list[int]:
     """Cheapest node sequence from any start to any target; empty when there is none.
 
@@ -59,6 +61,7 @@ def plan_path(
         edge_cost: of an edge of the map.
         unclear: edges on which no free ground was seen; (GOAL, node) is the way from a node to the goal.
         banned: edges not to be tried.
+        limits: nodes that no path enters, ways that none takes, and slow ones, which cost as much more.
     """
 
     def cost(edge: Edge) -> float:
@@ -66,23 +69,31 @@ def plan_path(
         return math.inf if key in banned else edge_cost(edge) + UNCLEAR_M * (key in unclear)
 
     beyond = {n: more + UNCLEAR_M * (edge_key(GOAL, n) in unclear) for n, more in targets.items()}
-    to_go, paths = _to_targets(graph, beyond, cost)
+    to_go, paths = _to_targets(graph, beyond, cost, limits)
     reachable = [(there + to_go[node], node) for node, there in starts.items() if node in to_go]
     return paths[min(reachable)[1]] if reachable else []
 
 
 def _to_targets(
-    graph: MapGraph, targets: Mapping[int, float], cost: EdgeCost
+    graph: MapGraph, targets: Mapping[int, float], cost: EdgeCost, limits: Limits
 ) -> tuple[dict[int, float], dict[int, list[int]]]:
-    """Cost and path from every node to its cheapest target; an edge of infinite cost is not used."""
-    weighted: nx.Graph[int] = nx.Graph()
-    weighted.add_nodes_from(sorted(graph.nodes))
+    """Cost and path from every node to its cheapest target; an edge of infinite cost is not used.
+
+    Paths are searched from the goal back: an arc from b to a stands for the way from a to b.
+    """
+    weighted: nx.Graph[int] = nx.DiGraph() if limits.closed else nx.Graph()
+    allowed = graph.nodes.keys() - limits.forbidden.keys()
+    weighted.add_nodes_from(sorted(allowed))
     for (a, b), edge in sorted(graph.edges.items()):
-        if (weight := cost(edge)) < math.inf:
-            weighted.add_edge(a, b, weight=weight)
+        weight = cost(edge)
+        if weight == math.inf or not {a, b} <= allowed:
+            continue
+        for back, there in ((a, b), (b, a)):
+            if (there, back) not in limits.closed:
+                weighted.add_edge(back, there, weight=weight / limits.speed_share(there, back))
     for node_id, extra in sorted(targets.items()):
-        if node_id in graph.nodes:
-            weighted.add_edge(node_id, GOAL, weight=extra)
+        if node_id in allowed:
+            weighted.add_edge(GOAL, node_id, weight=extra)
     if GOAL not in weighted:
         return {}, {}
     costs: dict[int, float]

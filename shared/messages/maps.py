@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 from shared.messages.base import SECTORS, Bearing, Message, Name, Part
 from shared.messages.features import Features
 from shared.messages.missions import FailureKind, KindName, Parameters
+from shared.messages.places import DeletePlace, DeleteRule, Place, PutPlace, PutRule, Rule
 
 Ways = Annotated[
     tuple[Annotated[float, Field(ge=0.0)], ...],
@@ -117,7 +118,10 @@ class DeleteEdge(Part):
     b: int = Field(ge=0)
 
 
-Operation = Annotated[AddNode | UpdateNode | DeleteNode | PutEdge | DeleteEdge, Field(discriminator="op")]
+MarkOperation = PutPlace | DeletePlace | PutRule | DeleteRule
+Operation = Annotated[
+    AddNode | UpdateNode | DeleteNode | PutEdge | DeleteEdge | MarkOperation, Field(discriminator="op")
+]
 
 
 class MapRequest(Message):
@@ -149,7 +153,7 @@ class NodeFeatures(Part):
 
 
 class MapReply(Message):
-    """The map after the request; nodes and edges only for read."""
+    """The map after the request; nodes, edges, places and rules only for read."""
 
     SCHEMA: ClassVar[str] = "map_reply.v1"
     MAX_ITEMS: ClassVar[int] = MAP_ITEMS
@@ -158,6 +162,8 @@ class MapReply(Message):
     revision: int = Field(ge=0)
     nodes: tuple[Node, ...] = Field(default=(), fail_fast=True)
     edges: tuple[Edge, ...] = Field(default=(), fail_fast=True)
+    places: tuple[Place, ...] = Field(default=(), fail_fast=True)
+    rules: tuple[Rule, ...] = Field(default=(), fail_fast=True)
     features: tuple[NodeFeatures, ...] = Field(default=(), fail_fast=True)
 
 

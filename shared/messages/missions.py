@@ -19,6 +19,7 @@ FailureKind = Literal[
     "no_path",
     "timeout",
     "service_lost",
+    "forbidden",
 ]
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from shared.messages import body, camera, drive, estop, maps, matching, sensors, simulation
+from shared.messages import body, camera, drive, estop, maps, matching, places, sensors, simulation
 from shared.messages import features as looks
 from shared.messages import missions as orders
 from shared.messages.base import Message
@@ -88,15 +88,31 @@ def edge() -> maps.Edge:
     )
 
 
-def operations() -> tuple[
-    maps.AddNode | maps.UpdateNode | maps.DeleteNode | maps.PutEdge | maps.DeleteEdge, ...
-]:
+def marks() -> places.Marks:
+    edge = ((1, 2),)
+    night = places.Hours(days=("mon", "sun"), opens="22:00", closes="06:00")
+    return places.Marks(
+        places=(places.Place(name="Küche 2", nodes=(2, 1)),),
+        rules=(
+            places.KeepOut(name="no robots", nodes=(1,), areas=("Küche 2",)),
+            places.OneWay(name="lane", edges=edge),
+            places.Slow(name="ramp", edges=edge, speed_share=0.25),
+            places.OpeningHours(name="door", edges=edge, hours=(night,), time_zone="Europe/Berlin"),
+        ),
+    )
+
+
+def operations() -> tuple[maps.Operation, ...]:
     return (
         maps.AddNode(node=node(1), features=features()),
         maps.UpdateNode(node=node(1)),
         maps.PutEdge(edge=edge()),
         maps.DeleteEdge(a=1, b=2),
         maps.DeleteNode(node_id=2),
+        *(places.PutPlace(place=place) for place in marks().places),
+        *(places.PutRule(rule=rule) for rule in marks().rules),
+        places.DeletePlace(name="dock"),
+        places.DeleteRule(name="lane"),
     )
 
 
@@ -328,6 +344,8 @@ def mapped() -> tuple[Message, ...]:
             revision=5,
             nodes=(node(1), node(2)),
             edges=(edge(),),
+            places=marks().places,
+            rules=marks().rules,
             features=(maps.NodeFeatures(node_id=1, features=features()),),
         ),
         maps.MapDelta(

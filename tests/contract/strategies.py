@@ -1,6 +1,7 @@
 """Hypothesis strategies for every message, derived from the models' own annotations and limits."""
 
 import types
+import unicodedata
 from collections.abc import Callable
 from functools import cache
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -17,6 +18,7 @@ from shared.messages.body import Imu
 from shared.messages.features import Features, Photo
 from shared.messages.maps import Edge
 from shared.messages.matching import NodeMatch
+from shared.messages.places import DeletePlace, DeleteRule, KeepOut, OneWay, OpeningHours, Place, Slow
 from shared.messages.sensors import Frame
 
 Fields = dict[str, Any]
@@ -153,6 +155,21 @@ def _fit_edge(fields: Fields, _count: int, _seed: int) -> Fields:
     return fields | {"a": min(ends) // 2, "b": max(ends) // 2 + 1}
 
 
+def _fit_mark(fields: Fields, _count: int, _seed: int) -> Fields:
+    """Names that can be seen, and edges that join two nodes."""
+    fitted = {
+        "name": _seen(fields.get("name", "")),
+        "areas": tuple(_seen(area) for area in fields.get("areas", ())),
+        "edges": tuple((a // 2, b // 2 + WIDEST // 2) for a, b in fields.get("edges", ())),
+    }
+    return fields | {name: value for name, value in fitted.items() if name in fields}
+
+
+def _seen(text: str) -> str:
+    kept = "".join(c for c in text if not unicodedata.category(c).startswith("C"))
+    return " ".join(unicodedata.normalize("NFC", kept).split())[:60] or "a"
+
+
 FITS: dict[type[BaseModel], Callable[[Fields, int, int], Fields]] = {
     Features: _fit_features,
     NodeMatch: _fit_match,
@@ -160,5 +177,6 @@ FITS: dict[type[BaseModel], Callable[[Fields, int, int], Fields]] = {
     Frame: _fit_frame,
     Photo: _fit_photo,
     Edge: _fit_edge,
+    **dict.fromkeys((Place, KeepOut, OneWay, Slow, OpeningHours, DeletePlace, DeleteRule), _fit_mark),
 }
 """What fields of one message owe each other, beyond what each of them must be by itself."""

@@ -12,15 +12,22 @@ ANYBODY = frozenset({("POST", "/api/robots/{robot}/estop")})
 """A stop that asks for a secret is none: a false one costs minutes, a refused one may cost a person."""
 
 VIEWER = frozenset({("POST", "/api/session"), ("DELETE", "/api/session")})
-OPERATOR = frozenset(
+AGENT = frozenset(
     {
-        ("DELETE", "/api/robots/{robot}/estop"),
-        ("POST", "/api/maps"),
-        ("POST", "/api/robots/{robot}/drive"),
+        ("PUT", "/api/maps/{map_name}/places"),
         ("POST", "/api/robots/{robot}/goal-check"),
         ("POST", "/api/robots/{robot}/missions"),
         ("POST", "/api/robots/{robot}/missions/goto"),
         ("POST", "/api/robots/{robot}/missions/{action}"),
+    }
+)
+"""A program that decides by itself sends robots somewhere: never how fast, and it clears no stop."""
+OPERATOR = frozenset(
+    {
+        ("DELETE", "/api/robots/{robot}/estop"),
+        ("POST", "/api/maps"),
+        ("DELETE", "/api/maps/{map_name}/places"),
+        ("POST", "/api/robots/{robot}/drive"),
     }
 )
 DRIVING = frozenset({("POST", "/api/robots/{robot}/drive")})
@@ -56,6 +63,8 @@ def role_for(method: str, path: str) -> Role | None:
         return None
     if method in READS or (method, path) in VIEWER:
         return "viewer"
+    if (method, path) in AGENT:
+        return "agent"
     return "operator" if (method, path) in OPERATOR else "admin"
 
 

@@ -95,6 +95,10 @@ def bad_answer(service: str, expected: str, got: str) -> ProblemError:
 
 def _refused(service: str, error: RefusedError) -> ProblemError:
     expected, got = f"a request {service} can carry out", str(error)[:300]
-    next_step = "change what the service objects to"
+    next_step = (
+        "choose another goal, or have the rule lifted"
+        if error.code == "forbidden"
+        else "change what the service objects to"
+    )
     status = 422 if error.code == "invalid" else 409
     return ProblemError(status, "refused", expected, got, next_step, service=service, reason=error.code)

@@ -12,7 +12,8 @@ from services.gateway.routes.goals import NodeAnswer
 from services.gateway.routes.robots import newest_frame
 from services.gateway.state import Gateway, GatewayDep, MapPath, MapQuery, NodePath, NodeQuery, RobotPath
 from shared.messages.maps import MapRequest
-from shared.messages.matching import MatchRequest
+from shared.messages.matching import MatchReply, MatchRequest
+from shared.messages.sensors import Frame
 from shared.topics import MAP, MATCH
 from shared.web.problems import ProblemError
 
@@ -59,7 +60,7 @@ async def show_edge_matches(
         expected = f"node {a} of {map_name} with its features"
         raise ProblemError(404, "no_features", expected, "none", "see /api/maps/{map}/nodes")
     question = MatchRequest(map=map_name, features=reply.features[0].features, node_ids=(b,))
-    return await _matches(gateway, settings.robot, question, f"node {a}")
+    return _facts(b, await _ask(gateway, settings.robot, question), f"node {a}")
 
 
 @router.get("/api/robots/{robot}/matches")
@@ -67,26 +68,47 @@ async def show_live_matches(
     robot: RobotPath, map_name: MapQuery, node: NodeQuery, gateway: GatewayDep, _turn: Turn
 ) -> Matches:
     """Compare the newest picture with a node."""
+    frame, reply = await compared_live(gateway, robot, map_name, node_ids=(node,))
+    return _facts(node, reply, f"frame {frame.seq}")
+
+
+async def compared_live(
+    gateway: Gateway, robot: str, map_name: str, *, node_ids: tuple[int, ...] = (), best_k: int = 0
+) -> tuple[Frame, MatchReply]:
+    """The robot's newest frame, and how it relates to those nodes and to the `best_k` most similar ones.
+
+    Raises:
+        ProblemError: no such robot, no frame of it yet, or the feature service cannot tell.
+    """
     left = LIVE_TRIES
     while True:
         left -= 1
         frame = newest_frame(gateway, robot)
-        question = MatchRequest(seq=frame.seq, stamp_ns=frame.stamp_ns, map=map_name, node_ids=(node,))
+        question = MatchRequest(
+            seq=frame.seq,
+            stamp_ns=frame.stamp_ns,
+            map=map_name,
+            node_ids=node_ids,
+            best_k=best_k,
+            with_matches=bool(node_ids),
+        )
         try:
-            return await _matches(gateway, robot, question, f"frame {frame.seq}")
+            return frame, await _ask(gateway, robot, question)
         except ProblemError as problem:
             if problem.members.get("reason") != "passing" or not left:
                 raise
         await asyncio.sleep(LIVE_PAUSE_S)
 
 
-async def _matches(gateway: Gateway, robot: str, question: MatchRequest, picture: str) -> Matches:
+async def _ask(gateway: Gateway, robot: str, question: MatchRequest) -> MatchReply:
     timeout_s = gateway.settings.compute_timeout_s
-    reply = await gateway.asker_for(robot).ask("features", MATCH, question, timeout_s, robot=robot)
-    match = next((found for found in reply.results if found.node_id in question.node_ids), None)
+    return await gateway.asker_for(robot).ask("features", MATCH, question, timeout_s, robot=robot)
+
+
+def _facts(node: int, reply: MatchReply, picture: str) -> Matches:
+    match = next((found for found in reply.results if found.node_id == node), None)
     if match is None:
-        expected = f"matches of node {question.node_ids[0]}"
-        raise bad_answer("features", expected, f"{len(reply.results)} others")
+        raise bad_answer("features", f"matches of node {node}", f"{len(reply.results)} others")
     bearings = [] if match.matches_rad is None else match.matches_rad.astype(float).round(5).tolist()
     inlier = [] if match.inlier_mask is None else match.inlier_mask.astype(bool).tolist()
     return Matches(

@@ -26,6 +26,12 @@ OPERATIONS = (
     ("GET", f"{MAP}{NODE}/keypoints", "show_keypoints", "Where a node's features are, and how strong."),
     ("GET", f"{MAP}/edges", "list_edges", "Edges of a map with their evidence."),
     ("DELETE", MAP + EDGE, "delete_edge", "Delete an edge."),
+    ("GET", f"{MAP}/places", "list_places", "Named places and areas of a map, or those `search` finds."),
+    ("PUT", f"{MAP}/places", "put_place", "Name nodes: body `name` and `nodes`, the one to drive to first."),
+    ("DELETE", f"{MAP}/places", "delete_place", "Forget the place `name`; its nodes stay."),
+    ("GET", f"{MAP}/rules", "list_rules", "Rules of a map: keep-out, one-way, slow, opening hours."),
+    ("PUT", f"{MAP}/rules", "put_rule", "Set a rule; robots obey it at once."),
+    ("DELETE", f"{MAP}/rules", "delete_rule", "Lift the rule `name`."),
     ("GET", f"{MAP}/revisions", "list_revisions", "How a map came to be."),
     ("GET", f"{MAP}/compare", "compare_revisions", "Changes from revision `from` to `to`, or to now."),
     ("POST", f"{MAP}/undo", "undo", "Take a map's newest change back."),
@@ -49,7 +55,7 @@ async def pass_on(request: Request, gateway: GatewayDep) -> Response:
     if path == IMPORT:
         return await forward_stream(gateway, request, path)
     body = b""
-    if request.method in ("POST", "PATCH"):
+    if request.method in ("POST", "PUT", "PATCH"):
         body = await read_body(request, MAX_JSON_BYTES, gateway.settings.upload_timeout_s)
     answer = await forward(gateway, request, path, body)
     if "location" in answer.headers:

@@ -1,4 +1,4 @@
-"""`topnav goto`: drive to where a picture was taken."""
+"""`topnav goto`: drive to where a picture or a photo was taken, to a place by its name, or home."""
 
 from pathlib import Path
 from typing import Annotated
@@ -9,14 +9,19 @@ from services.launcher.terminal import options
 
 app = typer.Typer()
 
+Image = Annotated[Path | None, typer.Option(help="An equirectangular picture, twice as wide as high.")]
+PhotoFile = Annotated[Path | None, typer.Option("--photo", help="An ordinary photo, to be faced as well.")]
+PlaceName = Annotated[str | None, typer.Option(help="A place by its name; see 'topnav place'.")]
+Home = Annotated[bool, typer.Option("--home", help="The place called home.")]
+
 
 @app.command()
 def goto(
-    image: Annotated[
-        Path | None, typer.Option(help="An equirectangular picture, twice as wide as high.")
-    ] = None,
-    photo: Annotated[Path | None, typer.Option(help="Or an ordinary photo, to be faced as well.")] = None,
+    image: Image = None,
+    photo: PhotoFile = None,
     field_of_view_deg: options.FieldOfView = None,
+    place: PlaceName = None,
+    home: Home = False,
     map_name: options.MapName = "flat",
     world: options.World = "apartment",
     seed: options.Seed = 1,
@@ -29,51 +34,65 @@ def goto(
     endpoint: options.Endpoint = None,
     timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
 ) -> None:
-    """Drive to where a picture was taken; to where a photo was taken, and look as it does."""
+    """Drive to where a picture or a photo was taken, to a named place, or home: one of the four."""
     from services.launcher.client import failure, maps, mission, stack, trail
     from services.launcher.client.photo import locate_photo, photo_from_file
     from services.launcher.drawing.pictures import frame_from_file
-    from services.launcher.terminal.output import (
-        print_figures,
-        print_warning,
-        rounded,
-        wide_console,
-        write_json,
-    )
+    from services.launcher.terminal import output
     from services.launcher.terminal.progress import mission_progress
-    from shared.messages.missions import MissionRequest
+    from shared.messages.missions import MissionRequest, Parameters
 
-    picture = photo or image
-    if picture is None or (photo is not None and image is not None):
-        raise typer.BadParameter("goto needs --image FILE or --photo FILE, exactly one of them")
+    _check_one_goal(image, photo, place, home, field_of_view_deg)
+    picture = image or photo
+    goal_name = picture.name if picture is not None else place or "home"
     shot = None if photo is None else photo_from_file(photo, field_of_view_deg)
     choice = stack.StackChoice(
         data_dir, world, seed, lockstep, profile, pipeline, endpoint, timeout_s=timeout_s
     )
     with stack.open_stack(choice) as opened:
-        print_warning(stack.other_world(opened, world))
+        output.print_warning(stack.other_world(opened, world))
         known = maps.require_map(opened, map_name)
         client = mission.MissionClient(opened.bus, opened.robot)
+        goal = image and mission.goal_features(opened.bus, frame_from_file(image, opened.robot))
         if shot is not None:
             goal = locate_photo(opened.bus, opened.robot, known, shot).features
-        else:
-            goal = mission.goal_features(opened.bus, frame_from_file(picture, opened.robot))
-        request = MissionRequest(action="goto", map=map_name, goal=goal, seed=seed, max_steps=max_steps)
-        with mission_progress(wide_console(stderr=True), f"going to {picture.name}") as watch:
+        given: Parameters = {} if place is None else {"place": place}
+        kind = "home" if home else "goto"
+        request = MissionRequest(
+            action=kind, map=map_name, goal=goal, parameters=given, seed=seed, max_steps=max_steps
+        )
+        with mission_progress(output.wide_console(stderr=True), f"going to {goal_name}") as watch:
             run = client.run(request, watch)
     report = {
         "map": map_name,
-        "image": str(picture),
+        "image": None if image is None else str(image),
+        "photo": None if photo is None else str(photo),
+        "place": "home" if home else place,
         "success": run.succeeded,
         "failure": run.status.failure,
         "reason": run.status.reason,
         "steps": run.status.step,
-        "driven_m": rounded(trail.driven_m(run.truths), 3),
-        "wall_s": rounded(run.wall_s, 2),
-        "steps_per_s": rounded(run.steps_per_s, 2),
+        "driven_m": output.rounded(trail.driven_m(run.truths), 3),
+        "wall_s": output.rounded(run.wall_s, 2),
+        "steps_per_s": output.rounded(run.steps_per_s, 2),
     }
-    write_json(json_file, report)
-    print_figures(f"goto {picture.name}", report)
+    output.write_json(json_file, report)
+    output.print_figures(f"goto {goal_name}", report)
     if not run.succeeded:
         why = run.status.failure or run.status.state
         raise failure.ExperimentError(f"did not arrive, {why}: {run.status.reason}")
+
+
+def _check_one_goal(
+    image: Path | None, photo: Path | None, place: str | None, home: bool, field_of_view_deg: float | None
+) -> None:
+    told = {"--image": image, "--photo": photo, "--place": place, "--home": home or None}
+    given = [option for option, value in told.items() if value is not None]
+    if len(given) != 1:
+        raise typer.BadParameter(
+            f"one of {', '.join(told)} says where to go, given: {', '.join(given) or 'none'}"
+        )
+    if field_of_view_deg is not None and photo is None:
+        raise typer.BadParameter(
+            f"--field-of-view-deg is of an ordinary photo, given {given[0]}: give it with --photo"
+        )

@@ -18,7 +18,12 @@ RESERVED = frozenset({"planner", "gateway", "rest", "console"})
 
 Name = Annotated[str, typer.Argument(help="Whose token it is; a map's history shows this name.")]
 RoleOption = Annotated[
-    str, typer.Option("--role", help="viewer: looks. operator: moves robots. admin: changes maps, too.")
+    str,
+    typer.Option(
+        "--role",
+        help="viewer: looks. agent: starts missions. operator: also drives by hand and clears an emergency "
+        "stop. admin: changes maps, too.",
+    ),
 ]
 File = Annotated[Path, typer.Argument(envvar="GATEWAY_TOKENS_FILE", help="Token file of the gateway.")]
 

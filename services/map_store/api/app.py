@@ -10,6 +10,7 @@ from services.map_store.api import (
     graph_routes,
     history_routes,
     map_routes,
+    mark_routes,
     merge_routes,
     problems,
 )
@@ -22,7 +23,7 @@ from shared.web.bodies import BodyLimit, BodyLimits
 
 VERSION = "1"
 MAX_BODY_BYTES = 100_000
-"""Of every request but an import: names, which take a hundred."""
+"""Of every request but an import: an area of all the nodes it may have."""
 STALLED_S = 30.0
 """The gateway ends stalled senders earlier; this is for those that come here directly."""
 LEAST_BYTES_PER_S = 1.0
@@ -64,6 +65,7 @@ def create_app(
         map_routes.build(store, write),
         history_routes.build(store, write),
         graph_routes.build(store, write),
+        mark_routes.build(store, write),
         care_routes.build(store, write),
         archive_routes.build(store, write, max_archive_bytes),
         merge_routes.build(store, merges, write),

@@ -93,6 +93,12 @@ class ComparisonView(BaseModel):
     edges_added: list[EdgeKey]
     edges_removed: list[EdgeKey]
     edges_changed: list[EdgeChange]
+    places_added: list[str]
+    places_removed: list[str]
+    places_changed: list[str]
+    rules_added: list[str]
+    rules_removed: list[str]
+    rules_changed: list[str]
 
 
 class Health(BaseModel):

@@ -9,9 +9,11 @@ from services.map_store.errors import ConflictError, CorruptError, InvalidError,
 from services.map_store.storage.graph import Graph, Step, apply
 from shared.mapgraph.operations import EdgeKey
 from shared.messages.maps import Edge
+from shared.messages.places import Mark
 
-K = TypeVar("K", int, EdgeKey)
+K = TypeVar("K", int, str, EdgeKey)
 V = TypeVar("V")
+M = TypeVar("M", bound=Mark)
 Value = bool | int | float | str | None
 """What a field of an edge holds."""
 
@@ -33,6 +35,7 @@ class Comparison:
     Attributes:
         nodes_changed: nodes of both with another record, other features or another thumbnail.
         edges_changed: edges of both with another record.
+        places_added, rules_added and so on: likewise, by name.
     """
 
     nodes_added: tuple[int, ...]
@@ -41,6 +44,12 @@ class Comparison:
     edges_added: tuple[EdgeKey, ...]
     edges_removed: tuple[EdgeKey, ...]
     edges_changed: tuple[EdgeChange, ...]
+    places_added: tuple[str, ...] = ()
+    places_removed: tuple[str, ...] = ()
+    places_changed: tuple[str, ...] = ()
+    rules_added: tuple[str, ...] = ()
+    rules_removed: tuple[str, ...] = ()
+    rules_changed: tuple[str, ...] = ()
 
 
 def rewind(graph: Graph, inverses: Iterable[Iterable[Step]]) -> Graph:
@@ -70,7 +79,15 @@ def compare(before: Graph, after: Graph) -> Comparison:
         edges_added=edges_added,
         edges_removed=edges_removed,
         edges_changed=tuple(_edge_change(before.edges[key], after.edges[key]) for key in edges_changed),
+        **_mark_changes("places", before.places, after.places),
+        **_mark_changes("rules", before.rules, after.rules),
     )
+
+
+def _mark_changes(what: str, before: Mapping[str, M], after: Mapping[str, M]) -> dict[str, tuple[str, ...]]:
+    changes = zip(("added", "removed", "changed"), _differences(before, after), strict=True)
+    named = {**before, **after}
+    return {f"{what}_{how}": tuple(named[key].name for key in keys) for how, keys in changes}
 
 
 def _differences(

@@ -10,7 +10,7 @@ from services.map_store.history import revisions as history
 from services.map_store.storage.graph import AddStoredNode, Graph, Step, added_by, apply
 from services.map_store.storage.tables import revisions
 from shared.mapgraph.operations import EdgeKey
-from shared.messages.maps import PutEdge, UpdateNode
+from shared.messages.maps import DeleteEdge, DeleteNode, PutEdge, UpdateNode
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def replay(connection: Connection, map_id: int, at_least: int = 0) -> Replay:
                 damaged[number] = str(error).removeprefix(f"revision {number}: ")
             continue
         done += steps
-        written |= {_key(step): number for step in steps}
+        written |= {key: number for step in steps if (key := _key(step)) is not None}
     named = {sha256 for stored in added_by(done) for sha256 in stored.blobs}
     return Replay(newest, damaged, _applied(done) if whole else None, written, frozenset(named))
 
@@ -61,8 +61,8 @@ def _applied(steps: list[Step]) -> Graph | None:
         return None
 
 
-def _key(step: Step) -> int | EdgeKey:
-    """The node or edge that a step writes."""
+def _key(step: Step) -> int | EdgeKey | None:
+    """The node or edge that a step writes; None where it writes a place or a rule."""
     match step:
         case AddStoredNode(place=stored):
             return stored.node_id
@@ -70,4 +70,8 @@ def _key(step: Step) -> int | EdgeKey:
             return node.node_id
         case PutEdge(edge=edge):
             return edge.a, edge.b
-    return step.node_id if step.op == "delete_node" else (step.a, step.b)
+        case DeleteNode(node_id=node_id):
+            return node_id
+        case DeleteEdge(a=a, b=b):
+            return a, b
+    return None

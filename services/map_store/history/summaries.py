@@ -23,6 +23,10 @@ SENTENCES = (
     ("delete_node", "node", "deleted"),
     ("put_edge", "edge", "put"),
     ("delete_edge", "edge", "deleted"),
+    ("put_place", "place", "named"),
+    ("delete_place", "place", "forgotten"),
+    ("put_rule", "rule", "put"),
+    ("delete_rule", "rule", "lifted"),
 )
 
 
@@ -82,6 +86,12 @@ def _name(step: RawStep) -> str:
             return str(step["node"]["node_id"])
         case "delete_node":
             return str(step["node_id"])
+        case "put_place":
+            return repr(step["place"]["name"])
+        case "put_rule":
+            return repr(step["rule"]["name"])
+        case "delete_place" | "delete_rule":
+            return repr(step["name"])
     edge = step.get("edge", step)
     return f"{edge['a']}-{edge['b']}"
 

@@ -13,7 +13,7 @@ from services.map_store.storage.catalogue import MapRecord
 from services.map_store.storage.database import Database
 from services.map_store.storage.missions import sound
 from services.map_store.storage.rows import parse_edge, parse_node
-from services.map_store.storage.tables import edges, missions, nodes
+from services.map_store.storage.tables import edges, marks, missions, nodes
 
 Finding = tuple[str, str]
 """The damaged thing and the reason."""
@@ -50,7 +50,7 @@ def check(database: Database, name: str | None = None) -> list[Damage]:
 
 
 def rows(connection: Connection, found: MapRecord) -> Iterator[Finding]:
-    """Nodes and edges whose rows do not match their seals, then how many are missing or too many."""
+    """Rows that do not match their seals, then how many nodes and edges are missing or too many."""
     counts = []
     for table, parse in ((nodes, parse_node), (edges, parse_edge)):
         stored = connection.execute(select(table).where(table.c.map_id == found.map_id)).all()
@@ -61,9 +61,19 @@ def rows(connection: Connection, found: MapRecord) -> Iterator[Finding]:
             except CorruptError as error:
                 thing, _, reason = str(error).partition(": ")
                 yield thing, reason
+    yield from marks_row(connection, found)
     if counts != [found.node_count, found.edge_count]:
         expected = f"{found.node_count} nodes and {found.edge_count} edges expected"
         yield "graph", f"{expected}, got {counts[0]} and {counts[1]}"
+
+
+def marks_row(connection: Connection, found: MapRecord) -> Iterator[Finding]:
+    """The record of places and rules, where it does not match its seal."""
+    try:
+        catalogue.parse_marks(connection.execute(select(marks).where(marks.c.map_id == found.map_id)).first())
+    except CorruptError as error:
+        thing, _, reason = str(error).partition(": ")
+        yield thing, reason
 
 
 def lost_blobs(connection: Connection, found: MapRecord, used: Iterable[str]) -> dict[str, str]:

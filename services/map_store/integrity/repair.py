@@ -15,8 +15,10 @@ from services.map_store.storage import answers, blobs, catalogue
 from services.map_store.storage.catalogue import MapRecord
 from services.map_store.storage.graph import AddStoredNode, Graph, Step, apply
 from services.map_store.storage.missions import mend_missions
-from services.map_store.storage.tables import edges, map_blobs, maps, nodes
+from services.map_store.storage.tables import edges, map_blobs, maps, marks, nodes
+from shared.mapgraph.marks import nodes_of, only_nodes
 from shared.messages.maps import DeleteNode, PutEdge
+from shared.messages.places import Place, PutPlace, PutRule
 
 
 @dataclass(frozen=True)
@@ -113,6 +115,11 @@ def _give_up_blobs(
     for key, edge in sorted(graph.edges.items()):
         if bare.keys() & key and not gone.keys() & key:
             steps.append(PutEdge(edge=edge))
+    kept = graph.nodes.keys() - gone.keys()
+    for mark in (*graph.places.values(), *graph.rules.values()):
+        if bare.keys() & nodes_of(mark):  # they left it when they were deleted
+            left = only_nodes(mark, kept)
+            steps.append(PutPlace(place=left) if isinstance(left, Place) else PutRule(rule=left))
     done = [f"node {node_id}: removed, its features are lost" for node_id in gone]
     done += [f"node {node_id}: its thumbnail is lost" for node_id in bare]
     history_only = len(new - used)
@@ -123,7 +130,7 @@ def _give_up_blobs(
 def _remove_strays(connection: Connection) -> None:
     """Rows of maps that are not there: damage changed the number of their map."""
     known = select(maps.c.map_id)
-    for table in (edges, nodes):
+    for table in (edges, nodes, marks):
         rows = connection.execute(select(table).where(table.c.map_id.not_in(known))).all()
         for row in rows:
             if not intact(table, row):

@@ -8,12 +8,14 @@ from sqlalchemy import Connection, Row, delete, insert, select
 from services.map_store.history.replay import Replay
 from services.map_store.integrity import check
 from services.map_store.integrity.seals import intact
-from services.map_store.storage.catalogue import MapRecord
+from services.map_store.storage.catalogue import MapRecord, parse_marks, write_marks
 from services.map_store.storage.graph import Graph, Step, StoredNode
 from services.map_store.storage.rows import edge_row, node_row, parse_edge, parse_node
-from services.map_store.storage.tables import edges, nodes
+from services.map_store.storage.tables import edges, marks, nodes
+from shared.mapgraph.marks import by_key, only_nodes
 from shared.mapgraph.operations import EdgeKey
 from shared.messages.maps import DeleteEdge, DeleteNode, Edge
+from shared.messages.places import Marks
 
 Rows = Sequence[Row[Any]]
 
@@ -28,12 +30,13 @@ def mend_rows(
     """
     stored = connection.execute(select(nodes).where(nodes.c.map_id == found.map_id)).all()
     joined = connection.execute(select(edges).where(edges.c.map_id == found.map_id)).all()
-    good = intact_graph(stored, joined)
-    findings = [] if damaged else list(check.rows(connection, found))
+    good = intact_graph(stored, joined, _intact_marks(connection, found))
+    findings = list((check.marks_row if damaged else check.rows)(connection, found))
     if not findings and replayed.graph in (None, good):
         return good, (), []
     graph = replayed.graph or good
     _write_rows(connection, found, graph, replayed, [*stored, *joined])
+    write_marks(connection, found.map_id, found.revision, graph.marks)
     if replayed.graph is None:
         done = [f"{thing}: removed, {reason}" for thing, reason in findings]
         return graph, _removed(stored, joined, graph), done
@@ -41,12 +44,26 @@ def mend_rows(
     return graph, (), done or ["graph: written anew from the history"]
 
 
-def intact_graph(stored: Iterable[Row[Any]], joined: Iterable[Row[Any]]) -> Graph:
-    """The rows that match their seals; edges only between such nodes."""
+def _intact_marks(connection: Connection, found: MapRecord) -> Marks:
+    """Places and rules; none where their record is damaged."""
+    row = connection.execute(select(marks).where(marks.c.map_id == found.map_id)).first()
+    return parse_marks(row) if row is not None and intact(marks, row) else Marks()
+
+
+def intact_graph(
+    stored: Iterable[Row[Any]], joined: Iterable[Row[Any]], written: Marks | None = None
+) -> Graph:
+    """The rows that match their seals; edges only between such nodes, marks only of such."""
+    written = written or Marks()
     good = {row.node_id: parse_node(row) for row in stored if intact(nodes, row)}
     between = {(row.a, row.b): parse_edge(row) for row in joined if intact(edges, row)}
     kept = {key: edge for key, edge in between.items() if {*key} <= good.keys()}
-    return Graph(dict(sorted(good.items())), dict(sorted(kept.items())))
+    return Graph(
+        dict(sorted(good.items())),
+        dict(sorted(kept.items())),
+        by_key(only_nodes(place, good.keys()) for place in written.places),
+        by_key(only_nodes(rule, good.keys()) for rule in written.rules),
+    )
 
 
 def _removed(stored: Rows, joined: Rows, graph: Graph) -> tuple[Step, ...]:
@@ -76,6 +93,6 @@ def _write_rows(
 
     things: tuple[tuple[Any, Mapping[Any, StoredNode | Edge]], ...]
     things = ((nodes, graph.nodes), (edges, graph.edges))
-    for table, by_key in things:
-        if by_key:
-            connection.execute(insert(table), [row_of(key, thing) for key, thing in by_key.items()])
+    for table, kept in things:
+        if kept:
+            connection.execute(insert(table), [row_of(key, thing) for key, thing in kept.items()])

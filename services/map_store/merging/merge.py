@@ -2,7 +2,7 @@
 
 import itertools
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Self
 
@@ -11,6 +11,7 @@ from services.map_store.merging.progress import CancelledError, MergeAnswer, Pro
 from services.map_store.storage.catalogue import MapRecord
 from services.map_store.storage.graph import AddStoredNode, Graph, Step
 from services.map_store.store import MapStore
+from shared.mapgraph.marks import free_names, renumbered
 from shared.mapgraph.merging.candidates import Candidate, MergeRefusedError
 from shared.mapgraph.merging.choice import choose
 from shared.mapgraph.merging.joining import check_size, joined_edges, new_ids
@@ -18,6 +19,7 @@ from shared.mapgraph.merging.sight_graph import SightGraph
 from shared.messages.features import Features
 from shared.messages.maps import PutEdge
 from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
+from shared.messages.places import PutPlace, PutRule
 from shared.queries import QueryError, RefusedError
 from shared.wire import WireError
 
@@ -132,4 +134,15 @@ class Merge:
             stored = self._other.stored.nodes[old]
             node = stored.node.model_copy(update={"node_id": new})
             steps.append(AddStoredNode(place=stored.model_copy(update={"node": node})))
-        return (*steps, *(PutEdge(edge=edge) for edge in edges))
+        steps += [PutEdge(edge=edge) for edge in edges]
+        return (*steps, *self._marks(ids))
+
+    def _marks(self, ids: Mapping[int, int]) -> Iterator[Step]:
+        """The other map's places and rules; a name that is taken gets that map's behind it."""
+        base, other = self._base.stored, self._other.stored
+        names = free_names(other.places, base.places, self._other.name)
+        for key, place in other.places.items():
+            yield PutPlace(place=renumbered(place, ids, names[key], names))
+        called = free_names(other.rules, base.rules, self._other.name)
+        for key, rule in other.rules.items():
+            yield PutRule(rule=renumbered(rule, ids, called[key], names))

@@ -13,9 +13,11 @@ from services.map_store.storage.blobs import checksum, unpack_features
 from services.map_store.storage.contents import Kind
 from services.map_store.storage.graph import AddStoredNode, Graph, Step, StoredNode, apply
 from services.map_store.storage.zip_opening import open_zip
+from shared.mapgraph.mark_draft import MARKS_MAX
 from shared.messages.base import Name, Part
 from shared.messages.features import MAX_THUMBNAIL_BYTES
 from shared.messages.maps import Edge, PutEdge
+from shared.messages.places import Place, PutPlace, PutRule, Rule, key_of
 from shared.topics import FEATURES
 from shared.wire import MAX_CONTAINER
 
@@ -34,13 +36,19 @@ EPOCH = (1980, 1, 1, 0, 0, 0)
 
 
 class Index(Part):
-    """`map.json`: the graph and the checksums of its blobs."""
+    """`map.json`: the graph and the checksums of its blobs.
+
+    Attributes:
+        places: nodes, by their name in the first archives; `named_places` are what people named.
+    """
 
     format: Literal["topnav-map.v1"] = "topnav-map.v1"
     name: Name
     revision: int = Field(ge=0)
     places: tuple[StoredNode, ...] = Field(max_length=MAX_CONTAINER)
     edges: tuple[Edge, ...] = Field(max_length=MAX_CONTAINER)
+    named_places: tuple[Place, ...] = Field(default=(), max_length=MARKS_MAX)
+    rules: tuple[Rule, ...] = Field(default=(), max_length=MARKS_MAX)
 
 
 def write_archive(
@@ -49,7 +57,15 @@ def write_archive(
     """Write one map; `read_blob(node, kind)` gives the bytes of its "features" or "thumbnail"."""
     nodes = tuple(graph.nodes[node_id] for node_id in sorted(graph.nodes))
     edges = tuple(graph.edges[key] for key in sorted(graph.edges))
-    index = Index(name=name, revision=revision, places=nodes, edges=edges)
+    marks = graph.marks
+    index = Index(
+        name=name,
+        revision=revision,
+        places=nodes,
+        edges=edges,
+        named_places=marks.places,
+        rules=marks.rules,
+    )
     owners: dict[str, tuple[StoredNode, Kind]] = {stored.features: (stored, "features") for stored in nodes}
     owners |= {stored.thumbnail: (stored, "thumbnail") for stored in nodes if stored.thumbnail}
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
@@ -135,6 +151,11 @@ class Archive:
     def _check_graph(self) -> tuple[Step, ...]:
         steps: list[Step] = [AddStoredNode(place=stored) for stored in self.index.places]
         steps += [PutEdge(edge=edge) for edge in self.index.edges]
+        steps += [PutPlace(place=place) for place in self.index.named_places]
+        steps += [PutRule(rule=rule) for rule in self.index.rules]
+        for what in (self.index.named_places, self.index.rules):
+            if len({key_of(mark.name) for mark in what}) != len(what):
+                raise InvalidError(f"{INDEX}: a name stands there twice")
         if len({(edge.a, edge.b) for edge in self.index.edges}) != len(self.index.edges):
             raise InvalidError(f"{INDEX}: an edge stands there twice")
         try:

@@ -1,4 +1,4 @@
-"""Maps by name: find, list, create, rename, delete. Every function works inside the caller's transaction."""
+"""Maps by name: find, list, create, rename, delete; their marks. All inside the caller's transaction."""
 
 import re
 from collections.abc import Sequence
@@ -10,7 +10,8 @@ from sqlalchemy import Connection, Row, delete, insert, select, update
 from services.map_store.errors import ConflictError, CorruptError, InvalidError, MissingError
 from services.map_store.integrity.seals import intact, sealed
 from services.map_store.storage import blobs
-from services.map_store.storage.tables import edges, maps, nodes, revisions
+from services.map_store.storage.tables import edges, maps, marks, nodes, revisions
+from shared.messages.places import Marks
 from shared.transport.keys import NAME
 
 NEW_NAME = re.compile(r"(?!import\Z)[a-z0-9_][a-z0-9_-]{0,63}\Z")
@@ -100,6 +101,7 @@ def create(connection: Connection, name: str, now_ns: int) -> MapRecord:
     assert key is not None
     record = MapRecord(int(key[0]), name, 0, now_ns, now_ns)
     save(connection, record)
+    write_marks(connection, record.map_id, 0, Marks())
     return record
 
 
@@ -122,7 +124,7 @@ def rename(connection: Connection, name: str, new_name: str) -> MapRecord:
 def remove(connection: Connection, name: str) -> int:
     """Delete a map with everything it owns; returns its last revision."""
     found = find(connection, name)
-    for table in (edges, nodes, revisions):
+    for table in (marks, edges, nodes, revisions):
         connection.execute(delete(table).where(table.c.map_id == found.map_id))
     blobs.drop(connection, found.map_id)
     connection.execute(delete(maps).where(maps.c.map_id == found.map_id))
@@ -135,3 +137,19 @@ def record_of(row: Row[Any]) -> MapRecord:
         name = label(row)
         raise CorruptError(f"map {name!r}: its record is damaged; 'topnav map repair {name}' mends it")
     return MapRecord(**{name: value for name, value in row._mapping.items() if name != "seal"})
+
+
+def parse_marks(row: Row[Any] | None) -> Marks:
+    """Places and rules from the row of their map; CorruptError when it is not what was written."""
+    if row is None:
+        raise CorruptError("places and rules: their record is missing")
+    if not intact(marks, row):
+        raise CorruptError("places and rules: their record does not match its checksum")
+    return Marks.model_validate_json(row.record)
+
+
+def write_marks(connection: Connection, map_id: int, revision: int, written: Marks) -> None:
+    """Put places and rules into the place of those a map had."""
+    values = {"map_id": map_id, "revision": revision, "record": written.model_dump_json()}
+    connection.execute(delete(marks).where(marks.c.map_id == map_id))
+    connection.execute(insert(marks).values(sealed(marks, values)))

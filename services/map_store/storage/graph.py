@@ -1,4 +1,4 @@
-"""The map as a value: nodes and edges, changed by steps that are checked and can be undone. Pure.
+"""The map as a value: nodes, edges and marks, changed by steps that are checked and can be undone. Pure.
 
 A step is an operation of the bus with the content of a new node replaced by the checksums of its blobs, so
 that histories and undo need no pictures.
@@ -12,14 +12,30 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from services.map_store.errors import ConflictError, InvalidError, MapError, MissingError
-from shared.mapgraph.operations import Draft, EdgeKey, EdgeWrite, FullError, GraphError, NodeWrite, TakenError
+from shared.mapgraph.mark_draft import MarkWrite
+from shared.mapgraph.marks import marks_of
+from shared.mapgraph.operations import (
+    Draft,
+    EdgeKey,
+    EdgeWrite,
+    FullError,
+    GraphError,
+    InUseError,
+    NodeWrite,
+    TakenError,
+)
 from shared.messages.base import Part
-from shared.messages.maps import DeleteEdge, DeleteNode, Edge, Node, PutEdge, UpdateNode
+from shared.messages.maps import DeleteEdge, DeleteNode, Edge, MarkOperation, Node, PutEdge, UpdateNode
+from shared.messages.places import DeletePlace, DeleteRule, Marks, Place, PutPlace, PutRule, Rule
 
 MAX_NODE_ID = 2**63 - 1
 """What a database integer holds."""
 
-ERRORS: dict[type[GraphError], type[MapError]] = {TakenError: ConflictError, FullError: InvalidError}
+ERRORS: dict[type[GraphError], type[MapError]] = {
+    TakenError: ConflictError,
+    InUseError: ConflictError,
+    FullError: InvalidError,
+}
 """What the others mean here; an UnknownError is a MissingError."""
 
 
@@ -48,7 +64,9 @@ class AddStoredNode(Part):
     place: StoredNode
 
 
-Step = Annotated[AddStoredNode | UpdateNode | DeleteNode | PutEdge | DeleteEdge, Field(discriminator="op")]
+Step = Annotated[
+    AddStoredNode | UpdateNode | DeleteNode | PutEdge | DeleteEdge | MarkOperation, Field(discriminator="op")
+]
 
 
 def added_by(steps: Iterable[Step]) -> list[StoredNode]:
@@ -58,10 +76,17 @@ def added_by(steps: Iterable[Step]) -> list[StoredNode]:
 
 @dataclass(frozen=True)
 class Graph:
-    """One revision of a map."""
+    """One revision of a map; places and rules by the keys of their names."""
 
     nodes: Mapping[int, StoredNode] = field(default_factory=lambda: MappingProxyType({}))
     edges: Mapping[EdgeKey, Edge] = field(default_factory=lambda: MappingProxyType({}))
+    places: Mapping[str, Place] = field(default_factory=lambda: MappingProxyType({}))
+    rules: Mapping[str, Rule] = field(default_factory=lambda: MappingProxyType({}))
+
+    @property
+    def marks(self) -> Marks:
+        """Places and rules."""
+        return marks_of(self.places, self.rules)
 
 
 @dataclass(frozen=True)
@@ -72,6 +97,7 @@ class Change:
         before, graph: the graph before and after them.
         inverse: steps that lead back.
         nodes, edges: those written or deleted on the way, the edges of deleted nodes included.
+        marks: whether a place or a rule was.
     """
 
     before: Graph
@@ -79,6 +105,7 @@ class Change:
     inverse: tuple[Step, ...]
     nodes: frozenset[int]
     edges: frozenset[EdgeKey]
+    marks: bool
 
 
 def apply(graph: Graph, steps: Iterable[Step]) -> Change:
@@ -87,7 +114,7 @@ def apply(graph: Graph, steps: Iterable[Step]) -> Change:
     Raises:
         MissingError, ConflictError, InvalidError: with the number of the step and the thing it names.
     """
-    draft = Draft(dict(graph.nodes), dict(graph.edges))
+    draft = Draft(dict(graph.nodes), dict(graph.edges), dict(graph.places), dict(graph.rules))
     for number, step in enumerate(steps):
         try:
             _apply(draft, step)
@@ -96,10 +123,16 @@ def apply(graph: Graph, steps: Iterable[Step]) -> Change:
             raise kind(f"operation {number} ({step.op}): {error}") from None
     return Change(
         before=graph,
-        graph=Graph(MappingProxyType(draft.nodes), MappingProxyType(draft.edges)),
+        graph=Graph(
+            MappingProxyType(draft.nodes),
+            MappingProxyType(draft.edges),
+            MappingProxyType(draft.marks.places),
+            MappingProxyType(draft.marks.rules),
+        ),
         inverse=tuple(_back(write) for write in reversed(draft.writes)),
         nodes=frozenset(write.node_id for write in draft.writes if isinstance(write, NodeWrite)),
         edges=frozenset(write.key for write in draft.writes if isinstance(write, EdgeWrite)),
+        marks=any(isinstance(write, MarkWrite) for write in draft.writes),
     )
 
 
@@ -115,8 +148,10 @@ def _apply(draft: Draft[StoredNode], step: Step) -> None:
             draft.apply(step)
 
 
-def _back(write: NodeWrite[StoredNode] | EdgeWrite) -> Step:
+def _back(write: NodeWrite[StoredNode] | EdgeWrite | MarkWrite) -> Step:
     """The step that takes a write back."""
+    if isinstance(write, MarkWrite):
+        return _mark_back(write)
     if isinstance(write, EdgeWrite):
         a, b = write.key
         return DeleteEdge(a=a, b=b) if write.before is None else PutEdge(edge=write.before)
@@ -125,3 +160,11 @@ def _back(write: NodeWrite[StoredNode] | EdgeWrite) -> Step:
     if write.after is None:
         return AddStoredNode(place=write.before)
     return UpdateNode(node=write.before.node)
+
+
+def _mark_back(write: MarkWrite) -> Step:
+    before, after = write.before, write.after
+    if before is not None:
+        return PutPlace(place=before) if isinstance(before, Place) else PutRule(rule=before)
+    assert after is not None
+    return DeletePlace(name=after.name) if isinstance(after, Place) else DeleteRule(name=after.name)

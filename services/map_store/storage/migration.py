@@ -11,7 +11,9 @@ from services.map_store.errors import CorruptError, UnavailableError
 from services.map_store.integrity import sqlite_file as integrity
 from services.map_store.integrity.seals import digest, seal
 from services.map_store.storage import tables
+from services.map_store.storage.catalogue import write_marks
 from shared.messages.maps import Edge, Node
+from shared.messages.places import Marks
 
 SEALED = (tables.maps, tables.revisions, tables.nodes, tables.edges, tables.missions)
 RECORDS: dict[str, type[BaseModel]] = {"nodes": Node, "edges": Edge}
@@ -37,7 +39,8 @@ def prepare(connection: Connection) -> None:
         _write_about(connection)
     elif versions == [1]:
         _from_1(connection)
-    elif versions == [2]:  # version 3 has one more table, made above
+    elif versions in ([2], [3]):  # version 3 has one more table, made above
+        _add_marks(connection)
         _write_about(connection)
 
 
@@ -77,7 +80,14 @@ def _from_1(connection: Connection) -> None:
     for table in SEALED:
         _add_column(connection, table, table.c.seal)
         _seal_rows(connection, table)
+    _add_marks(connection)
     _write_about(connection)
+
+
+def _add_marks(connection: Connection) -> None:
+    """Version 4 keeps places and rules, in a row of each map."""
+    for map_id in connection.execute(select(tables.maps.c.map_id)).scalars().all():
+        write_marks(connection, map_id, 0, Marks())
 
 
 def _add_column(connection: Connection, table: Table, column: Column[Any]) -> None:

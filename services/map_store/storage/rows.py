@@ -9,9 +9,10 @@ from sqlalchemy import Connection, Row, bindparam, delete, insert, select, updat
 from services.map_store.errors import CorruptError, GivenUpError
 from services.map_store.integrity.seals import intact, matches, sealed
 from services.map_store.storage.blobs import checksum
-from services.map_store.storage.catalogue import MapRecord
+from services.map_store.storage.catalogue import MapRecord, parse_marks, write_marks
 from services.map_store.storage.graph import Change, Graph, Step, StoredNode
-from services.map_store.storage.tables import edges, nodes
+from services.map_store.storage.tables import edges, marks, nodes
+from shared.mapgraph.marks import by_key
 from shared.messages.maps import Edge, Node
 
 STEPS: TypeAdapter[tuple[Step, ...]] = TypeAdapter(tuple[Step, ...])
@@ -21,9 +22,12 @@ def read_graph(connection: Connection, found: MapRecord) -> Graph:
     """Load one map; CorruptError names the row that is damaged, or says how many are missing."""
     stored = select(nodes).where(nodes.c.map_id == found.map_id).order_by(nodes.c.node_id)
     joined = select(edges).where(edges.c.map_id == found.map_id).order_by(edges.c.a, edges.c.b)
+    written = parse_marks(connection.execute(select(marks).where(marks.c.map_id == found.map_id)).first())
     graph = Graph(
         {row.node_id: parse_node(row) for row in connection.execute(stored).all()},
         {(row.a, row.b): parse_edge(row) for row in connection.execute(joined).all()},
+        by_key(written.places),
+        by_key(written.rules),
     )
     missing = found.node_count - len(graph.nodes), found.edge_count - len(graph.edges)
     if missing != (0, 0):
@@ -60,6 +64,8 @@ def write_change(connection: Connection, map_id: int, revision: int, change: Cha
     _each(connection, update(nodes).where(*this_node), replaced)
     joined = [edge_row(map_id, revision, edges_now[k]) for k in sorted(change.edges & edges_now.keys())]
     _each(connection, insert(edges), joined)
+    if change.marks:
+        write_marks(connection, map_id, revision, change.graph.marks)
 
 
 def node_row(map_id: int, revision: int, stored: StoredNode) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from sqlalchemy import (
     Text,
 )
 
-VERSION = 3
+VERSION = 4
 """Raised with every change of these tables; `migration` brings older ones up, newer ones are refused."""
 
 
@@ -94,6 +94,15 @@ edges = Table(
     _seal(),
     ForeignKeyConstraint(["map_id", "a"], ["nodes.map_id", "nodes.node_id"]),
     ForeignKeyConstraint(["map_id", "b"], ["nodes.map_id", "nodes.node_id"]),
+)
+
+marks = Table(
+    "marks",
+    metadata,
+    Column("map_id", ForeignKey("maps.map_id"), primary_key=True),
+    Column("revision", BigInteger, nullable=False),
+    Column("record", Text, nullable=False),  # all places and rules of the map: one row that cannot go unseen
+    _seal(),
 )
 
 answers = Table(

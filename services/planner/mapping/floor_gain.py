@@ -67,12 +67,15 @@ def _covered_m(graph: MapGraph, node_id: int, profile: Profile) -> float:
     return ROOM_COVERS_M * openness(graph, node_id)
 
 
-def best_sector(graph: MapGraph, node_id: int, preferred_rad: float, profile: Profile) -> int | None:
-    """The unexplored direction of a node with most new floor, rather about a preferred one; None without any.
+def best_sector(
+    graph: MapGraph, node_id: int, sectors: Sequence[int], preferred_rad: float, profile: Profile
+) -> int | None:
+    """The direction of a node with most new floor, rather about a preferred one; None without any.
 
     Args:
         graph: the map.
         node_id: the node.
+        sectors: its unexplored directions to choose from.
         preferred_rad: where the robot goes already, in the node's camera frame.
         profile: how far a node covers.
     """
@@ -82,9 +85,10 @@ def best_sector(graph: MapGraph, node_id: int, preferred_rad: float, profile: Pr
         return round(gains[sector] * (1.0 - STRAIGHT_SHARE * turn_rad / math.pi), 6), -sector
 
     node, covers_m = graph.nodes[node_id], _covered_m(graph, node_id, profile)
-    gains = dict.fromkeys(frontier_sectors(node), 1.0)
-    if covers_m:
-        gains = _gains(graph, _poses_around(graph, node_id), node, covers_m)
+    gains = dict.fromkeys(sectors, 1.0)
+    if covers_m and sectors:
+        worths = _gains(graph, _poses_around(graph, node_id), node, covers_m)
+        gains = {sector: worths[sector] for sector in sectors}
     return max(gains, key=worth, default=None)
 
 

@@ -9,6 +9,7 @@ import math
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
+from services.planner.mapping.allowed_directions import AllowedDirections
 from services.planner.mapping.departure import Departure, NewNode
 from services.planner.mapping.edges import NewEdges
 from services.planner.mapping.floor_gain import best_sector
@@ -16,7 +17,7 @@ from services.planner.mapping.nodes import add_node
 from services.planner.mapping.reach import nodes_nearby
 from services.planner.mapping.reobservation import close_known_directions
 from services.planner.mapping.strategies import ThesisExploration
-from services.planner.mission_kinds import MissionContext, MissionKind
+from services.planner.mission_kinds import MissionContext, MissionError, MissionKind
 from services.planner.ports import Decision, MapAccess, Matcher, Mission, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.travel.edge_experience import EdgeExperience
@@ -24,7 +25,7 @@ from services.planner.travel.frontier_destination import FrontierDestination
 from services.planner.travel.machine import Travel
 from services.planner.travel.states import State
 from services.planner.travel.whereabouts import Whereabouts
-from shared.mapgraph.frontiers import sector_rad
+from shared.mapgraph.frontiers import open_directions, sector_rad
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.view_range import half_m, openness
 
@@ -60,7 +61,8 @@ class FrontierExploration:
     ) -> None:
         self._profile, self._maps, self._matcher, self._rng = profile, maps, matcher, rng
         experience = EdgeExperience(profile, maps)
-        self._destination = FrontierDestination(profile, maps, matcher, experience)
+        self._directions = AllowedDirections(maps)
+        self._destination = FrontierDestination(profile, maps, matcher, experience, self._directions)
         self._travel = Travel(profile, maps, matcher, self._destination, experience, whereabouts)
         self._departure: Departure | None = None
         self._heading_rad = 0.0
@@ -76,7 +78,8 @@ class FrontierExploration:
         if self._departure is not None:
             return self._go_on(observation, self._departure)
         if self._travel.state is not State.FOLLOWING and not self._destination.targets():
-            why = f"nothing unexplored is left: {len(graph.nodes)} nodes, {len(graph.edges)} edges"
+            allowed = " that the rules allow" if open_directions(graph) else ""
+            why = f"nothing unexplored is left{allowed}: {len(graph.nodes)} nodes, {len(graph.edges)} edges"
             return Decision("hold", why=why, outcome="succeeded")
         decision = self._travel.step(observation)
         self.progress = self._travel.progress
@@ -105,7 +108,9 @@ class FrontierExploration:
         """Start a departure from a node the robot stands at, or hold when it has no frontier."""
         node_id, yaw_rad = here.node_id, -here.yaw_rad
         self._travel.set_out(here)
-        sector = best_sector(self._maps.graph, node_id, self._heading_rad - yaw_rad, self._profile)
+        sectors = self._directions.of(node_id)
+        preferred_rad = self._heading_rad - yaw_rad
+        sector = best_sector(self._maps.graph, node_id, sectors, preferred_rad, self._profile)
         if sector is None:
             return Decision("hold", why=f"node {node_id} has no unexplored direction", notes=notes)
         heading_rad = math.remainder(sector_rad(sector) + yaw_rad, math.tau)
@@ -116,6 +121,9 @@ class FrontierExploration:
 
     def _go_on(self, observation: Observation, departure: Departure) -> Decision:
         self._travel.observe(observation)
+        rule = self._directions.ahead(departure.here.moved(observation.moved), departure.heading_rad)
+        if rule:
+            return self._turn_back(departure, observation, rule)
         result = departure.step(observation)
         self.progress = departure.progress
         if departure.unseen and self._travel.tracker.was_carried():
@@ -132,6 +140,14 @@ class FrontierExploration:
             self._departure = None
             self._travel.tracker.stand_at(departure.here)
         return result
+
+    def _turn_back(self, departure: Departure, observation: Observation, rule: str) -> Decision:
+        """A keep-out lies ahead: this direction is none for this mission."""
+        self._directions.refuse(departure.node_id, departure.sector)
+        self._departure = None
+        self._travel.tracker.stand_at(departure.here.moved(observation.moved))
+        why = f"node {departure.node_id} direction {departure.sector}: rule {rule!r} is against going on"
+        return Decision("hold", why=why, notes=(Note("ruled_out", why),))
 
     def _surroundings(self, node_id: int) -> tuple[Note, ...]:
         """What driving has told of this place, where that is news: a room, a hall, a yard."""
@@ -155,6 +171,9 @@ def _make(context: MissionContext, parameters: ExploreParameters) -> Mission:
         profile = profile.replaced(covers_m=parameters.covers_m)
     robot = (profile, context.maps, context.matcher, context.rng)
     if profile.mapping.exploration == "strategies":
+        if forbidden := context.maps.limits().forbidden:
+            rule = next(iter(forbidden.values()))
+            raise MissionError(f"this profile explores at random, which rule {rule!r} forbids", "forbidden")
         return ThesisExploration(*robot)
     return FrontierExploration(*robot, context.whereabouts)
 

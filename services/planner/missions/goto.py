@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from services.planner.goal_nodes import check_allowed, node_called
 from services.planner.mapping.reach import claims
 from services.planner.mission_kinds import MissionContext, MissionError, MissionKind
 from services.planner.ports import (
@@ -38,6 +39,7 @@ from shared.mapgraph.routing import GOAL
 from shared.messages.features import Features
 from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
+from shared.messages.places import PlaceName
 from shared.messages.sensors import Ranges
 
 COMPARED = 8
@@ -72,11 +74,12 @@ and more, the one aliased 31."""
 
 
 class GotoParameters(BaseModel):
-    """Goal of a goto without a picture."""
+    """Goal of a goto without a picture: one of them."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     goal_node: int | None = Field(default=None, ge=0, lt=2**63, description="A node of the map.")
+    place: PlaceName | None = Field(default=None, description="The name of a place.")
 
 
 class GoalDestination:
@@ -295,13 +298,18 @@ class Goto:
 
 
 def _make(context: MissionContext, parameters: GotoParameters) -> Mission:
-    node_id = parameters.goal_node
-    if (context.goal is None) == (node_id is None):
-        raise MissionError("goto needs a goal picture's features or a goal_node, exactly one of them")
+    node_id, place = parameters.goal_node, parameters.place
+    if sum(given is not None for given in (context.goal, node_id, place)) != 1:
+        raise MissionError(
+            "goto needs a goal picture's features, a goal_node or a place, exactly one of them"
+        )
+    if place is not None:
+        node_id = node_called(context.maps, place)
     goal = context.goal
     if goal is None:
         if node_id not in context.maps.graph.nodes:
             raise MissionError(f"the map has no node {node_id}", "missing")
+        check_allowed(context.maps, node_id)
         goal = context.maps.features_of(node_id)
     profile, maps, matcher = context.profile, context.maps, context.matcher
     if goal.photo is None:
@@ -315,7 +323,7 @@ def _make(context: MissionContext, parameters: GotoParameters) -> Mission:
 
 KIND = MissionKind(
     name="goto",
-    title="Drive to a picture or node",
+    title="Drive to a picture, node or place",
     parameters=GotoParameters,
     make=_make,
     shown=("similarity",),

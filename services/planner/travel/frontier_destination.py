@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from services.planner.mapping.allowed_directions import AllowedDirections
 from services.planner.ports import MapAccess, Matcher, Matches, Note
 from services.planner.profiles import Profile
 from services.planner.travel.destination import Setback, Verdict
@@ -45,9 +46,15 @@ class FrontierDestination:
     aliased = False
 
     def __init__(
-        self, profile: Profile, maps: MapAccess, matcher: Matcher, experience: EdgeExperience
+        self,
+        profile: Profile,
+        maps: MapAccess,
+        matcher: Matcher,
+        experience: EdgeExperience,
+        directions: AllowedDirections,
     ) -> None:
         self._profile, self._maps, self._matcher = profile, maps, matcher
+        self._directions, self._set_aside = directions, set[int]()
         self._experience = experience
         self.picture: Features | None = None
         self.arrival_rad = profile.arrival.travel_arrival_rad
@@ -58,8 +65,9 @@ class FrontierDestination:
         self._in_vain = self._cut_off = self._stranded = 0
 
     def targets(self) -> dict[int, float]:
-        """Nodes with a frontier."""
-        return {n: 0.0 for n, node in self._maps.graph.nodes.items() if frontier_sectors(node)}
+        """Nodes with a frontier that the rules of the map let a robot leave by."""
+        nodes = [n for n, node in self._maps.graph.nodes.items() if frontier_sectors(node)]
+        return {n: 0.0 for n in nodes if n not in self._set_aside and self._directions.of(n)}
 
     def starts(self, visible: Mapping[int, float]) -> Mapping[int, float]:
         """Those in sight that did not fail as a start; all again once the robot has moved on for a while."""
@@ -97,6 +105,9 @@ class FrontierDestination:
         if self._cut_off < self._profile.mapping.saturation_steps:
             return Verdict(why=why)
         nodes = self._maps.graph.nodes
+        if self._maps.limits():  # a rule may be why, and another day it may not hold
+            self._set_aside |= frontier.keys()
+            return Verdict(notes=(Note("nodes_set_aside", f"{why} that the rules allow"),), why=why)
         self._maps.commit([UpdateNode(node=without_frontiers(nodes[n])) for n in frontier])
         values: dict[str, float | int | str | bool | None] = {"nodes": len(frontier)}
         return Verdict(notes=(Note("nodes_unreachable", f"{why}: closed", values),), why=why)

@@ -1,6 +1,6 @@
 """Which nodes the robot can start from, by a frame compared with the map. Pure."""
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Mapping
 from functools import partial
 
 from services.planner.ports import Matches
@@ -8,7 +8,10 @@ from services.planner.profiles import Profile
 from services.planner.similarity import ranked, similarity, tells_place, trusted
 from services.planner.surroundings import is_clear, length_m
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.displacement import Displacement
+from shared.mapgraph.local.keep_clear import clear_nodes, keep_clear
 from shared.mapgraph.routing import HOP_M, UNSEEN_GROUND, EdgeCost, fewest_nodes, way_m
+from shared.mapgraph.rules import Limits
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
 
@@ -39,6 +42,50 @@ def reachable_nodes(
         for node, match in matches.items()
         if similarity(match, profile) > s_min and tells_place(match, graph, profile)
     }
+
+
+def allowed_starts(
+    visible: Mapping[int, float], graph: MapGraph, here: Displacement | None, limits: Limits
+) -> dict[int, float]:
+    """Nodes in sight that the rules let a robot go to from here: not through a keep-out, if any other way is.
+
+    Args:
+        visible: nodes with the cost of the way there.
+        graph: the map.
+        here: where the robot is; None where nobody knows.
+        limits: what the rules say.
+    """
+    allowed = {node: cost for node, cost in visible.items() if node not in limits.forbidden}
+    clear = clear_nodes(graph, here, allowed, limits.forbidden)
+    nearest = sorted(allowed, key=lambda node: (allowed[node], node))[:1]
+    return {node: allowed[node] for node in clear or nearest}
+
+
+def allowed_targets(
+    wanted: Mapping[int, float],
+    graph: MapGraph,
+    lies: Callable[[int], Displacement | None],
+    limits: Limits,
+) -> dict[int, float]:
+    """Nodes from which the rules let a robot go on to the goal.
+
+    Args:
+        wanted: nodes to reach, with the cost of the way beyond.
+        graph: the map.
+        lies: where the goal picture was taken relative to a node, as far as that is known.
+        limits: what the rules say.
+    """
+
+    def is_allowed(node: int) -> bool:
+        goal = lies(node)
+        if goal is None or node in limits.forbidden:
+            return node not in limits.forbidden
+        around = keep_clear(graph, node, limits.forbidden)
+        return around is None or not around.is_crossed((0.0, 0.0), (goal.x_m, goal.y_m))
+
+    if not limits.forbidden:
+        return dict(wanted)
+    return {node: cost for node, cost in wanted.items() if is_allowed(node)}
 
 
 def in_sight(match: NodeMatch, graph: MapGraph, ranges: Ranges, profile: Profile) -> bool:

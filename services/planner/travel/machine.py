@@ -12,7 +12,13 @@ from services.planner.profiles import Profile
 from services.planner.similarity import ranked, similarity
 from services.planner.travel.destination import Destination, Setback
 from services.planner.travel.edge_experience import EdgeExperience
-from services.planner.travel.localisation import edge_cost, in_sight, starts_in_sight
+from services.planner.travel.localisation import (
+    allowed_starts,
+    allowed_targets,
+    edge_cost,
+    in_sight,
+    starts_in_sight,
+)
 from services.planner.travel.path_follower import PathFollower
 from services.planner.travel.search import Search, search_back
 from services.planner.travel.states import TRANSITIONS, Event, State
@@ -20,10 +26,14 @@ from services.planner.travel.tracking import Tracker
 from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.graph import EdgeKey
 from shared.mapgraph.local.displacement import Displacement
+from shared.mapgraph.local.keep_clear import is_near_forbidden
 from shared.mapgraph.routing import GOAL, plan_path
 from shared.messages.missions import FailureKind
 
 log = logging.getLogger(__name__)
+
+HELD_FRAMES = 10
+"""Frames in which rules leave no way before the travel ends; chosen: 3 s, time for a frame that was wrong."""
 
 
 class Travel:
@@ -54,6 +64,7 @@ class Travel:
         self._follower: PathFollower | None = None
         self._search: Search | None = None
         self._notes: list[Note] = []
+        self._held_frames = 0
         self._progress = Progress()
 
     @property
@@ -78,6 +89,7 @@ class Travel:
         """One frame; the matcher has it already."""
         self._notes = []
         self.observe(observation)
+        self._obey()
         decision = None if self.state is State.FOLLOWING else self._find_way(observation)
         if decision is None:
             decision = self._follow(observation)
@@ -86,6 +98,7 @@ class Travel:
     def _find_way(self, observation: Observation) -> Decision | None:
         """Localise and plan; None once there is a path to follow."""
         destination, graph, profile = self._destination, self._maps.graph, self._profile
+        limits = self._maps.limits()
         pictures = () if destination.picture is None else (destination.picture,)
         seen = self._matcher.match(self.tracker.nearby(), destination.compared, pictures)
         goal = seen.pop(GOAL, None)
@@ -95,22 +108,53 @@ class Travel:
         if goal is not None:
             destination.sees(goal, self.tracker.here)
             in_view = in_sight(goal, graph, observation.ranges, profile)
-            if in_view and destination.goes_straight(goal, self.tracker.here):
+            free = in_view and not is_near_forbidden(graph, self.tracker.here, limits.forbidden)
+            if free and destination.goes_straight(goal, self.tracker.here):
                 self._set_off([GOAL], Event.GOAL_IN_SIGHT)
                 return None
-        targets = destination.targets()
-        if not targets:
+        wanted = destination.targets()
+        if not wanted:
             return self._give_up(*destination.unreachable())
+        targets = allowed_targets(wanted, graph, destination.lies, limits)
+        if not targets:
+            return self._give_up("forbidden", limits.why_not(wanted))
         visible = starts_in_sight(seen, graph, observation.ranges, profile)
-        starts, banned = destination.starts(visible), self._experience.banned
-        path = plan_path(graph, starts, targets, edge_cost(graph, profile), self._unclear, banned)
+        within = next((limits.forbidden[node] for node in visible if node in limits.forbidden), "")
+        if within and visible.keys() <= limits.forbidden.keys():
+            return self._held_back(f"all that is in sight is forbidden by rule {within!r}")
+        starts = destination.starts(allowed_starts(visible, graph, self.tracker.here, limits))
+        banned = self._experience.banned
+        path = plan_path(graph, starts, targets, edge_cost(graph, profile), self._unclear, banned, limits)
         if path:
+            self._held_frames = 0
             destination.set_out()
             self._set_off([*path, GOAL] if pictures else path, Event.PATH_FOUND)
             return None
-        if starts:
-            return self._wait()
-        return self._look_around(seen, observation.frame_share)
+        if not starts:
+            return self._look_around(seen, observation.frame_share)
+        open_path = plan_path(graph, starts, targets, edge_cost(graph, profile), self._unclear, banned)
+        if pictures and (rule := limits.against_path(open_path)):
+            return self._held_back(f"every path to the goal is against rule {rule!r}")
+        return self._wait()
+
+    def _obey(self) -> None:
+        """Leave a path that a rule is against, which may have come or begun to hold on the way."""
+        if self.state is not State.FOLLOWING or self._follower is None:
+            return
+        ahead = self._follower.path[max(0, self._follower.index - 1) :]
+        limits = self._maps.limits()
+        rule = limits.forbidden.get(ahead[-1], "") or limits.against_path(ahead)
+        if rule:
+            self._notes.append(Note("ruled_out", f"rule {rule!r} is against going on to {ahead[-1]}"))
+            self._change(Event.RULED_OUT)
+
+    def _held_back(self, why: str) -> Decision:
+        """A rule leaves no way: after some frames that all say so, the travel ends."""
+        self._change(Event.NO_PATH)
+        self._held_frames += 1
+        if self._held_frames > HELD_FRAMES:
+            return self._give_up("forbidden", f"{why}: drive the robot by hand, or lift the rule")
+        return Decision("hold", why=why)
 
     def _set_off(self, path: list[int], event: Event) -> None:
         self._change(event)
@@ -132,7 +176,8 @@ class Travel:
         self._progress = follower.progress
         if event is None:
             self.last_heading_rad = decision.heading_rad
-            return decision
+            share = self._maps.limits().speed_share(*follower.leg())
+            return replace(decision, speed_fraction=share * decision.speed_fraction)
         self._notes += decision.notes
         why = decision.why
         if event is Event.REACHED:

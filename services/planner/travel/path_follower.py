@@ -23,6 +23,7 @@ from services.planner.travel.waypoints import (
     way_left_m,
 )
 from shared.mapgraph.graph import EdgeKey, edge_key
+from shared.mapgraph.local.keep_clear import clear_nodes, is_near_forbidden
 from shared.mapgraph.routing import GOAL
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
@@ -134,6 +135,10 @@ class PathFollower:
         """The edge from the present waypoint to the one after it."""
         return edge_key(*self.path[self.index : self.index + 2])
 
+    def leg(self) -> tuple[int, int]:
+        """The node left and the waypoint aimed at; twice the same before the first."""
+        return self.path[max(0, self.index - 1)], self.path[self.index]
+
     def _current_edge(self) -> EdgeKey | None:
         """The edge being driven; None at index 0, where there is none (thesis equation 6.4)."""
         return edge_key(*self.path[self.index - 1 : self.index + 1]) if self.index else None
@@ -202,6 +207,8 @@ class PathFollower:
 
     def _may_advance(self, here: NodeMatch | None, there: NodeMatch, later: int, ranges: Ranges) -> bool:
         beside = later == self.index + 1 and self._is_at(here)
+        if not beside and self._crosses_keep_out(self.path[later]):
+            return False
         aliased_goal = self._destination.aliased and self.path[later] == GOAL
         return may_advance(
             here,
@@ -212,6 +219,15 @@ class PathFollower:
             straight=beside or not aliased_goal,
             beside=beside and self._next_is_known(there, ranges),
         )
+
+    def _crosses_keep_out(self, waypoint: int) -> bool:
+        """Whether the short way to a later waypoint leads where the path goes round."""
+        forbidden, here, graph = self._maps.limits().forbidden, self._tracker.here, self._maps.graph
+        if not forbidden:
+            return False
+        if waypoint == GOAL or here is None:  # where they are is not sure enough to cut a corner
+            return is_near_forbidden(graph, here, forbidden)
+        return waypoint not in clear_nodes(graph, here, [waypoint], forbidden)
 
     def _mark_driven(self, match: NodeMatch | None) -> tuple[Note, ...]:
         """The robot stands at a waypoint: the edge to it has been driven."""

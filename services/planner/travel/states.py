@@ -40,6 +40,7 @@ class Event(StrEnum):
     WAY_UNCLEAR = "way_unclear"
     ALIASED = "aliased"
     REACHED = "reached"
+    RULED_OUT = "ruled_out"
     SET_OUT = "set_out"
     GIVEN_UP = "given_up"
 
@@ -64,6 +65,7 @@ _REASONS = {
     Event.WAY_UNCLEAR: "no free ground is seen beyond the waypoint: another path is asked for, once",
     Event.ALIASED: "the view resembles the destination, but other nodes resemble it more",
     Event.REACHED: "the view agrees with that of the destination",
+    Event.RULED_OUT: "a rule of the map is against going on along the path",
     Event.SET_OUT: "a new destination is asked for",
     Event.GIVEN_UP: "no try is left",
 }
@@ -82,6 +84,7 @@ def _rows() -> list[Transition]:
         (Event.NO_PROGRESS, State.LOCALISING),
         (Event.WAY_UNCLEAR, State.LOCALISING),
         (Event.ALIASED, State.LOCALISING),
+        (Event.RULED_OUT, State.LOCALISING),
         (Event.REACHED, State.ARRIVED),
     )
     rows = [(before, event, after) for before in _SEEKING for event, after in seeking]

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.claims import Claim
 from shared.mapgraph.local.displacement import Displacement
-from shared.mapgraph.local.relative_poses import RelativePose, relative_poses
+from shared.mapgraph.local.relative_poses import RelativePose, poses_by_ways, relative_poses
 from shared.mapgraph.local.view_range import openness
 
 STDS = 3.0
@@ -36,15 +36,16 @@ LOOSE_FACTOR = 2.5
 """How many times further than it is seen such a node may lie: two distances by matches, either right to a
 factor of 1.6 in nine of ten cases."""
 LOOP_NODES = 400
-"""Nodes reckoned with where a loop may close; chosen: 250 m of way, in 0.1 s a new node. With 200 a row of
-desks of an office was beyond, and taken for the one in front."""
+"""Nodes reckoned with all together where a loop may close; chosen: 250 m of way, in 0.1 s a new node. Others
+are reckoned with by the ways to them: with nothing known of those, houses on the other side of a village of
+600 nodes were taken for those in front."""
 
 
 def out_of_reach(
     graph: MapGraph,
     claims: Mapping[int, Claim],
     here: Displacement,
-    most: int = LOOP_NODES,
+    most: int | None = None,
     longest_m: float = math.inf,
 ) -> dict[int, str]:
     """Nodes that lie elsewhere than the frame claims, and why.
@@ -54,11 +55,14 @@ def out_of_reach(
         claims: by node.
         here: where the frame was taken; without its node in the map nothing is known.
         most: nodes of the map reckoned with; of those further off nothing is known, and none is refused.
+            None: the whole map, the nearest LOOP_NODES together and others by the ways that lead to them.
         longest_m: what surely lies further away is elsewhere, too.
     """
     if here.node_id not in graph.nodes or not claims:
         return {}
-    poses = relative_poses(graph, here.node_id, claims, most)
+    poses = relative_poses(graph, here.node_id, claims, LOOP_NODES if most is None else most)
+    if most is None and (further := claims.keys() - poses.keys()):
+        poses |= poses_by_ways(graph, here.node_id, further)
     judged = {
         node: _contradiction(poses[node], c, here, longest_m) for node, c in claims.items() if node in poses
     }

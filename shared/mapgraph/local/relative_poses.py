@@ -62,7 +62,25 @@ def relative_poses(graph: MapGraph, root: int, wanted: Collection[int], most: in
         wanted: whose poses are asked for; those out of the part reckoned with are left out.
         most: nodes to reckon with, nearest by number of edges first.
     """
-    part = graph.made_once(("local part", root, most), lambda: _solved(graph, root, most))
+    part = graph.made_once(("local part", root, most), lambda: _solved(graph, graph.nearest(root, most)))
+    return _poses(part, wanted)
+
+
+def poses_by_ways(graph: MapGraph, root: int, wanted: Collection[int]) -> dict[int, RelativePose]:
+    """Poses of the wanted nodes that edges join to `root`, however far off, by the ways that lead there.
+
+    Reckoned with the nodes of one way to each, rather over driven edges than over seen ones, and their
+    neighbours: less certain than with the whole map, in which other ways hold them in place, too.
+    """
+    ways = [way for node in sorted(set(wanted)) if (way := graph.way(root, node))]
+    if not ways:
+        return {}
+    beside = dict.fromkeys(node for way in ways for node in way)
+    beside |= dict.fromkeys(node for way in ways for on in way for node in sorted(graph.neighbours(on)))
+    return _poses(_solved(graph, [root, *(node for node in beside if node != root)]), wanted)
+
+
+def _poses(part: "_Part", wanted: Collection[int]) -> dict[int, RelativePose]:
     asked = sorted(node for node in set(wanted) if node in part.index)
     rows = np.array([part.index[node] for node in asked], dtype=np.intp)
     covariance_m2, variance = part.positions.covariance(rows), part.yaws.covariance(rows)
@@ -103,8 +121,8 @@ class _Part:
     positions: _Solution
 
 
-def _solved(graph: MapGraph, root: int, most: int) -> _Part:
-    order = graph.nearest(root, most)
+def _solved(graph: MapGraph, order: Sequence[int]) -> _Part:
+    """The part of the map with these nodes, as from the first."""
     index = {node: i for i, node in enumerate(order)}
     sights = sights_among(graph, index)
     tree = _tree(len(order), sights)

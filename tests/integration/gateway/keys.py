@@ -5,7 +5,7 @@ from pathlib import Path
 from shared.access.tokens import ROLES, Token, digest_of, write_tokens
 
 SECRETS = {role: f"secret of the {role}" for role in ROLES}
-NAMES = {"viewer": "vera", "operator": "otto", "admin": "ada"}
+NAMES = {"viewer": "vera", "agent": "agatha", "operator": "otto", "admin": "ada"}
 
 
 def write_file(path: Path, without: str = "") -> Path:

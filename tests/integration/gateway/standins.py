@@ -169,7 +169,7 @@ class Planner:
     def _answer(self, wish: MissionRequest) -> None:
         self.asked.append(wish)
         states = {"pause": "paused", "cancel": "cancelled"}
-        if wish.goal_node == 404:
+        if 404 in (wish.goal_node, wish.parameters.get("goal_node")):
             raise MissionError("the map has no node 404", "missing")
         if wish.action not in CONTROLS:
             assert KINDS[wish.action].name == wish.action
@@ -210,6 +210,8 @@ def _stored(path: str, nodes: int, body: bytes) -> Response:
     ring = [sorted((node, (node + 1) % nodes)) for node in range(nodes)]
     known: dict[str, object] = {
         "maps/flat": {"name": "flat", "revision": 9, "sent": body.decode()},
+        "maps/flat/places": [],
+        "maps/flat/rules": [],
         "maps/flat/compare": {"map": "flat", "from": 5, "to": 9, "nodes_added": [3]},
         "maps/flat/undo": {"map": "flat", "revision": 10, "undone": 9},
         "maps/flat/nodes": [{"node_id": node, "thumbnail": True} for node in range(nodes)],

@@ -191,6 +191,26 @@ def test_keys_and_stick_drive_by_hand_until_the_page_lets_go(page: "Page", robot
     assert not said(action="drive")
 
 
+def test_to_let_go_comes_after_a_wish_that_is_late(page: "Page", robot_bus: Bus) -> None:
+    wishes, held = robot_bus.subscribe(MANUAL, robot="r1"), []
+    page.wait_for_selector("#map option", state="attached", timeout=WAIT_MS)
+    page.route("**/drive", lambda route: route.continue_() if held else held.append(route))
+
+    def heard(action: str) -> bool:
+        page.wait_for_timeout(50)
+        return any(wish.action == action for wish in wishes.take_all())
+
+    page.check("#by-hand")
+    assert wait_until(lambda: page.wait_for_timeout(50) or bool(held), WAIT_S)
+    page.uncheck("#by-hand")
+    page.wait_for_timeout(300)
+    assert not heard("release")
+    held[0].continue_()
+    assert wait_until(lambda: heard("release"), WAIT_S)
+    page.wait_for_timeout(300)
+    assert not heard("drive")
+
+
 def test_what_a_robot_says_of_its_body_is_shown(page: "Page", robot_bus: Bus) -> None:
     said = [
         (robot_bus.publisher(BATTERY, robot="r1"), Battery(robot="r1", share=0.62, charging=True)),

@@ -90,7 +90,7 @@ def follow(address: str, robot: str = ROBOT, **headers: str) -> ClientConnection
         ("GET", "/api/maps", "viewer"),
         ("GET", "/metrics", "viewer"),
         ("POST", "/api/session", "viewer"),
-        ("POST", "/api/robots/r1/missions/pause", "operator"),
+        ("POST", "/api/robots/r1/missions/pause", "agent"),
         ("POST", "/api/maps", "operator"),
         ("POST", "/api/maps/flat/undo", "admin"),
         ("PATCH", "/api/maps/flat", "admin"),
@@ -100,7 +100,7 @@ def follow(address: str, robot: str = ROBOT, **headers: str) -> ClientConnection
     ],
 )
 def test_each_role_gets_as_far_as_it_may(guarded: str, method: str, path: str, least: str) -> None:
-    ranks = ["viewer", "operator", "admin"]
+    ranks = ["viewer", "agent", "operator", "admin"]
     unknown = ask(guarded, None, method, path)
     assert (unknown.status_code, unknown.headers["www-authenticate"]) == (401, "Bearer")
     for role in ranks:
@@ -122,7 +122,8 @@ def test_anybody_stops_the_robot_and_an_operator_lets_it_go(guarded: str, drive:
     wrong = {"Authorization": "Bearer wrong"}
     assert ask(guarded, None, "POST", ESTOP, headers=wrong).status_code == 200
     assert ask(guarded, None, "DELETE", f"{ESTOP}?who=anna").status_code == 401
-    assert ask(guarded, "viewer", "DELETE", f"{ESTOP}?who=anna").status_code == 403
+    for role in ("viewer", "agent"):
+        assert ask(guarded, role, "DELETE", f"{ESTOP}?who=anna").status_code == 403
     cleared = ask(guarded, "operator", "DELETE", f"{ESTOP}?who=anna")
     assert (cleared.json()["engaged"], cleared.json()["who"]) == (False, "anna (token otto)")
     assert ask(guarded, "viewer", "POST", ESTOP, json={"who": "vera"}).json()["who"] == "vera"
@@ -198,8 +199,9 @@ def test_a_removed_token_ends_what_it_opened(endpoint: str, tmp_path: Path) -> N
     assert next(running, None) is None
 
 
-def test_an_operator_drives_by_hand_and_a_viewer_does_not(guarded: str) -> None:
+def test_an_operator_drives_by_hand_and_no_viewer_or_agent_does(guarded: str) -> None:
     wish = {"json": {"who": "anna"}}
-    assert ask(guarded, "viewer", "POST", "/api/robots/r1/drive", **wish).status_code == 403
+    for role in ("viewer", "agent"):
+        assert ask(guarded, role, "POST", "/api/robots/r1/drive", **wish).status_code == 403
     driven = ask(guarded, "operator", "POST", "/api/robots/r1/drive", **wish)
     assert (driven.status_code, driven.json()["who"]) == (202, "anna (token otto)")

@@ -69,7 +69,7 @@ def test_a_viewer_sees_everything_and_is_told_what_takes_more(page: "Page", plan
     page.wait_for_selector("#answer.bad", timeout=WAIT_MS)
     assert (
         page.inner_text("#answer")
-        == "Not with this token: it takes role operator, yours is viewer (token vera)."
+        == "Not with this token: it takes role agent, yours is viewer (token vera)."
     )
     assert len(planner.asked) == asked
     assert not [address for address in addresses if "secret" in address]

@@ -27,6 +27,7 @@ SERVICES = {
     "ros": "services.ros",
     "recorder": "services.recorder",
     "launcher": "services.launcher",
+    "mcp": "services.mcp",
 }
 HOOK = """
 import importlib.abc, sys

@@ -28,7 +28,7 @@ export class ByHand {
     this.pressed = new Set();
     this.stick = NOTHING;
     this.timer = 0;
-    this.waiting = false;
+    this.sending = null;
     $("by-hand").addEventListener("change", (event) => (event.target.checked ? this.take() : this.release()));
     document.addEventListener("keydown", (event) => this.key(event, true));
     document.addEventListener("keyup", (event) => this.key(event, false));
@@ -106,17 +106,23 @@ export class ByHand {
     });
   }
 
-  /** One at a time: a slow line must not pile up wishes that are old when they arrive. */
+  /**
+   * One at a time: a slow line must not pile up wishes that are old when they arrive. To let go waits for the wish
+   * before it, which would take the robot again if it came later.
+   */
   async send(wish) {
-    if (this.waiting && wish.action !== "release") return;
-    this.waiting = true;
+    if (this.sending && wish.action !== "release") return;
+    const path = `/api/robots/${this.where().robot}/drive`;
+    const before = this.sending?.catch(() => {});
+    const sending = Promise.resolve(before).then(() => post(path, { who: "console", ...wish }));
+    this.sending = sending;
     try {
-      await post(`/api/robots/${this.where().robot}/drive`, { who: "console", ...wish });
+      await sending;
     } catch (problem) {
       this.say(problem.message);
       this.release();
     } finally {
-      this.waiting = false;
+      if (this.sending === sending) this.sending = null;
     }
   }
 }

@@ -88,6 +88,10 @@ export class Mission {
     return this.ask("missions", { action: "goto", map: this.where().map, goal_node: id });
   }
 
+  goToPlace(place) {
+    return this.ask("missions", { action: "goto", map: this.where().map, parameters: { place } });
+  }
+
   steer(action) {
     return this.ask(`missions/${action}`);
   }

@@ -22,8 +22,15 @@ export class Graph {
       container: $("graph"), style: look(), minZoom: 0.03, maxZoom: 4, autoungrabify: true, boxSelectionEnabled: false,
       textureOnViewport: true, pixelRatio: Math.min(devicePixelRatio, 2),
     });
-    this.cy.on("tap", "node", (event) => event.target.id() !== "goal" && chosen({ node: event.target.data("number") }));
-    this.cy.on("tap", "edge", (event) => event.target.data("ends") && chosen({ edge: event.target.data("ends") }));
+    this.cy.on("tap", "node", (event) => {
+      if (event.target.id() === "goal") return;
+      const id = event.target.data("number");
+      if (this.picking) this.take(id, !this.picked.has(id));
+      else chosen({ node: id });
+    });
+    this.cy.on("boxselect", "node", (event) => this.picking && event.target.id() !== "goal" && this.take(event.target.data("number"), true));
+    this.cy.on("select", (event) => event.target.unselect());
+    this.cy.on("tap", "edge", (event) => !this.picking && event.target.data("ends") && chosen({ edge: event.target.data("ends") }));
     this.cy.on("dragpan scrollzoom pinchzoom", () => { this.moved = true; });
     DARK.addEventListener("change", () => this.cy.style(look()));
     $("graph").addEventListener("keydown", (event) => this.key(event));
@@ -34,7 +41,9 @@ export class Graph {
 
   clear(map) {
     Object.assign(this, { map, nodes: [], edges: [], spots: new Map(), revision: null, truth: null, moved: false });
-    this.seen = new Set();
+    Object.assign(this, { places: [], rules: [], seen: new Set(), picked: new Set() });
+    this.picks?.();
+    this.marked?.();
     this.cy.elements().remove();
     $("no-graph").hidden = false;
   }
@@ -91,6 +100,29 @@ export class Graph {
     this.paint();
   }
 
+  /** Nodes are picked, by clicks and by dragging a frame round them, instead of shown; off forgets those picked. */
+  pick(on) {
+    this.picking = on;
+    this.picked = new Set();
+    this.cy.userPanningEnabled(!on);
+    this.cy.boxSelectionEnabled(on);
+    this.paintMarks();
+  }
+
+  take(id, on) {
+    if (on) this.picked.add(id);
+    else this.picked.delete(id);
+    this.cy.getElementById(`n${id}`).toggleClass("picked", on);
+    this.picks?.();
+  }
+
+  /** Nodes that a keep-out is about, by itself or by its areas. */
+  forbidden() {
+    const areas = new Map(this.places.map((place) => [place.name.toLowerCase(), place.nodes]));
+    return this.rules.filter((rule) => rule.kind === "keep_out")
+      .flatMap((rule) => [...rule.nodes, ...rule.areas.flatMap((area) => areas.get(area.toLowerCase()) || [])]);
+  }
+
   /** Mark a node or an edge and bring it into sight. */
   choose({ node, edge }) {
     this.cy.elements(".chosen").removeClass("chosen");
@@ -127,12 +159,14 @@ export class Graph {
     try {
       const facts = await get(`/api/maps/${map}`);
       if (map !== this.map || facts.revision === this.revision) return;
-      const [nodes, edges] = await Promise.all([get(`/api/maps/${map}/nodes`), get(`/api/maps/${map}/edges`)]);
+      const [nodes, edges, places, rules] = await Promise.all(
+        ["nodes", "edges", "places", "rules"].map((part) => get(`/api/maps/${map}/${part}`)));
       if (map !== this.map) return;
       const spots = await this.layOut(nodes, edges);
       if (map !== this.map) return;
-      Object.assign(this, { revision: facts.revision, nodes, edges, spots });
+      Object.assign(this, { revision: facts.revision, nodes, edges, spots, places, rules });
       this.draw();
+      this.marked?.();
       $("graph-facts").textContent = TEXT.graphFacts(nodes.length, edges.length, facts.revision);
     } catch (problem) {
       $("graph-facts").textContent = problem.status === 404 ? TEXT.graphNone : problem.message;
@@ -172,6 +206,7 @@ export class Graph {
     });
     this.arrange();
     this.paint();
+    this.paintMarks();
     if (!this.moved) this.fit();
   }
 
@@ -207,6 +242,23 @@ export class Graph {
     if (path.goal) this.addGoal(path.nodes.at(-1) ?? path.nearest);
     const text = TEXT.path(path);
     if ($("path-text").textContent !== text) $("path-text").textContent = text;
+  }
+
+  /** Names in place of numbers, areas, and what rules are about. */
+  paintMarks() {
+    const names = new Map(this.places.map(({ name, nodes: [first] }) => [first, name]));
+    const areas = new Set(this.places.flatMap(({ nodes }) => (nodes.length > 1 ? nodes : [])));
+    const forbidden = new Set(this.forbidden());
+    const ruled = new Set(this.rules.flatMap((rule) => rule.edges || []).map(([a, b]) => `e${Math.min(a, b)}-${Math.max(a, b)}`));
+    this.cy.batch(() => {
+      for (const { node_id: id } of this.nodes) {
+        const element = this.cy.getElementById(`n${id}`);
+        element.data("label", names.get(id) ?? String(id));
+        element.toggleClass("area", areas.has(id)).toggleClass("forbidden", forbidden.has(id)).toggleClass("picked", this.picked.has(id));
+      }
+      this.cy.edges().forEach((edge) => { edge.toggleClass("ruled", ruled.has(edge.id())); });
+    });
+    Object.assign($("graph").dataset, { places: this.places.length, forbidden: forbidden.size });
   }
 
   addGoal(last) {

@@ -7,9 +7,9 @@ import { drawPair } from "./pair.js";
 import { TEXT } from "../page/text.js";
 
 export class Inspector {
-  /** `goThere(node)` starts a mission, `changed()` hears that the map was edited, `say(text)` of refusals. */
-  constructor(graph, goThere, changed, say) {
-    Object.assign(this, { graph, goThere, changed, say, shown: {} });
+  /** `goThere(node)` starts a mission, `name(node)` names it, `changed()` hears of edits, `say(text)` of refusals. */
+  constructor(graph, goThere, name, changed, say) {
+    Object.assign(this, { graph, goThere, name, changed, say, shown: {} });
     $("find-form").addEventListener("submit", (event) => { event.preventDefault(); this.find($("find").value.trim()); });
     addEventListener("keydown", (event) => event.key === "Escape" && !event.target.closest("dialog") && this.close());
   }
@@ -56,6 +56,7 @@ export class Inspector {
       this.edgesOf(id),
       html("div", { class: "row" },
         html("button", { type: "button", class: "primary", id: "go-there", onclick: () => this.goThere(id) }, TEXT.goThere),
+        html("button", { type: "button", id: "name-node", onclick: () => this.name(id) }, TEXT.nameIt),
         this.deleter(TEXT.deleteNode(id), `nodes/${id}`)),
     ];
   }

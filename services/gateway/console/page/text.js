@@ -49,6 +49,30 @@ export const TEXT = {
   view: (id) => `View from node ${id}`,
   edge: (a, b) => `From node ${a} to node ${b}`,
   noEdges: "No edges.",
+  nameIt: "Name it",
+  namePlace: (nodes) => (nodes.length > 1 ? `Name of these ${nodes.length} nodes` : `Name of node ${nodes[0]}`),
+  placeName: "Up to 64 characters; case tells no two apart.",
+  noPlaces: "No place has such a name. Choose a node and name it.",
+  placeColumns: ["place", "nodes", ""],
+  area: (count) => `area of ${count} nodes`,
+  emptied: "its nodes are gone",
+  forget: "Forget",
+  forgetPlace: (name) => `Forget the name ${name}? Its nodes stay; an undo brings it back.`,
+  pick: "Pick nodes",
+  picked: (count) => `${count} picked: click nodes or drag round them`,
+  forbid: "Keep out",
+  forbidNodes: (nodes) => `Name of the rule that keeps robots out of ${nodes.length > 1 ? `these ${nodes.length} nodes` : `node ${nodes[0]}`}`,
+  ruleColumns: ["rule", "", ""],
+  rule: (rule) => {
+    const edges = (rule.edges || []).map(([a, b]) => `${a}–${b}`).join(", ");
+    if (rule.kind === "keep_out") return `keep out: ${[...rule.areas, ...rule.nodes].join(", ") || "nothing left"}`;
+    if (rule.kind === "one_way") return `one way: ${(rule.edges || []).map(([a, b]) => `${a} → ${b}`).join(", ")}`;
+    if (rule.kind === "slow") return `slow: ${edges}, ${Math.round(rule.speed_share * 100)} % of the speed`;
+    const hours = rule.hours.map((span) => `${span.days.join(" ")} ${span.opens}–${span.closes}`).join("; ");
+    return `open ${hours || "never"} (${rule.time_zone}): ${edges}`;
+  },
+  lift: "Lift",
+  liftRule: (name) => `Lift the rule ${name}? Robots go there again from then on.`,
   goThere: "Go there",
   close: "Close",
   suspended: "suspended",
@@ -71,7 +95,11 @@ export const TEXT = {
   compared: (c) =>
     `Between revision ${c.from} and ${c.to}: ${c.nodes_added.length} nodes added, ${c.nodes_removed.length} removed, ` +
     `${c.nodes_changed.length} changed; ${c.edges_added.length} edges added, ${c.edges_removed.length} removed, ` +
-    `${c.edges_changed.length} changed.`,
+    `${c.edges_changed.length} changed` +
+    [["places", "named"], ["rules", "set"]].map(([what, done]) => {
+      const [put, gone] = [[...c[`${what}_added`], ...c[`${what}_changed`]], c[`${what}_removed`]];
+      return `${put.length ? `; ${what} ${done}: ${put.join(", ")}` : ""}${gone.length ? `; ${what} gone: ${gone.join(", ")}` : ""}`;
+    }).join("") + ".",
   nothingDecided: "Nothing decided yet.",
   nothingFits: "No decision fits the filter.",
   noRuns: "Nothing has run yet.",

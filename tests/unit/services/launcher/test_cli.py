@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from services.launcher import cli
 
 DOCUMENTED = {"demo", "explore", "goto", "up", "down", "status", "doctor", "estop", "world", "models", "map"}
-DOCUMENTED |= {"record", "replay", "recover", "foxglove", "certs", "token"}
+DOCUMENTED |= {"record", "replay", "recover", "foxglove", "mcp", "certs", "token"}
 HEAVY = {"zenoh", "torch", "cv2", "sapien", "matplotlib", "numpy", "httpx", "pydantic", "cryptography"}
 
 extra = typer.Typer()

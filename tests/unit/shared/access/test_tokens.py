@@ -26,8 +26,9 @@ def token(name="anna", role="operator", secret="s1"):
 
 def test_each_role_includes_those_before_it():
     table = [[includes(role, needed) for needed in ROLES] for role in ROLES]
-    assert ROLES == ("viewer", "operator", "admin")
-    assert table == [[True, False, False], [True, True, False], [True, True, True]]
+    assert ROLES == ("viewer", "agent", "operator", "admin")
+    ranks = range(len(ROLES))
+    assert table == [[rank >= needed for needed in ranks] for rank in ranks]
 
 
 def test_a_secret_leads_to_its_token_and_nothing_else_does():

@@ -65,3 +65,12 @@ def test_nodes_within_a_cost_are_those_that_allowed_edges_lead_to():
     graph = MapGraph([Node(node_id=n) for n in range(4)], [Edge(a=n, b=n + 1) for n in range(3)])
     assert graph.within_cost(0, 2.0, lambda _: 1.0) == {0, 1, 2}
     assert graph.within_cost(0, 9.0, lambda edge: None if edge.a == 1 else 1.0) == {0, 1}
+
+
+def test_a_way_takes_driven_edges_rather_than_few_long_jumps():
+    driven = [Edge(a=n, b=n + 1, length_m=1.0) for n in range(2)]
+    jump = Edge(a=0, b=2)
+    graph = MapGraph([Node(node_id=n) for n in range(6)], [*driven, jump, Edge(a=3, b=4, suspended=True)])
+    assert graph.way(0, 2) == [0, 1, 2]
+    assert MapGraph(graph.nodes.values(), [jump]).way(0, 2) == [0, 2]
+    assert (graph.way(1, 1), graph.way(0, 5), graph.way(3, 4), graph.way(0, 99)) == ([1], [], [], [])

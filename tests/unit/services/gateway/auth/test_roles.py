@@ -18,13 +18,19 @@ ADMIN = {
     ("POST", "/api/maps/{map_name}/undo"),
     ("POST", "/api/maps/{map_name}/merge"),
     ("DELETE", "/api/maps/{map_name}/merge"),
+    ("PUT", "/api/maps/{map_name}/rules"),
+    ("DELETE", "/api/maps/{map_name}/rules"),
 }
-OPERATOR = {
-    ("POST", "/api/maps"),
+AGENT = {
+    ("PUT", "/api/maps/{map_name}/places"),
     ("POST", "/api/robots/{robot}/missions"),
     ("POST", "/api/robots/{robot}/missions/goto"),
     ("POST", "/api/robots/{robot}/missions/{action}"),
     ("POST", "/api/robots/{robot}/goal-check"),
+}
+OPERATOR = {
+    ("POST", "/api/maps"),
+    ("DELETE", "/api/maps/{map_name}/places"),
     ("POST", "/api/robots/{robot}/drive"),
     ("DELETE", "/api/robots/{robot}/estop"),
 }
@@ -55,6 +61,7 @@ def test_every_write_has_the_role_decided_for_it(document: dict[str, Any]) -> No
     writes = {key: entry for key, entry in operations(document).items() if key[0] != "GET"}
     decided = {
         **dict.fromkeys(ADMIN, "admin"),
+        **dict.fromkeys(AGENT, "agent"),
         **dict.fromkeys(OPERATOR, "operator"),
         **dict.fromkeys(VIEWER, "viewer"),
         **dict.fromkeys(ANYBODY, "anybody"),

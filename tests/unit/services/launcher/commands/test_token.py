@@ -53,7 +53,7 @@ def test_a_removed_token_is_gone_and_the_others_stay(run):
         (("add", "an na"), "a name is"),
         (("add", "x" * 33), "a name is"),
         (("add", "planner"), "a program"),
-        (("add", "bert", "--role", "root"), "viewer, operator, admin"),
+        (("add", "bert", "--role", "root"), "viewer, agent, operator, admin"),
         (("remove", "bert"), "there are: anna"),
     ],
 )

@@ -49,6 +49,12 @@ def test_a_comparison_tells_what_changed_between_two_revisions(client: TestClien
         "edges_added": [[1, 2]],
         "edges_removed": [],
         "edges_changed": [],
+        "places_added": [],
+        "places_removed": [],
+        "places_changed": [],
+        "rules_added": [],
+        "rules_removed": [],
+        "rules_changed": [],
     }
     back = client.get("/maps/flat/compare?from=4&to=2").json()
     assert (back["from"], back["to"]) == (4, 2)

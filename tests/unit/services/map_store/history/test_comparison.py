@@ -10,7 +10,7 @@ from services.map_store.errors import ConflictError, CorruptError, MissingError
 from services.map_store.history.comparison import EdgeChange, compare, rewind
 from services.map_store.storage.graph import AddStoredNode, Graph, Step, StoredNode, apply
 from shared.messages.maps import DeleteEdge, DeleteNode, Edge, Node, PutEdge, UpdateNode
-from tests.unit.services.map_store.storage.test_graph import STEPS, TRIANGLE, edge, place
+from tests.unit.services.map_store.storage.test_graph import NAMES, STEPS, TRIANGLE, edge, place
 
 
 def after(*steps: Step) -> Graph:
@@ -117,8 +117,13 @@ def test_any_two_revisions_compare_as_the_graphs_replayed_from_the_empty_map(tra
 def brute(before: Graph, after: Graph) -> dict[str, object]:
     """The same comparison, one possible node and edge after the other."""
     found: dict[str, list] = {
-        f"{thing}_{how}": [] for thing in ("nodes", "edges") for how in ("added", "removed", "changed")
+        f"{thing}_{how}": []
+        for thing in ("nodes", "edges", "places", "rules")
+        for how in ("added", "removed", "changed")
     }
+    for name in NAMES:
+        _note(found, "places", name, before.places.get(name), after.places.get(name))
+        _note(found, "rules", name, before.rules.get(name), after.rules.get(name))
     for number in range(10):
         _note(found, "nodes", number, before.nodes.get(number), after.nodes.get(number))
     for key in product(range(10), repeat=2):

@@ -14,6 +14,7 @@ from services.map_store.store import MapStore
 from shared.bus import wait_until
 from shared.messages.maps import AddNode, DeleteNode, Node, PutEdge
 from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
+from shared.messages.places import KeepOut, Marks, Place, PutPlace, PutRule
 from shared.queries import AbsentError, RefusedError
 from shared.wire import encode
 from tests.merge_world import KEYPOINTS, PIPELINE, Pose, edges_of, features_of, matches_of, row
@@ -84,6 +85,21 @@ def test_pictures_outlive_the_map_they_came_from_and_an_undo_takes_all_back(maps
     maps.undo("hall")
     after = maps.graph("hall")[1]
     assert (dict(after.nodes), dict(after.edges)) == (dict(before.nodes), dict(before.edges))
+
+
+def test_names_and_rules_come_along_and_where_both_have_one_neither_is_lost(maps: MapStore):
+    hall_name, wing_name = Place(name="Dock", nodes=(3,)), Place(name="dock", nodes=(7, 2))
+    maps.transact("hall", [PutPlace(place=hall_name)])
+    kept_out = KeepOut(name="closed", areas=("dock",))
+    maps.transact("wing", [PutPlace(place=wing_name), PutRule(rule=kept_out)])
+    merge_of(maps).run()
+    marks = maps.graph("hall")[1].marks
+    ids = {old: 8 + k for k, old in enumerate(WING)}
+    assert marks.places == (hall_name, Place(name="dock (wing)", nodes=(ids[7], ids[2])))
+    assert marks.rules == (KeepOut(name="closed", areas=("dock (wing)",)),)
+    maps.undo("hall")
+    assert maps.graph("hall")[1].marks == Marks(places=(hall_name,))
+    assert check(maps.database) == []
 
 
 def replaced(store: MapStore, name: str) -> None:

@@ -7,7 +7,9 @@ from hypothesis import strategies as st
 from services.map_store.errors import ConflictError, InvalidError, MissingError
 from services.map_store.storage.graph import AddStoredNode, Graph, Step, StoredNode, apply
 from shared.mapgraph import operations
+from shared.mapgraph.marks import nodes_of
 from shared.messages.maps import DeleteEdge, DeleteNode, Edge, Node, PutEdge, UpdateNode
+from shared.messages.places import DeletePlace, DeleteRule, KeepOut, OneWay, Place, PutPlace, PutRule
 
 
 def place(number: int, stamp_ns: int = 0) -> AddStoredNode:
@@ -90,6 +92,21 @@ def test_a_full_map_takes_no_more(monkeypatch: pytest.MonkeyPatch):
 
 
 IDS = st.integers(0, 4)
+NAMES = ("dock", "hall")
+NAMED = st.sampled_from(NAMES)
+LISTED = st.lists(IDS, max_size=3).map(tuple)
+MARKS = st.one_of(
+    st.builds(lambda name, nodes: PutPlace(place=Place(name=name, nodes=nodes)), NAMED, LISTED),
+    st.builds(
+        lambda name, nodes, areas: PutRule(rule=KeepOut(name=name, nodes=nodes, areas=tuple(areas))),
+        NAMED,
+        LISTED,
+        st.lists(NAMED, max_size=1),
+    ),
+    st.builds(lambda name, a: PutRule(rule=OneWay(name=name, edges=((a, a + 1),))), NAMED, st.integers(0, 3)),
+    st.builds(lambda name: DeletePlace(name=name), NAMED),
+    st.builds(lambda name: DeleteRule(name=name), NAMED),
+)
 STEPS = st.one_of(
     st.builds(place, IDS, st.integers(0, 9)),
     st.builds(
@@ -98,6 +115,7 @@ STEPS = st.one_of(
     st.builds(lambda number: DeleteNode(node_id=number), IDS),
     st.builds(lambda a, more, inliers: edge(a, a + more, inliers), IDS, st.integers(1, 3), st.integers(0, 9)),
     st.builds(lambda a, more: DeleteEdge(a=a, b=a + more), IDS, st.integers(1, 3)),
+    MARKS,
 )
 
 
@@ -116,3 +134,8 @@ def test_whatever_was_done_the_inverse_leads_back_and_every_edge_has_both_ends(s
     back = apply(change.graph, change.inverse).graph
     assert dict(back.nodes) == dict(TRIANGLE.nodes)
     assert dict(back.edges) == dict(TRIANGLE.edges)
+    assert back.marks == TRIANGLE.marks
+    listed = [
+        n for mark in (*change.graph.places.values(), *change.graph.rules.values()) for n in nodes_of(mark)
+    ]
+    assert set(listed) <= change.graph.nodes.keys()

@@ -137,7 +137,7 @@ def test_a_later_version_is_refused_without_a_byte_written(file: Path, change: s
         connection.execute(change)
     before = file.read_bytes(), file.stat().st_mtime_ns
     with pytest.raises(
-        UnavailableError, match=r"tables of version 3 expected, got \[4\]; export the maps with"
+        UnavailableError, match=r"tables of version 4 expected, got \[5\]; export the maps with"
     ):
         opened(file)
     assert (file.read_bytes(), file.stat().st_mtime_ns) == before

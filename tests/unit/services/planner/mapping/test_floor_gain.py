@@ -25,6 +25,10 @@ def grid(free_m=(3.0,) * 12, *, clear=True):
     return MapGraph(nodes, edges)
 
 
+def chosen(graph, node, preferred_rad, profile=DEFAULT):
+    return best_sector(graph, node, frontier_sectors(graph.nodes[node]), preferred_rad, profile)
+
+
 def left(graph, root, **changes):
     """Directions that are still to be explored, by node."""
     changed = {n.node_id: n for n in without_poor_directions(graph, root, DEFAULT.replaced(**changes))}
@@ -82,16 +86,16 @@ def test_an_empty_neighbourhood_is_all_new():
 
 
 def test_a_node_is_left_where_most_is_new_and_straight_on_where_as_much_is():
-    assert best_sector(grid(), BORDER, preferred_rad=0.0, profile=DEFAULT) == 9
+    assert chosen(grid(), BORDER, 0.0) == 9
     alone = MapGraph([Node(node_id=0, open=ALL, free_m=(3.0,) * 12)], [])
-    assert [best_sector(alone, 0, heading, DEFAULT) for heading in (0.0, 1.6, -0.5)] == [0, 3, 11]
+    assert [chosen(alone, 0, heading) for heading in (0.0, 1.6, -0.5)] == [0, 3, 11]
 
 
 def test_where_every_direction_is_to_be_explored_the_one_ahead_comes_first():
     every = DEFAULT.replaced(covers_m=0.0)
-    assert best_sector(grid(), BORDER, preferred_rad=1.6, profile=every) == 3
+    assert chosen(grid(), BORDER, 1.6, every) == 3
 
 
 def test_a_node_with_nothing_unexplored_has_no_best_direction():
     done = MapGraph([Node(node_id=0, open=ALL, explored=ALL)], [])
-    assert best_sector(done, 0, 0.0, DEFAULT) is None
+    assert chosen(done, 0, 0.0) is None

@@ -6,7 +6,7 @@ import pytest
 
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement, seen_from
-from shared.mapgraph.local.reach import hanging_apart, out_of_reach
+from shared.mapgraph.local.reach import LOOP_NODES, hanging_apart, out_of_reach
 from shared.messages.maps import Node
 from shared.motion.motion import Motion
 from tests.unit.shared.mapgraph.local.grid import claim, edge, grid
@@ -86,3 +86,28 @@ def test_the_bearing_of_the_node_left_corrects_the_direction():
 def test_where_a_frame_is_by_what_it_sees_of_one_node():
     here = seen_from(3, heading_rad=0.0, yaw_rad=0.0, length_m=2.0, spread_m=0.1)
     assert math.dist((here.x_m, here.y_m), (-2.0, 0.0)) < 1e-9
+
+
+def line(nodes):
+    """A way of so many metres, straight on."""
+    return MapGraph(
+        [Node(node_id=n) for n in range(nodes)], [edge(n, n + 1, nodes) for n in range(nodes - 1)]
+    )
+
+
+def test_a_look_alike_beyond_all_nodes_reckoned_with_together_is_out_of_reach():
+    there = LOOP_NODES + 40
+    graph, here = line(there + 10), Displacement(0, x_m=0.5, spread_m=0.1)
+    assert set(out_of_reach(graph, {there: claim(0.5, 0.0), 1: claim(0.5, 0.0)}, here)) == {there}
+    turned = {there: claim(there - 0.5, 0.0, yaw_rad=math.pi)}
+    assert "turned by 180 degrees" in out_of_reach(graph, turned, here)[there]
+    assert out_of_reach(graph, turned, here, LOOP_NODES) == {}, "nothing is known of it"
+
+
+def test_a_loop_longer_than_that_may_close():
+    half = LOOP_NODES // 2 + 30
+    graph = grid(half, 2)
+    apart = [e for (a, b), e in graph.edges.items() if (a < half) == (b < half) or a == half - 1]
+    ring = MapGraph(graph.nodes.values(), [e for e in apart if (e.a, e.b) != (half - 1, 2 * half - 2)])
+    assert half not in ring.nearest(0, LOOP_NODES)
+    assert out_of_reach(ring, {half: claim(0.0, 1.0)}, Displacement(0)) == {}

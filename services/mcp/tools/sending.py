@@ -1,0 +1,40 @@
+"""Tools that send the robot somewhere. None says how fast."""
+
+from typing import Annotated, Any
+
+from mcp.server.mcpserver import MCPServer
+from mcp.server.mcpserver.exceptions import ToolError
+from mcp.types import ToolAnnotations
+from pydantic import Field
+
+from services.mcp.answers import Mission
+from services.mcp.gateway import Gateway
+from services.mcp.tools.photos import Photo, picture_of
+
+SENDS = ToolAnnotations(read_only_hint=False, destructive_hint=False, idempotent_hint=False)
+
+PlaceName = Annotated[str, Field(max_length=64, description="as `list_places` has it")]
+Node = Annotated[int | None, Field(ge=0, lt=2**63, description="a node of the map")]
+Steps = Annotated[int, Field(ge=1, le=20_000, description="give up after so many pictures")]
+Seed = Annotated[int, Field(ge=0, lt=2**63, description="of every random draw")]
+
+
+def add_sending(server: MCPServer[Any], gateway: Gateway) -> None:
+    """Give the server its tools that start missions."""
+
+    @server.tool(annotations=SENDS)
+    async def go_to(
+        place: PlaceName = "", node: Node = None, photo: Photo = "", max_steps: Steps = 1500, seed: Seed = 0
+    ) -> Mission:
+        """Start driving to a named place, to a node or to where a panorama was taken; then `wait`."""
+        if [bool(place), node is not None, bool(photo)].count(True) != 1:
+            raise ToolError("say where to by one of place, node and photo")
+        if photo:
+            return Mission.of(await gateway.goto_photo(picture_of(photo), seed, max_steps))
+        where = {"place": place} if place else {"goal_node": node}
+        return Mission.of(await gateway.start("goto", where, seed, max_steps))
+
+    @server.tool(annotations=SENDS)
+    async def explore(max_steps: Steps = 5000, seed: Seed = 0) -> Mission:
+        """Start exploring what the map does not show yet. Then `wait`, again and again: it takes long."""
+        return Mission.of(await gateway.start("explore", {}, seed, max_steps))

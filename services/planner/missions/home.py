@@ -1,0 +1,23 @@
+"""Mission home: drive to the place of that name, wherever people put it."""
+
+from services.planner.goal_nodes import node_called
+from services.planner.mission_kinds import MissionContext, MissionError, MissionKind, NoParameters
+from services.planner.missions.goto import Goto
+from shared.messages.places import key_of
+
+HOME = "home"
+
+
+def _make(context: MissionContext, _parameters: NoParameters) -> Goto:
+    if key_of(HOME) not in context.maps.graph.places:
+        raise MissionError(
+            f"the map has no place {HOME!r}: give its node that name ('topnav place name {HOME} NODE')",
+            "missing",
+        )
+    goal = context.maps.features_of(node_called(context.maps, HOME))
+    return Goto(context.profile, context.maps, context.matcher, goal, context.whereabouts)
+
+
+KIND = MissionKind(
+    name="home", title="Drive home", parameters=NoParameters, make=_make, shown=("similarity",)
+)

@@ -1,0 +1,48 @@
+"""Frontiers that no path leads to: closed in the map, but set aside where a rule may be why."""
+
+import pytest
+
+from services.planner.mapping.allowed_directions import AllowedDirections
+from services.planner.profiles import DEFAULT
+from services.planner.travel.edge_experience import EdgeExperience
+from services.planner.travel.frontier_destination import FrontierDestination
+from shared.mapgraph.frontiers import open_directions
+from shared.messages.maps import UpdateNode
+from shared.messages.places import DeleteRule, KeepOut, PutRule
+from tests.plane_world import PlaneMap
+from tests.unit.shared.mapgraph.local.grid import grid
+
+FAR = 8
+"""A node with something unexplored; nobody may go to the one before it."""
+
+
+@pytest.fixture
+def maps():
+    found = PlaneMap(grid(9, 1))
+    found.commit([UpdateNode(node=found.graph.nodes[FAR].model_copy(update={"open": (True,) * 12}))])
+    return found
+
+
+def without_path(maps):
+    """What is left to explore after as many frames as it takes to give it up, and what was told."""
+    experience = EdgeExperience(DEFAULT, maps)
+    destination = FrontierDestination(DEFAULT, maps, None, experience, AllowedDirections(maps))
+    kinds = []
+    for _ in range(DEFAULT.mapping.saturation_steps):
+        kinds += [note.kind for note in destination.no_path().notes]
+    return destination.targets(), kinds
+
+
+def test_without_rules_they_are_closed(maps):
+    assert without_path(maps) == ({}, ["nodes_unreachable"])
+    assert open_directions(maps.graph) == 0
+
+
+def test_behind_a_rule_they_are_set_aside_and_there_again_when_it_is_lifted(maps):
+    maps.commit([PutRule(rule=KeepOut(name="shut", nodes=(FAR - 4,)))])
+    assert without_path(maps) == ({}, ["nodes_set_aside"])
+    assert open_directions(maps.graph) == 12
+    maps.commit([DeleteRule(name="shut")])
+    experience = EdgeExperience(DEFAULT, maps)
+    again = FrontierDestination(DEFAULT, maps, None, experience, AllowedDirections(maps))
+    assert again.targets() == {FAR: 0.0}
