@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from shared.exif import fov_of_film
 from shared.geometry.perspective import pixel_centres, rotation_y
+from shared.geometry.photo.exif import fov_of_film
 from shared.geometry.photo.plane import focal_of
 from shared.geometry.sphere import EquirectGrid, FloatArray
 from shared.messages.features import Photo, PhotoView

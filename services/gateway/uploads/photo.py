@@ -10,7 +10,7 @@ from typing import Final
 
 from services.gateway.uploads.picture import decoded, open_still
 from services.gateway.uploads.picture_header import PictureHeader
-from shared.exif import NARROWEST_RAD, WIDEST_RAD, read_facts, upright
+from shared.geometry.photo.exif import NARROWEST_RAD, WIDEST_RAD, read_facts, upright
 from shared.geometry.photo.plane import USUAL_RAD
 from shared.messages.features import MAX_PHOTO_PX, Photo, PhotoView
 from shared.web.problems import ProblemError

@@ -9,7 +9,7 @@ from PIL import Image
 
 from services.launcher.client.failure import ExperimentError
 from shared.bus import Bus
-from shared.exif import read_facts, upright
+from shared.geometry.photo.exif import read_facts, upright
 from shared.geometry.photo.plane import USUAL_RAD
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.photographs.photo_matches import PHOTO_NODES, photo_matches

@@ -1,11 +1,14 @@
 """`topnav goto`: drive to where a picture or a photo was taken, to a place by its name, or home."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from services.launcher.terminal import options
+
+if TYPE_CHECKING:
+    from services.launcher.client.mission import MissionRun
 
 app = typer.Typer()
 
@@ -35,7 +38,7 @@ def goto(
     timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
 ) -> None:
     """Drive to where a picture or a photo was taken, to a named place, or home: one of the four."""
-    from services.launcher.client import failure, maps, mission, stack, trail
+    from services.launcher.client import failure, maps, mission, stack
     from services.launcher.client.photo import locate_photo, photo_from_file
     from services.launcher.drawing.pictures import frame_from_file
     from services.launcher.terminal import output
@@ -68,19 +71,28 @@ def goto(
         "image": None if image is None else str(image),
         "photo": None if photo is None else str(photo),
         "place": "home" if home else place,
-        "success": run.succeeded,
-        "failure": run.status.failure,
-        "reason": run.status.reason,
-        "steps": run.status.step,
-        "driven_m": output.rounded(trail.driven_m(run.truths), 3),
-        "wall_s": output.rounded(run.wall_s, 2),
-        "steps_per_s": output.rounded(run.steps_per_s, 2),
+        **_figures(run),
     }
     output.write_json(json_file, report)
     output.print_figures(f"goto {goal_name}", report)
     if not run.succeeded:
         why = run.status.failure or run.status.state
         raise failure.ExperimentError(f"did not arrive, {why}: {run.status.reason}")
+
+
+def _figures(run: "MissionRun") -> dict[str, Any]:
+    from services.launcher.client import trail
+    from services.launcher.terminal.output import rounded
+
+    return {
+        "success": run.succeeded,
+        "failure": run.status.failure,
+        "reason": run.status.reason,
+        "steps": run.status.step,
+        "driven_m": rounded(trail.driven_m(run.truths), 3),
+        "wall_s": rounded(run.wall_s, 2),
+        "steps_per_s": rounded(run.steps_per_s, 2),
+    }
 
 
 def _check_one_goal(

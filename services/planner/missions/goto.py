@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from services.planner.goal_nodes import check_allowed, node_called
 from services.planner.mapping.reach import claims
 from services.planner.mission_kinds import MissionContext, MissionError, MissionKind
+from services.planner.photographs.photo_goto import PhotoGoto
 from services.planner.ports import (
     Decision,
     MapAccess,
@@ -27,7 +28,6 @@ from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.goal_places import GoalPlaces, Ruling
 from services.planner.travel.localisation import reachable_nodes
 from services.planner.travel.machine import Travel
-from services.planner.travel.photo_goal import PhotoGoto
 from services.planner.travel.place_evidence import Visit
 from services.planner.travel.states import Event, State
 from services.planner.travel.tracking import Tracker

@@ -1,12 +1,13 @@
 """A mission to a photo: to its place, turned as it looks, or a typed failure; on a true floor plan."""
 
+import copy
 import math
 
 import numpy as np
 import pytest
 
 from services.drive.limits import DriveLimits
-from services.planner.mission_kinds import MissionContext
+from services.planner.mission_kinds import MissionContext, MissionError
 from services.planner.missions.explore import FrontierExploration
 from services.planner.missions.goto import KIND
 from services.planner.profiles import DEFAULT
@@ -15,6 +16,7 @@ from shared.geometry.photo.plane import focal_of, rays
 from shared.geometry.sphere import lonlat_from_bearings
 from shared.messages.features import PhotoView
 from shared.messages.matching import NodeMatch
+from shared.messages.places import KeepOut, Place, PutPlace, PutRule
 from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, picture, run
 from tests.unit.shared.geometry.photo.photo_scene import Shot, on_plane
 
@@ -95,3 +97,63 @@ def test_a_photo_that_the_map_does_not_explain_fails_at_once_and_moves_nothing(m
     decision, steps = run(world, goto(maps, nothing), DriveLimits(), 900)
     assert (decision.outcome, decision.failure, steps) == ("failed", "goal_not_in_map", 0)
     assert world.pose == START
+
+
+@pytest.fixture
+def ruled(mapped):
+    """The same map, to make rules on."""
+    world, maps = mapped
+    world.pose = START
+    return world, SeenMap(copy.deepcopy(maps.graph), maps.poses)
+
+
+def forbid(maps, node):
+    maps.commit([PutRule(rule=KeepOut(name="exhibition", nodes=(node,)))])
+
+
+def nearest_nodes(maps):
+    return sorted(maps.poses, key=lambda node: math.dist(maps.poses[node][:2], SPOT))
+
+
+@pytest.mark.parametrize("rank", [0, 1])
+def test_a_photo_taken_in_a_keep_out_or_beside_it_is_refused_by_the_rules_name(ruled, rank):
+    world, maps = ruled
+    forbid(maps, nearest_nodes(maps)[rank])
+    photo = PhotoMatcher(world, maps, Shot(position_m=(*SPOT, 0.2), fov_rad=VIEW.fov_rad))
+    decision, steps = run(world, goto(maps, photo), DriveLimits(), 900)
+    assert (decision.outcome, decision.failure, steps) == ("failed", "forbidden", 0)
+    assert "'exhibition'" in decision.why
+    assert world.pose == START
+
+
+def test_a_rule_that_comes_on_the_last_metre_ends_the_mission(ruled):
+    world, maps = ruled
+    mission = goto(maps, PhotoMatcher(world, maps, Shot(position_m=(*SPOT, 0.2), fov_rad=VIEW.fov_rad)))
+
+    class RuledLate:
+        progress = mission.progress
+
+        def decide(self, observation):
+            decision = mission.decide(observation)
+            if "nearest node" in decision.why:
+                forbid(maps, nearest_nodes(maps)[0])
+            return decision
+
+    decision, _ = run(world, RuledLate(), DriveLimits(), 900)
+    assert (decision.outcome, decision.failure) == ("failed", "forbidden")
+    assert "'exhibition'" in decision.why
+
+
+@pytest.mark.parametrize("given", [{"place": "dock"}, {"goal_node": 0}])
+def test_a_photo_is_no_goal_beside_another_one(ruled, given):
+    world, maps = ruled
+    maps.commit([PutPlace(place=Place(name="dock", nodes=(0,)))])
+    context = MissionContext(
+        DEFAULT,
+        maps,
+        PlaneMatcher(world, maps),
+        np.random.default_rng(1),
+        picture(START).model_copy(update={"photo": VIEW}),
+    )
+    with pytest.raises(MissionError, match="exactly one of them"):
+        KIND.start(context, given)

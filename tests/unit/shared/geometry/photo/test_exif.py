@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PIL import ExifTags, Image, ImageOps
 
-from shared.exif import PhotoFacts, fov_of_film, read_facts, upright
+from shared.geometry.photo.exif import PhotoFacts, fov_of_film, read_facts, upright
 
 
 def photo(size: tuple[int, int] = (40, 30), orientation: object = 1, **inner: object) -> Image.Image:
