@@ -12,11 +12,16 @@ from shared.messages.matching import NodeMatch
 
 
 def verify_photo(
-    query: FeatureSet, view: PhotoView, candidate: Candidate, matched: Matched, seq: int
+    query: FeatureSet,
+    view: PhotoView,
+    candidate: Candidate,
+    matched: Matched,
+    seq: int,
+    with_matches: bool,
 ) -> NodeMatch:
     """Match a photo with one node.
 
-    The answer holds all matches: where the photo was taken several nodes tell together
+    With matches the answer holds all of them: where the photo was taken several nodes tell together
     (shared/mapgraph/photographs). Inliers are those that one turn of the camera explains, at the field of
     view at which it explains most.
     """
@@ -34,8 +39,8 @@ def verify_photo(
         raw_matches=len(pairs),
         inliers=best,
         status="too_few" if best < 2 else "inconsistent",
-        matches_rad=np.concatenate([photo, node], axis=1),
-        inlier_mask=np.zeros(len(pairs), np.uint8),
-        right=matched.right.astype(np.float32),
-        log_scale=None if cues.log_scale is None else cues.log_scale.astype(np.float32),
+        matches_rad=np.concatenate([photo, node], axis=1) if with_matches else None,
+        inlier_mask=np.zeros(len(pairs), np.uint8) if with_matches else None,
+        right=matched.right.astype(np.float32) if with_matches else None,
+        log_scale=cues.log_scale.astype(np.float32) if with_matches and cues.log_scale is not None else None,
     )

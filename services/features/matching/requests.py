@@ -96,7 +96,9 @@ def verify_candidates(
             return of_nodes[node_id]
         candidate, pairs = raw.candidates[node_id], raw.pairs[node_id]
         if raw.photo is not None:
-            of_nodes[node_id] = verify_photo(raw.query, raw.photo, candidate, pairs, raw.seq)
+            of_nodes[node_id] = verify_photo(
+                raw.query, raw.photo, candidate, pairs, raw.seq, request.with_matches
+            )
             return of_nodes[node_id]
         match = verify(raw.query, candidate, pairs, raw.seq, pipeline.verification, request.with_matches)
         if node_id < 0:

@@ -44,12 +44,14 @@ def test_a_photo_matches_the_panorama_it_was_cut_from_under_one_turn(room, portr
     assert features.photo == photo.view
     query, node = feature_set(features), Candidate(3, panorama_features(room(0.0, 0.0, 0.0, 1024)))
     (matched,) = PIPELINE.matcher.match(query, [node.features])
-    answer = verify_photo(query, photo.view, node, matched, 0)
+    answer = verify_photo(query, photo.view, node, matched, 0, with_matches=True)
     assert answer.inliers >= 12
     assert answer.inliers >= 0.6 * answer.raw_matches
     assert answer.right is not None
     assert len(answer.right) == answer.raw_matches
     assert answer.heading_rad is None  # one node alone does not tell where the photo was taken
+    counted = verify_photo(query, photo.view, node, matched, 0, with_matches=False)
+    assert (counted.inliers, counted.matches_rad, counted.right) == (answer.inliers, None, None)
 
 
 def test_features_lie_within_the_photo_and_keep_off_its_border(room):
