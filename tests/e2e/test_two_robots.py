@@ -94,7 +94,7 @@ def test_their_places_are_joined_to_one_map_without_a_false_edge(shared):
     between = [edge for edge in edges if (edge.a in shared.made[FIRST]) != (edge.b in shared.made[FIRST])]
     assert len(between) >= 2, "each has recognised places of the other"
     assert components(shared.poses, [(edge.a, edge.b) for edge in edges]) == 1
-    assert [check for check in check_edges(edges, shared.poses, space.line_of_sight) if check.false] == []
+    assert [check for check in check_edges(edges, shared.poses, space.in_view) if check.false] == []
 
 
 @pytest.mark.parametrize("name", [FIRST, SECOND])

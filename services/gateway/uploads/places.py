@@ -7,7 +7,8 @@ from typing import Literal
 from services.gateway.state import Gateway
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.claims import claim_of, is_claim
-from shared.mapgraph.local.hypotheses import Hypothesis, hypotheses, is_plain, likely, typical_similarity
+from shared.mapgraph.local.hypotheses import Hypothesis, hypotheses
+from shared.mapgraph.local.likely_places import is_plain, likely, typical_similarity
 from shared.messages.maps import MapRequest
 from shared.messages.matching import MatchReply, NodeMatch
 from shared.topics import MAP
@@ -56,8 +57,8 @@ async def places_of(gateway: Gateway, reply: MatchReply) -> Places:
 
 def judged(graph: MapGraph, sure: Sequence[NodeMatch]) -> Places:
     """The places that matches speak for."""
-    claims = {match.node_id: claim_of(graph, match.node_id, match) for match in sure}
-    places = hypotheses(graph, {node: claim for node, claim in claims.items() if claim is not None})
-    plain = is_plain(places, typical_similarity(graph))
-    left = likely(places)
+    said = {match.node_id: claim_of(graph, match.node_id, match) for match in sure}
+    claims = {node: claim for node, claim in said.items() if claim is not None}
+    left = likely(graph, claims, hypotheses(graph, claims))
+    plain = is_plain(left, typical_similarity(graph))
     return Places("ambiguous" if len(left) > 1 else "found" if plain else "weak", left)

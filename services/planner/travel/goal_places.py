@@ -15,13 +15,8 @@ from services.planner.profiles import Profile
 from services.planner.similarity import similarity
 from services.planner.travel.place_evidence import PlaceEvidence, Visit
 from shared.mapgraph.local.displacement import Displacement
-from shared.mapgraph.local.hypotheses import (
-    Hypothesis,
-    hypotheses,
-    is_plain,
-    likely,
-    typical_similarity,
-)
+from shared.mapgraph.local.hypotheses import Hypothesis, hypotheses
+from shared.mapgraph.local.likely_places import is_plain, likely, typical_similarity
 from shared.mapgraph.local.view_range import length_to_m
 from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
@@ -64,10 +59,9 @@ class GoalPlaces:
 
     def __init__(self, maps: MapAccess, found: Matches, profile: Profile) -> None:
         self._maps, self._profile = maps, profile
-        places = self._hypotheses(found)
         self._yaw_rad = {node: match.yaw_rad or 0.0 for node, match in found.items()}
-        self._places = likely(places)
-        self.plain = not places or is_plain(places, typical_similarity(maps.graph))
+        self._places = self._likely(found)
+        self.plain = not self._places or is_plain(self._places, typical_similarity(maps.graph))
         self._evidence = PlaceEvidence()
         self._losses: Counter[Hypothesis] = Counter()
         self._blocks: Counter[Hypothesis] = Counter()
@@ -128,7 +122,7 @@ class GoalPlaces:
             view: the frame against the nodes most like it.
             here: where the frame was taken; None where nobody knows.
         """
-        found = likely(self._hypotheses(view))
+        found = self._likely(view)
         if not (self.plain and self._places and found):
             return None
         same = [not set(place.nodes).isdisjoint(self._places[0].nodes) for place in found]
@@ -239,12 +233,13 @@ class GoalPlaces:
             return Ruling(f"{why}; differences: {self._evidence.told()}", "ambiguous")
         return Ruling() if best == here else Ruling(f"another place resembles the goal more, by {most:.0%}")
 
-    def _hypotheses(self, matches: Matches) -> list[Hypothesis]:
-        profile = self._profile
+    def _likely(self, matches: Matches) -> list[Hypothesis]:
+        profile, graph = self._profile, self._maps.graph
         if profile.sensing.similarity == "raw":
             return []
         similar = {n: m for n, m in matches.items() if similarity(m, profile) > profile.travel.s_via_min}
-        return hypotheses(self._maps.graph, claims(self._maps.graph, similar, profile))
+        said = claims(graph, similar, profile)
+        return likely(graph, said, hypotheses(graph, said))
 
     def _nearest(self, node: int | None) -> Hypothesis | None:
         """The place a node belongs to: by the fewest edges."""

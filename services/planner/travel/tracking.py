@@ -16,7 +16,8 @@ from services.planner.travel.waypoints import is_at
 from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.local.claims import Claim
 from shared.mapgraph.local.displacement import Displacement
-from shared.mapgraph.local.hypotheses import NEAR_NODES, Hypothesis, hypotheses, likely
+from shared.mapgraph.local.hypotheses import NEAR_NODES, hypotheses
+from shared.mapgraph.local.likely_places import likely
 from shared.mapgraph.local.resection import resected
 from shared.mapgraph.local.view_range import openness
 from shared.mapgraph.routing import GOAL
@@ -197,20 +198,18 @@ class Tracker:
 
     def _agreeing(self, within: Matches) -> Matches:
         """Without those that put the robot elsewhere than most of them do, though they are in reach."""
-        places = self._places(within)
+        places = hypotheses(self._maps.graph, self._sights(within))
         away = {node for place in places[1:] for node in place.nodes}
         return {node: match for node, match in within.items() if node not in away}
 
     def _likeliest(self, matches: Matches) -> Matches:
         """Of several places that look alike the one that resembles the view most."""
-        found = likely(self._places(matches))
+        graph, sights = self._maps.graph, self._sights(matches)
+        found = likely(graph, sights, hypotheses(graph, sights))
         if not found or (self._certain and len(found) > 1):
             return {}
         log.info("about node %d, by what is seen", found[0].nodes[0])
         return {node: matches[node] for node in found[0].nodes}
-
-    def _places(self, matches: Matches) -> list[Hypothesis]:
-        return hypotheses(self._maps.graph, self._sights(matches))
 
     def _sights(self, matches: Matches) -> dict[int, Claim]:
         """What the frame claims for sure of nodes of the map."""

@@ -70,6 +70,11 @@ def length_to_m(graph: MapGraph, node_id: int, inliers: int) -> float:
     return match_length_m(inliers, keypoints_of(graph, node_id), half_m(graph, node_id))
 
 
+def similarity_at(graph: MapGraph, node_id: int, length_m: float) -> float:
+    """Matches that a picture taken so far from a node has with it."""
+    return FULL_SHARE * keypoints_of(graph, node_id) / (1.0 + length_m / half_m(graph, node_id))
+
+
 def edge_length_m(graph: MapGraph, edge: Edge) -> float:
     """Length of an edge: as driven, else by its matches."""
     if edge.length_m is not None:

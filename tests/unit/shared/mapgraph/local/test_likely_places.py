@@ -1,0 +1,71 @@
+"""Of the places that a picture resembles the likely ones are named."""
+
+from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.hypotheses import hypotheses
+from shared.mapgraph.local.likely_places import is_plain, likely, typical_similarity
+from shared.mapgraph.local.view_range import similarity_at
+from tests.unit.shared.mapgraph.local.grid import claim, grid
+
+GRAPH = grid(12, 2)
+ROUND_NODE_1 = {0: claim(-1.0, 0.0, 80), 1: claim(0.0, 0.0, 150), 13: claim(0.0, 1.0, 70)}
+
+
+def places_of(claims):
+    return likely(GRAPH, claims, hypotheses(GRAPH, claims))
+
+
+def seen_from(x_m, y_m, nodes, share=1.0):
+    """What a picture taken there would claim of nodes, or that share of the matches."""
+    places = {node: (node % 12 - x_m, node // 12 - y_m) for node in nodes}
+    return {
+        node: claim(ahead, aside, round(share * similarity_at(GRAPH, node, (ahead**2 + aside**2) ** 0.5)))
+        for node, (ahead, aside) in places.items()
+    }
+
+
+def test_a_rival_makes_a_list_and_a_weak_one_does_not():
+    assert len(places_of({**ROUND_NODE_1, 9: claim(0.0, 0.0, 160)})) == 2
+    assert len(places_of({**ROUND_NODE_1, 9: claim(0.0, 0.0, 140)})) == 1
+
+
+def test_a_place_whose_best_nodes_resemble_nearly_as_much_is_a_rival_of_one_with_more_nodes():
+    """A goal in a hostel: in the wrong room a node stood nearer to the spot, and others around it."""
+    dense = {node: claim(node - 2.0, 0.0, 90) for node in range(6)}
+    sparse = {9: claim(0.0, 0.0, 120), 10: claim(1.0, 0.0, 70)}
+    assert sum(c.similarity for c in sparse.values()) < 0.5 * sum(c.similarity for c in dense.values())
+    assert len(places_of({**dense, **sparse})) == 2
+
+
+def test_a_place_where_nodes_are_few_is_named_beside_one_where_they_are_many():
+    """A goal in a hostel; the right room had two nodes among those compared."""
+    dense = {node: claim(node - 2.0, 0.0, 100) for node in range(5)}
+    rival = {6: claim(-1.0, 0.0, 150), 7: claim(0.0, 0.0, 150)}
+    few = {11: claim(0.0, 0.0, 180)}
+    places = places_of({**dense, **rival, **few})
+    assert [set(place.nodes) for place in places] == [set(dense), set(rival), set(few)]
+
+
+def test_a_place_alone_is_plain_where_it_resembles_as_much_as_itself():
+    typical = typical_similarity(GRAPH)
+    assert typical == 80
+    assert is_plain(places_of(ROUND_NODE_1), typical)
+    assert not is_plain(places_of({1: claim(0.0, 0.0, 90)}), typical)
+    assert not is_plain([], typical)
+
+
+def test_a_twin_whose_nodes_stand_nearer_to_the_spot_is_none_where_it_lacks_matches():
+    """The right place is half a metre from its nodes; a twin at the very spot of one has as many matches."""
+    right = seen_from(1.5, 0.5, (1, 2, 13, 14))
+    twin = seen_from(9.0, 0.0, (8, 9, 10, 21), share=0.55)
+    assert sum(c.similarity for c in twin.values()) > 0.5 * sum(c.similarity for c in right.values())
+    [place] = places_of({**right, **twin})
+    assert set(place.nodes) == set(right)
+
+
+def test_a_twin_that_has_what_would_be_expected_of_it_is_a_rival():
+    right, twin = seen_from(1.5, 0.5, (1, 2, 13, 14)), seen_from(9.0, 0.0, (8, 9, 10, 21))
+    assert len(places_of({**right, **twin})) == 2
+
+
+def test_a_map_without_driven_ways_has_no_typical_similarity():
+    assert typical_similarity(MapGraph()) == 0.0
