@@ -88,6 +88,9 @@ MAP_DELTA = Topic("topnav/maps/{map}/delta", maps.MapDelta, Delivery.RECOVERED, 
 
 MATCH = Query("topnav/{robot}/match", matching.MatchRequest, matching.MatchReply, 32 * MB, anyone=True)
 EXTRACT = Query("topnav/features/extract", features.ExtractRequest, features.Features, 64 * MB, anyone=True)
+EXTRACT_PHOTO = Query(
+    "topnav/features/extract_photo", features.ExtractPhotoRequest, features.Features, 64 * MB, anyone=True
+)
 MISSION = Query("topnav/{robot}/mission", missions.MissionRequest, missions.MissionStatus, 8 * MB)
 MISSION_KINDS = Query(
     "topnav/{robot}/mission/kinds", missions.MissionKindsRequest, missions.MissionKinds, 1 * MB

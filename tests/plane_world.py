@@ -289,6 +289,7 @@ def run(
             seq=world.seq,
             action=decision.action,
             heading_rad=decision.heading_rad,
+            face_rad=decision.face_rad,
             s_cv=decision.s_cv,
             s_slow=150,
             s_max=300,

@@ -16,6 +16,9 @@ from shared.motion.motion import NO_MOTION, Motion
 
 SLOWEST = 0.25
 """Share of the speed that is left however near an obstacle is; chosen, see decision 0005."""
+FACING_S, FACED_RAD = 0.5, math.radians(1.0)
+"""Time constant of a turn on the spot, and what is left of it at its end; chosen: five frames, and less than
+any keypoint tells."""
 NEARLY_THERE = 0.5
 """Share of its distance within which the bearing of what is headed for is no longer corrected by the way made
 since it was seen: distances are told to a factor of 1.5 (decision 0037)."""
@@ -63,6 +66,8 @@ def compute_velocity(
         limits: of this robot.
     """
     memory = replace(memory, passing=memory.passing.turned(since.step))
+    if heading.action == "hold" and heading.face_rad is not None and limits.base.name != "ackermann":
+        return _facing(heading, heading.face_rad, since, limits), memory
     if heading.action == "hold":
         return stop_velocity(heading, "hold: " + heading.why[:100], limits), memory
     wished_rad, distance_m = now_at(heading, since.frame)
@@ -89,6 +94,15 @@ def compute_velocity(
         update={**twist._asdict(), "avoiding": steering.avoiding}
     )
     return velocity, replace(memory, manoeuvre=manoeuvre)
+
+
+def _facing(heading: Heading, face_rad: float, since: Since, limits: DriveLimits) -> Velocity:
+    """Turning on the spot, slower as the front comes to where it is to look."""
+    left_rad = math.remainder(face_rad - since.frame.turn_rad, math.tau)
+    most_radps = limits.base.turn_radps
+    turn_radps = max(-most_radps, min(most_radps, left_rad / FACING_S))
+    standing = stop_velocity(heading, heading.why[:100], limits)
+    return standing if abs(left_rad) < FACED_RAD else standing.model_copy(update={"turn_radps": turn_radps})
 
 
 def follow(course: Course, memory: Manoeuvre, limits: DriveLimits) -> tuple[Twist, Manoeuvre]:

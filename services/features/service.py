@@ -22,10 +22,10 @@ from services.features.robot_streams import RobotStreams
 from services.features.settings import FeaturesSettings
 from shared.bus import Bus, Request
 from shared.jpeg import BadPictureError
-from shared.messages.features import ExtractRequest, Features
+from shared.messages.features import ExtractPhotoRequest, ExtractRequest, Features
 from shared.messages.matching import MatchReply, MatchRequest
 from shared.messages.sensors import Frame
-from shared.topics import EXTRACT
+from shared.topics import EXTRACT, EXTRACT_PHOTO
 
 log = logging.getLogger(__name__)
 
@@ -44,6 +44,7 @@ class FeatureService:
         self._maps = MapReader(bus, MapCache(self._no_nodes), settings.map_timeout_s)
         self._robots = tuple(RobotStreams.open(bus, name, settings.frames_kept) for name in settings.served)
         self._extracts = bus.requests(EXTRACT)
+        self._photos = bus.requests(EXTRACT_PHOTO)
 
     def work(self) -> None:
         """Handle everything that has arrived."""
@@ -59,7 +60,9 @@ class FeatureService:
             self._on_match(robot, match)
         if (picture := self._extracts.take()) is not None:
             self._on_extract(picture)
-        return any(each is not None for each in (frame, match, picture))
+        if (photo := self._photos.take()) is not None:
+            self._on_photo(photo)
+        return any(each is not None for each in (frame, match, picture, photo))
 
     def _on_frame(self, robot: RobotStreams, frame: Frame) -> None:
         key = FrameKey.of(frame)
@@ -81,6 +84,11 @@ class FeatureService:
         start_s = time.perf_counter()
         features = self._pipeline.features_of(frame)
         return features.model_copy(update={"extract_ms": (time.perf_counter() - start_s) * 1e3})
+
+    def _on_photo(self, request: Request[ExtractPhotoRequest, Features]) -> None:
+        start_s = time.perf_counter()
+        features = self._pipeline.features_of_photo(request.message.photo)
+        request.reply(features.model_copy(update={"extract_ms": (time.perf_counter() - start_s) * 1e3}))
 
     def _on_match(self, robot: RobotStreams, request: Request[MatchRequest, MatchReply]) -> None:
         try:

@@ -21,6 +21,7 @@ from services.launcher.commands import (
     explore,
     foxglove,
     goto,
+    locate,
     map,
     mcp,
     mission,
@@ -50,7 +51,21 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (demo, explore, goto, drive, estop, world, models, record, replay, recover, foxglove, mcp):
+for command in (
+    demo,
+    explore,
+    goto,
+    locate,
+    drive,
+    estop,
+    world,
+    models,
+    record,
+    replay,
+    recover,
+    foxglove,
+    mcp,
+):
     app.add_typer(command.app)
 for command in (map, place, rule, mission, camera, robot, certs, token, up, down, status, doctor):
     app.add_typer(command.app)

@@ -2,6 +2,7 @@
 
 from services.planner.mission_kinds import MissionError
 from services.planner.ports import MapAccess
+from shared.mapgraph.local.keep_clear import keep_clear
 from shared.mapgraph.marks import place_called
 
 
@@ -30,3 +31,20 @@ def check_allowed(maps: MapAccess, node_id: int) -> None:
     """Raise MissionError where a rule forbids a node."""
     if (rule := maps.limits().forbidden.get(node_id)) is not None:
         raise MissionError(f"node {node_id} is forbidden by rule {rule!r}", "forbidden")
+
+
+def why_not_beside(
+    maps: MapAccess, node_id: int, start_m: tuple[float, float], spot_m: tuple[float, float]
+) -> str:
+    """Why the rules let no robot go straight to a spot beside a node; "" where they do.
+
+    Args:
+        maps: the map with its rules.
+        node_id: the node.
+        start_m: (2,) where the way begins, in the node's camera frame.
+        spot_m: (2,) where it ends, likewise.
+    """
+    limits = maps.limits()
+    around = keep_clear(maps.graph, node_id, limits.forbidden)
+    crossed = around is not None and around.is_crossed(start_m, spot_m)
+    return limits.why_not({node_id: 0.0}) if crossed or node_id in limits.forbidden else ""

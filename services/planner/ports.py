@@ -86,6 +86,7 @@ class Decision:
 
     Attributes:
         heading_rad: where to go, robot frame of the observation; ignored for "hold".
+        face_rad: with "hold", where the robot's front is to turn to, the same frame; None to stand still.
         distance_m: about how far what is headed for is; None where it is nothing in particular.
         outcome: "" while the mission goes on.
     """
@@ -100,6 +101,7 @@ class Decision:
     outcome: Literal["", "succeeded", "failed"] = ""
     failure: FailureKind = ""
     distance_m: float | None = None
+    face_rad: float | None = None
 
 
 @dataclass(frozen=True)

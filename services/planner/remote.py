@@ -145,7 +145,7 @@ class RemoteMatcher:
                 map_revision=self._maps.revision,
                 features=features,
                 best_k=best_k,
-                with_matches=False,
+                with_matches=features.photo is not None,
             )
         )
 

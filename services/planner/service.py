@@ -161,6 +161,7 @@ class Planner:
             ttl_ms=self._settings.heading_ttl_ms,
             action=decision.action,
             heading_rad=decision.heading_rad,
+            face_rad=decision.face_rad,
             s_cv=decision.s_cv,
             s_slow=self._profile.travel.s_slow,
             s_max=self._profile.travel.s_max,

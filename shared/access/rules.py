@@ -109,6 +109,7 @@ STREAMS: dict[Topic[Any], Grant] = {
 QUESTIONS: dict[Query[Any, Any], Grant] = {
     topics.MATCH: _grant([Role.FEATURES], [Role.PLANNER, Role.MAP_STORE, *PEOPLE]),
     topics.EXTRACT: _grant([Role.FEATURES], ASKERS),
+    topics.EXTRACT_PHOTO: _grant([Role.FEATURES], ASKERS),
     topics.MISSION: _grant([Role.PLANNER], ASKERS),
     topics.MISSION_KINDS: _grant([Role.PLANNER], PEOPLE),
     topics.ESTOP: _grant([Role.DRIVE], ASKERS),

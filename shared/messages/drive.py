@@ -19,6 +19,8 @@ class Heading(Message):
 
     Attributes:
         action: "go" along heading_rad or "hold" still for this frame.
+        face_rad: with "hold", turn on the spot until the front looks there; None to stand. A base that cannot
+            turn on the spot stands.
         s_cv: similarity with the current via point; slows the robot near it (thesis eq. 6.5).
         s_slow: similarity above which it slows down (thesis: 90).
         s_max: largest possible similarity (thesis: 150).
@@ -36,6 +38,7 @@ class Heading(Message):
     ttl_ms: int = Field(default=500, ge=1, le=60_000)
     action: Literal["go", "hold"] = "go"
     heading_rad: Bearing = 0.0
+    face_rad: Bearing | None = None
     s_cv: int = Field(default=0, ge=0)
     s_slow: int = Field(default=0, ge=0)
     s_max: int = Field(default=1, ge=1)

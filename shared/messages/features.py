@@ -5,12 +5,29 @@ from typing import Annotated, ClassVar
 from pydantic import Field, model_validator
 
 from shared.messages.arrays import Array, ArraySpec
-from shared.messages.base import Message, Name
+from shared.messages.base import Message, Name, Part
 from shared.messages.sensors import Frame
 
 MAX_KEYPOINTS = 4096
 MAX_THUMBNAIL_BYTES = 200_000
 """Chosen: ten times what the widest that settings allow takes."""
+
+
+MAX_PHOTO_PX = 1600
+"""Side of a photo; chosen: three pixels for each that the pipelines look at, at 110 degrees."""
+
+
+class PhotoView(Part):
+    """What is known of the camera of an ordinary photo, which shows a part of the sphere.
+
+    Attributes:
+        fov_rad: field of view over the longer side; with `fov_known` false what was taken for it.
+        aspect: width over height, upright.
+    """
+
+    fov_rad: float = Field(ge=0.1, le=3.0)
+    fov_known: bool = False
+    aspect: float = Field(default=1.0, ge=0.1, le=10.0)
 
 
 class Features(Message):
@@ -23,6 +40,7 @@ class Features(Message):
         descriptors: (N, D).
         sizes_rad: (N,) diameter of each keypoint, above 0: what is nearer is larger; None where unknown.
         thumbnail: small JPEG of the frame for people, and to compare look-alikes by; may be empty.
+        photo: of an ordinary photo, its camera: it looks to longitude and latitude 0; None for a panorama.
         extract_ms: time the feature service took for this picture, decoding and thumbnail included.
     """
 
@@ -36,6 +54,7 @@ class Features(Message):
     descriptors: Annotated[Array, ArraySpec(("float32", "float16", "uint8"), (None, None), MAX_KEYPOINTS)]
     sizes_rad: Annotated[Array, ArraySpec(("float32",), (None,), MAX_KEYPOINTS)] | None = None
     thumbnail: bytes = Field(default=b"", max_length=MAX_THUMBNAIL_BYTES)
+    photo: PhotoView | None = None
     extract_ms: float = Field(default=0.0, ge=0.0)
 
     @model_validator(mode="after")
@@ -53,9 +72,35 @@ class Features(Message):
         return self
 
 
+class Photo(Part):
+    """An ordinary photo, upright: rows of blue, green and red bytes."""
+
+    view: PhotoView
+    width_px: int = Field(ge=64, le=MAX_PHOTO_PX)
+    height_px: int = Field(ge=64, le=MAX_PHOTO_PX)
+    data: bytes = Field(max_length=3 * MAX_PHOTO_PX**2)
+
+    @model_validator(mode="after")
+    def _size_fits(self) -> "Photo":
+        expected = 3 * self.width_px * self.height_px
+        if len(self.data) != expected:
+            raise ValueError(
+                f"a photo of {self.width_px} x {self.height_px} needs {expected} bytes, got {len(self.data)}"
+            )
+        return self
+
+
 class ExtractRequest(Message):
     """Ask for the features of any equirectangular picture, for example a goal."""
 
     SCHEMA: ClassVar[str] = "extract_request.v1"
 
     frame: Frame
+
+
+class ExtractPhotoRequest(Message):
+    """Ask for the features of an ordinary photo, which compare with those of panoramas."""
+
+    SCHEMA: ClassVar[str] = "extract_photo_request.v1"
+
+    photo: Photo

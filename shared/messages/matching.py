@@ -52,6 +52,8 @@ class NodeMatch(Part):
             space (root mean square over the hundredth that differs most); None where there is no thumbnail.
         matches_rad: (M, 4) lon, lat in the frame, then lon, lat in the node, all raw matches.
         inlier_mask: (M,) 1 where the match is an inlier.
+        right: (M,) probability that each match is right, by its descriptors; of a photo only.
+        log_scale: (M,) ln of each keypoint's size in the photo over that in the node; of a photo only.
     """
 
     node_id: int
@@ -69,6 +71,9 @@ class NodeMatch(Part):
     matches_rad: Annotated[Array, ArraySpec(("float32",), (None, 4), MAX_KEYPOINTS)] | None = None
     inlier_mask: Annotated[Array, ArraySpec(("uint8",), (None,), MAX_KEYPOINTS)] | None = None
 
+    right: Annotated[Array, ArraySpec(("float32",), (None,), MAX_KEYPOINTS)] | None = None
+    log_scale: Annotated[Array, ArraySpec(("float32",), (None,), MAX_KEYPOINTS)] | None = None
+
     @model_validator(mode="after")
     def _mask_fits(self) -> "NodeMatch":
         if (self.matches_rad is None) != (self.inlier_mask is None):
@@ -77,6 +82,9 @@ class NodeMatch(Part):
             return self
         if len(self.matches_rad) != len(self.inlier_mask):
             raise ValueError("matches_rad and inlier_mask must have one length")
+        beside = [each for each in (self.right, self.log_scale) if each is not None]
+        if any(len(each) != len(self.matches_rad) for each in beside):
+            raise ValueError("right and log_scale must have one number per match")
         return self
 
 

@@ -28,8 +28,14 @@ def features() -> looks.Features:
         scores=np.array([2.0, 1.0], np.float32),
         descriptors=np.arange(16, dtype=np.float32).reshape(2, 8),
         thumbnail=b"\xff\xd8\xff\xd9",
+        photo=looks.PhotoView(fov_rad=1.25, fov_known=True, aspect=0.75),
         extract_ms=42.5,
     )
+
+
+def photo() -> looks.Photo:
+    view = looks.PhotoView(fov_rad=1.25, fov_known=True, aspect=0.5)
+    return looks.Photo(view=view, width_px=64, height_px=128, data=bytes(range(256)) * 96)
 
 
 def frame() -> sensors.Frame:
@@ -164,6 +170,8 @@ def node_match() -> matching.NodeMatch:
         difference=9.5,
         matches_rad=np.array([[0.5, 0.25, 0.75, 0.125], [1.0, 0.0, 2.0, 0.0]], np.float32),
         inlier_mask=np.array([1, 0], np.uint8),
+        right=np.array([0.75, 0.5], np.float32),
+        log_scale=np.array([0.125, -0.5], np.float32),
     )
 
 
@@ -209,6 +217,7 @@ def seen() -> tuple[Message, ...]:
         body.Battery(**AT, robot="r1", share=0.75, charging=True, voltage_v=12.5),
         features(),
         looks.ExtractRequest(**AT, frame=frame()),
+        looks.ExtractPhotoRequest(**AT, photo=photo()),
         matching.MatchRequest(
             **AT,
             map="flat",
@@ -240,6 +249,7 @@ def driven() -> tuple[Message, ...]:
             mission_id="m-1",
             action="hold",
             heading_rad=0.5,
+            face_rad=-1.5,
             s_cv=70,
             s_slow=90,
             s_max=150,

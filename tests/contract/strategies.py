@@ -15,7 +15,7 @@ from pydantic.fields import FieldInfo
 
 from shared.messages.arrays import ArraySpec
 from shared.messages.body import Imu
-from shared.messages.features import Features
+from shared.messages.features import Features, Photo
 from shared.messages.maps import Edge
 from shared.messages.matching import NodeMatch
 from shared.messages.places import DeletePlace, DeleteRule, KeepOut, OneWay, OpeningHours, Place, Slow
@@ -125,7 +125,7 @@ def _fit_features(fields: Fields, count: int, seed: int) -> Fields:
 
 
 def _fit_match(fields: Fields, count: int, seed: int) -> Fields:
-    names = ("matches_rad", "inlier_mask")
+    names = ("matches_rad", "inlier_mask", "right", "log_scale")
     if seed % 4 == 0:
         return fields | dict.fromkeys(names)
     return fields | {name: _array(_spec(NodeMatch, name), count, seed) for name in names}
@@ -136,6 +136,11 @@ def _fit_frame(fields: Fields, count: int, seed: int) -> Fields:
     size = 6 * height * height if fields["encoding"] == "bgr8" else count
     data = np.random.default_rng(seed).bytes(size)
     return _fit_gravity(fields, count, seed) | {"height_px": height, "width_px": 2 * height, "data": data}
+
+
+def _fit_photo(fields: Fields, count: int, seed: int) -> Fields:
+    data = np.random.default_rng(seed).bytes(3 * 64 * (64 + count))
+    return fields | {"width_px": 64, "height_px": 64 + count, "data": data}
 
 
 def _fit_gravity(fields: Fields, _count: int, seed: int) -> Fields:
@@ -170,6 +175,7 @@ FITS: dict[type[BaseModel], Callable[[Fields, int, int], Fields]] = {
     NodeMatch: _fit_match,
     Imu: _fit_gravity,
     Frame: _fit_frame,
+    Photo: _fit_photo,
     Edge: _fit_edge,
     **dict.fromkeys((Place, KeepOut, OneWay, Slow, OpeningHours, DeletePlace, DeleteRule), _fit_mark),
 }

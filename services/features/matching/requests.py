@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 from services.features.map_features.map_features import MapFeatures
 from services.features.matching.difference import difference
+from services.features.matching.photo_verification import verify_photo
 from services.features.matching.ranking import answer, considered, is_settled, shortlist
 from services.features.matching.verification import Candidate, feature_set, verify
 from services.features.pipeline.interfaces import FeatureSet, Matched
 from services.features.pipeline.pipeline import Pipeline
-from shared.messages.features import Features
+from shared.messages.features import Features, PhotoView
 from shared.messages.matching import MatchRequest, NodeMatch
 
 BESIDE_RAD = math.radians(6.0)
@@ -37,6 +38,7 @@ class RawMatches:
     query: FeatureSet
     seq: int
     thumbnail: bytes
+    photo: PhotoView | None
     candidates: Mapping[int, Candidate]
     pairs: Mapping[int, Matched]
     shortlisted: list[int]
@@ -67,7 +69,13 @@ def match_candidates(
     pairs = dict(zip(candidates, found, strict=True))
     of_map = {node_id: rows for node_id, rows in pairs.items() if node_id >= 0}
     return RawMatches(
-        query, current.seq, current.thumbnail, candidates, pairs, shortlist(of_map, request.best_k)
+        query,
+        current.seq,
+        current.thumbnail,
+        current.photo,
+        candidates,
+        pairs,
+        shortlist(of_map, request.best_k),
     )
 
 
@@ -87,6 +95,11 @@ def verify_candidates(
         if node_id in of_nodes:
             return of_nodes[node_id]
         candidate, pairs = raw.candidates[node_id], raw.pairs[node_id]
+        if raw.photo is not None:
+            of_nodes[node_id] = verify_photo(
+                raw.query, raw.photo, candidate, pairs, raw.seq, request.with_matches
+            )
+            return of_nodes[node_id]
         match = verify(raw.query, candidate, pairs, raw.seq, pipeline.verification, request.with_matches)
         if node_id < 0:
             return _looked_at(match, raw.thumbnail, request.targets[-1 - node_id])

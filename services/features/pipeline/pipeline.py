@@ -1,13 +1,15 @@
 """One pipeline put together from its plugins: frame -> features message, and matches of two. Pure."""
 
 import cv2
+import numpy as np
 
 from services.features.matching.verification import two_view_settings
 from services.features.pipeline.decoding import decode_picture
 from services.features.pipeline.extraction import extract
 from services.features.pipeline.interfaces import Image, Profile, Runtime
+from services.features.pipeline.photograph import extract_photo
 from services.features.pipeline.plugins import create_extractor, create_matcher, create_representation
-from shared.messages.features import Features
+from shared.messages.features import Features, Photo
 from shared.messages.sensors import Frame
 
 MOST_THUMBNAIL_BYTES = 200_000
@@ -53,6 +55,20 @@ class Pipeline:
             descriptors=found.descriptors,
             sizes_rad=found.sizes_rad,
             thumbnail=_thumbnail(picture, *self._thumbnail),
+        )
+
+    def features_of_photo(self, photo: Photo) -> Features:
+        """Extract an ordinary photo's features; they compare with those of frames."""
+        flat = np.frombuffer(photo.data, dtype=np.uint8)
+        picture = flat.reshape(photo.height_px, photo.width_px, 3)
+        found = extract_photo(picture, photo.view, self.extractor, self.profile)
+        return Features(
+            pipeline=self.identity,
+            lonlat_rad=found.lonlat_rad,
+            scores=found.scores,
+            descriptors=found.descriptors,
+            sizes_rad=found.sizes_rad,
+            photo=photo.view,
         )
 
 

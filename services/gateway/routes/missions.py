@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 from services.gateway.http.asking import Q, R
 from services.gateway.http.bodies import json_body, read_json
 from services.gateway.live.hub import RobotView
-from services.gateway.routes.goals import PICTURE_BODY
+from services.gateway.routes.goals import PICTURE_BODY, FieldOfView
 from services.gateway.routes.robots import known
 from services.gateway.state import Gateway, GatewayDep, MapQuery, RobotPath
 from services.gateway.uploads.goal import goal_of
@@ -103,9 +103,10 @@ async def start_goto(
     response: Response,
     seed: Annotated[int, UrlQuery(ge=0, lt=2**63)] = 0,
     max_steps: Annotated[int, UrlQuery(ge=1, le=1_000_000)] = 20_000,
+    field_of_view_deg: FieldOfView = None,
 ) -> dict[str, Any]:
-    """Drive to where the uploaded picture was taken."""
-    goal = await goal_of(request, gateway, robot)
+    """Drive to where the uploaded picture was taken, and look as it does if it is an ordinary photo."""
+    goal = await goal_of(request, gateway, robot, map_name, field_of_view_deg)
     wish = MissionRequest(action="goto", map=map_name, goal=goal.features, seed=seed, max_steps=max_steps)
     response.headers["Location"] = f"/api/robots/{robot}/mission"
     return _facts(await _start(gateway, robot, wish))

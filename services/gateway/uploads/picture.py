@@ -37,7 +37,7 @@ Bgr = npt.NDArray[np.uint8]
 
 
 def check_header(data: bytes, declared_type: str) -> PictureHeader:
-    """Check format and size from the first bytes.
+    """Check format and size of a panorama from the first bytes.
 
     Args:
         data: the whole file.
@@ -45,6 +45,17 @@ def check_header(data: bytes, declared_type: str) -> PictureHeader:
 
     Raises:
         ProblemError: empty, another format, not the declared one, or a size a panorama cannot have.
+    """
+    header = check_file(data, declared_type)
+    check_panorama(header)
+    return header
+
+
+def check_file(data: bytes, declared_type: str) -> PictureHeader:
+    """Check format and number of pixels of any picture from the first bytes.
+
+    Raises:
+        ProblemError: empty, another format, not the declared one, or more than can be decoded.
     """
     if not data:
         raise ProblemError(422, "empty", "a picture", "0 bytes", "send the file's content")
@@ -57,7 +68,7 @@ def check_header(data: bytes, declared_type: str) -> PictureHeader:
         expected, got = f"content type image/{header.format} for these bytes", declared_type[:80]
         next_step = "send the content type that fits the file"
         raise ProblemError(415, "type_mismatch", expected, got or "no content type", next_step)
-    _check_size(header)
+    _check_pixels(header)
     if header.format == "jpeg" and (scans := data.count(b"\xff\xda")) > MAX_SCANS:
         expected, next_step = f"a JPEG of at most {MAX_SCANS} scans", "save it as a baseline JPEG"
         raise ProblemError(422, "too_many_scans", expected, f"{scans}", next_step)
@@ -73,11 +84,16 @@ def decode_bgr(data: bytes, header: PictureHeader) -> Bgr:
     Raises:
         ProblemError: damaged, animated, or not of the size its header claims.
     """
-    image = _open(data, header)
-    pictures = getattr(image, "n_frames", 1)
-    if pictures > 1 and image.format != "MPO":  # MPO: the first picture is the main one
-        raise ProblemError(422, "animated", "one still picture", f"{pictures} pictures", "send one of them")
     target = (min(header.width_px, MAX_WIDTH_PX), min(header.height_px, MAX_WIDTH_PX // 2))
+    return decoded(open_still(data, header), target)
+
+
+def decoded(image: Image.Image, target: tuple[int, int]) -> Bgr:
+    """Decode an opened picture to (H, W, 3) uint8, blue first, shrunk to `target` (W, H) by area averaging.
+
+    Raises:
+        ProblemError: damaged.
+    """
     try:
         image.draft("RGB", target)  # JPEG only: decodes at 1/2, 1/4 or 1/8 of the size
         image.load()
@@ -86,13 +102,22 @@ def decode_bgr(data: bytes, header: PictureHeader) -> Bgr:
     return np.concatenate([_band(image, target, row) for row in range(0, target[1], BAND_ROWS)])
 
 
-def _check_size(header: PictureHeader) -> None:
-    width_px, height_px, most = header.width_px, header.height_px, MAX_PIXELS[header.format]
-    got = f"{width_px} x {height_px} px"
-    if width_px * height_px > most:
+def _check_pixels(header: PictureHeader) -> None:
+    most, got = MAX_PIXELS[header.format], f"{header.width_px} x {header.height_px} px"
+    if header.width_px * header.height_px > most:
         expected = f"at most {most // 1_000_000} megapixels as {header.format.upper()}"
         next_step = "send a smaller picture or, up to 64 megapixels, a JPEG"
         raise ProblemError(413, "too_many_pixels", expected, got, next_step)
+
+
+def check_panorama(header: PictureHeader) -> None:
+    """Check the size of a panorama.
+
+    Raises:
+        ProblemError: not twice as wide as high, or too small.
+    """
+    width_px, height_px = header.width_px, header.height_px
+    got = f"{width_px} x {height_px} px"
     if width_px != 2 * height_px:
         expected = "an equirectangular panorama, exactly twice as wide as high"
         next_step = "export the whole sphere (360 x 180 degrees)"
@@ -100,6 +125,19 @@ def _check_size(header: PictureHeader) -> None:
     if width_px < MIN_WIDTH_PX:
         expected = f"at least {MIN_WIDTH_PX} x {MIN_WIDTH_PX // 2} px"
         raise ProblemError(422, "too_small", expected, got, "send a larger picture")
+
+
+def open_still(data: bytes, header: PictureHeader) -> Image.Image:
+    """Open a checked file of one picture.
+
+    Raises:
+        ProblemError: damaged, animated, or not of the size its header claims.
+    """
+    image = _open(data, header)
+    pictures = getattr(image, "n_frames", 1)
+    if pictures > 1 and image.format != "MPO":  # MPO: the first picture is the main one
+        raise ProblemError(422, "animated", "one still picture", f"{pictures} pictures", "send one of them")
+    return image
 
 
 def _open(data: bytes, header: PictureHeader) -> Image.Image:

@@ -31,6 +31,16 @@ TimeoutS = Annotated[
     typer.Option(min=1.0, envvar="TOPNAV_START_TIMEOUT_S", help="How long a start of the stack may take."),
 ]
 
+FieldOfView = Annotated[
+    float | None,
+    typer.Option(
+        "--field-of-view-deg",
+        min=20.0,
+        max=130.0,
+        help="Of the photo, over its longer side; else its EXIF counts, or it is found.",
+    ),
+]
+
 DATA_DIR = Path("data")
 RUNS_DIR = Path("runs")
 START_TIMEOUT_S = 300.0

@@ -30,7 +30,7 @@ def add_looking(server: MCPServer[Any], gateway: Gateway) -> None:
 
     @server.tool(annotations=LOOKS)
     async def locate(photo: Photo) -> Whereabouts:
-        """Where in the map a panorama was taken, without driving there."""
+        """Where in the map a panorama or a photo was taken, without driving there."""
         return Whereabouts.of(await gateway.check_photo(picture_of(photo)))
 
     @server.tool(annotations=LOOKS)

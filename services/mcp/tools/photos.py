@@ -12,7 +12,11 @@ LONGEST = 4_000_000
 """Characters: 3 MB, a panorama of 4096 pixels as JPEG."""
 
 Photo = Annotated[
-    str, Field(max_length=LONGEST, description="a panorama, twice as wide as high: JPEG in base64")
+    str,
+    Field(
+        max_length=LONGEST,
+        description="a panorama, twice as wide as high, or an ordinary photo: JPEG in base64",
+    ),
 ]
 
 

@@ -26,7 +26,7 @@ def add_sending(server: MCPServer[Any], gateway: Gateway) -> None:
     async def go_to(
         place: PlaceName = "", node: Node = None, photo: Photo = "", max_steps: Steps = 1500, seed: Seed = 0
     ) -> Mission:
-        """Start driving to a named place, to a node or to where a panorama was taken; then `wait`."""
+        """Start driving to a named place, a node or where a panorama or photo was taken; then `wait`."""
         if [bool(place), node is not None, bool(photo)].count(True) != 1:
             raise ToolError("say where to by one of place, node and photo")
         if photo:

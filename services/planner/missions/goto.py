@@ -8,7 +8,17 @@ from pydantic import BaseModel, ConfigDict, Field
 from services.planner.goal_nodes import check_allowed, node_called
 from services.planner.mapping.reach import claims
 from services.planner.mission_kinds import MissionContext, MissionError, MissionKind
-from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
+from services.planner.photographs.photo_goto import PhotoGoto
+from services.planner.ports import (
+    Decision,
+    MapAccess,
+    Matcher,
+    Matches,
+    Mission,
+    Note,
+    Observation,
+    Progress,
+)
 from services.planner.profiles import Profile
 from services.planner.similarity import ranked, trusted
 from services.planner.similarity import similarity as similarity_of
@@ -287,7 +297,7 @@ class Goto:
         return replace(decision, outcome="succeeded") if travel.state is State.ARRIVED else decision
 
 
-def _make(context: MissionContext, parameters: GotoParameters) -> Goto:
+def _make(context: MissionContext, parameters: GotoParameters) -> Mission:
     node_id, place = parameters.goal_node, parameters.place
     if sum(given is not None for given in (context.goal, node_id, place)) != 1:
         raise MissionError(
@@ -301,7 +311,14 @@ def _make(context: MissionContext, parameters: GotoParameters) -> Goto:
             raise MissionError(f"the map has no node {node_id}", "missing")
         check_allowed(context.maps, node_id)
         goal = context.maps.features_of(node_id)
-    return Goto(context.profile, context.maps, context.matcher, goal, context.whereabouts)
+    profile, maps, matcher = context.profile, context.maps, context.matcher
+    if goal.photo is None:
+        return Goto(profile, maps, matcher, goal, context.whereabouts)
+
+    def travel_to(node: Features) -> Goto:
+        return Goto(profile, maps, matcher, node, context.whereabouts)
+
+    return PhotoGoto(profile, maps, matcher, goal, goal.photo, travel_to, context.rng)
 
 
 KIND = MissionKind(

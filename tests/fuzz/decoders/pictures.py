@@ -1,13 +1,14 @@
-"""Pictures as untrusted input: goal uploads, frames of cameras, textures of worlds."""
+"""Pictures as untrusted input: uploaded goals, photos with their EXIF, frames of cameras, textures."""
 
 import io
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
+from PIL import ExifTags, Image
 
 from services.features.pipeline.decoding import decode_picture
-from services.gateway.uploads.picture import check_header, decode_bgr
+from services.gateway.uploads.photo import decode_photo, is_photo
+from services.gateway.uploads.picture import check_file, check_header, decode_bgr
 from services.gateway.uploads.picture_header import HeaderError, read_header
 from shared.jpeg import BadPictureError
 from shared.messages.sensors import Frame
@@ -58,6 +59,7 @@ def decoders(_scratch: Path) -> list[Decoder]:
     jpegs = saved("JPEG")
     return [
         *(_goal(kind) for kind in MODES),
+        *(_photo(kind) for kind in MODES),
         Decoder("pictures/header", read_header, (HeaderError,), every, tokens),
         Decoder("pictures/frame", _frame, (BadPictureError,), jpegs, TOKENS["JPEG"], memory_mb=LARGEST_MB),
         Decoder("pictures/texture", _texture, (AssetError,), every, tokens, memory_mb=LARGEST_MB, cpu_s=3.0),
@@ -97,6 +99,38 @@ def _goal(kind: str) -> Decoder:
 
     name = f"pictures/goal-{kind.lower()}"
     return Decoder(name, run, (ProblemError,), saved(kind), TOKENS[kind], cpu_s=5.0, memory_mb=LARGEST_MB)
+
+
+def _photo(kind: str) -> Decoder:
+    def run(data: bytes) -> None:
+        header = check_file(data, f"image/{kind.lower()}")
+        if not is_photo(header, fov_told=False):
+            raise ProblemError(422, "not_two_to_one", "a photo", "another shape", "send a photo")
+        photo = decode_photo(data, header, None)
+        assert len(photo.data) == 3 * photo.width_px * photo.height_px
+        assert photo.view.aspect == photo.width_px / photo.height_px
+
+    name = f"pictures/photo-{kind.lower()}"
+    return Decoder(name, run, (ProblemError,), _photos(kind), TOKENS[kind], cpu_s=5.0, memory_mb=LARGEST_MB)
+
+
+def _photos(kind: str) -> tuple[bytes, ...]:
+    """A phone's picture, turned each way, with and without a focal length."""
+    pixels = np.random.default_rng(4).integers(0, 256, (30, 40, 3), np.uint8)
+    shot = Image.fromarray(pixels.repeat(8, 0).repeat(8, 1))
+    files = [_file(shot, kind)]
+    for orientation in (3, 6):
+        exif = Image.Exif()
+        exif[ExifTags.Base.Orientation] = orientation
+        exif.get_ifd(ExifTags.IFD.Exif).update(
+            {
+                ExifTags.Base.FocalLengthIn35mmFilm: 26,
+                ExifTags.Base.ExifImageWidth: shot.width,
+                ExifTags.Base.ExifImageHeight: shot.height,
+            }
+        )
+        files.append(_file(shot, kind, exif=exif))
+    return tuple(files)
 
 
 def _frame(data: bytes) -> None:

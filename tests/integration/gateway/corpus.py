@@ -115,13 +115,15 @@ def _damaged() -> list[Upload]:
 
 def _sizes() -> list[Upload]:
     huge = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 2**31 - 1, 2**30, 8, 2, 0, 0, 0))
-    square = saved(noise(200, 200), "JPEG")
+    square = saved(noise(199, 199), "JPEG")
     return [
         Upload("bomb of 30000 x 30000", "image/png", bomb(30_000, 30_000), 413, "too_many_pixels"),
         Upload("bomb of 30000 x 15000", "image/png", bomb(30_000, 15_000), 413, "too_many_pixels"),
         Upload("claims 2^31 pixels width", "image/png", huge, 413, "too_many_pixels"),
-        Upload("square", "image/jpeg", square, 422, "not_two_to_one"),
-        Upload("one pixel", "image/png", saved(noise(1, 1), "PNG"), 422, "not_two_to_one"),
+        Upload("nearly 2:1", "image/jpeg", saved(noise(610, 300), "JPEG"), 422, "not_two_to_one"),
+        Upload("a strip", "image/jpeg", saved(noise(900, 300), "JPEG"), 422, "not_two_to_one"),
+        Upload("small square", "image/jpeg", square, 422, "too_small"),
+        Upload("one pixel", "image/png", saved(noise(1, 1), "PNG"), 422, "too_small"),
         Upload("100000 x 1", "image/png", saved(Image.new("1", (100_000, 1)), "PNG"), 422, "not_two_to_one"),
         Upload("zero width", "image/png", bomb(0, 0), 422, "too_small"),
         Upload("tiny", "image/png", saved(noise(64, 32), "PNG"), 422, "too_small"),

@@ -11,11 +11,11 @@ from fastapi.responses import JSONResponse, Response
 
 from services.planner.mission_kinds import MissionError, mission_kinds
 from shared.bus import Bus, open_bus, wait_until
-from shared.messages.features import ExtractRequest, Features
+from shared.messages.features import ExtractPhotoRequest, ExtractRequest, Features
 from shared.messages.maps import MapReply, Node, NodeFeatures
 from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
 from shared.messages.missions import CONTROLS, MissionKinds, MissionRequest, MissionStatus
-from shared.topics import EXTRACT, MAP, MATCH, MISSION, MISSION_KINDS, STATUS
+from shared.topics import EXTRACT, EXTRACT_PHOTO, MAP, MATCH, MISSION, MISSION_KINDS, STATUS
 from tests.integration.gateway.gateway_process import WAIT_S
 
 PIPELINE = "standin/1"
@@ -66,6 +66,7 @@ class FeatureService:
 
     def __init__(self) -> None:
         self.extracted: list[ExtractRequest] = []
+        self.photographed: list[ExtractPhotoRequest] = []
         self.matched: list[MatchRequest] = []
         self.behind = 0  # so many frames it does not have yet
         self.results: tuple[NodeMatch, ...] = (
@@ -83,11 +84,15 @@ class FeatureService:
 
     def setup(self, bus: Bus) -> Callable[[], None]:
         extract, match = bus.requests(EXTRACT), bus.requests(MATCH, robot="*")
+        photos = bus.requests(EXTRACT_PHOTO)
 
         def turn() -> None:
             while (asked := extract.take()) is not None:
                 self.extracted.append(asked.message)
                 asked.reply(features_of())
+            while (shot := photos.take()) is not None:
+                self.photographed.append(shot.message)
+                shot.reply(features_of().model_copy(update={"photo": shot.message.photo.view}))
             while (question := match.take()) is not None:
                 self.matched.append(question.message)
                 if self.behind:

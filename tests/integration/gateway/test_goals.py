@@ -1,6 +1,7 @@
 """Goal pictures: through the gateway to the feature service and back."""
 
 import io
+import math
 
 import httpx
 import numpy as np
@@ -75,6 +76,65 @@ def test_a_form_with_one_file_is_the_same(http: httpx.Client) -> None:
         "/api/robots/r1/goal-check?map=flat", files={"picture": ("goal.png", picture(), "image/png")}
     )
     assert answer.status_code == 200, answer.text
+
+
+def photo(width: int = 400, height: int = 300) -> bytes:
+    out = io.BytesIO()
+    Image.new("RGB", (width, height), (90, 120, 30)).save(out, "JPEG")
+    return out.getvalue()
+
+
+def test_an_ordinary_photo_is_asked_about_as_one_and_gets_a_typed_answer(
+    http: httpx.Client, features: FeatureService
+) -> None:
+    answer = http.post(
+        "/api/robots/r1/goal-check?map=flat&field_of_view_deg=70",
+        content=photo(),
+        headers={"content-type": "image/jpeg"},
+    )
+    assert answer.status_code == 200, answer.text
+    body = answer.json()
+    assert (body["verdict"], body["photo"]) == ("not_found", {"fov_known": True, "places": []})
+    asked = features.photographed[-1].photo
+    assert (asked.width_px, asked.height_px, asked.view.fov_known) == (400, 300, True)
+    assert math.degrees(asked.view.fov_rad) == pytest.approx(70.0)
+    question = features.matched[-1]
+    assert question.features is not None
+    assert question.features.photo == asked.view
+    assert (question.best_k, question.with_matches) == (60, True)
+
+
+@pytest.mark.parametrize(
+    ("size", "code"),
+    [((300, 100), "not_two_to_one"), ((260, 180), "too_small"), ((1000, 502), "not_two_to_one")],
+)
+def test_what_is_neither_photo_nor_panorama_is_refused(
+    http: httpx.Client, size: tuple[int, int], code: str
+) -> None:
+    headers = {"content-type": "image/jpeg"}
+    answer = http.post("/api/robots/r1/goal-check?map=flat", content=photo(*size), headers=headers)
+    assert (answer.status_code, answer.json()["type"].rpartition(":")[2]) == (422, code)
+
+
+@pytest.mark.parametrize("told", ["0", "179", "nan", "wide"])
+def test_a_field_of_view_that_no_photo_has_is_refused(http: httpx.Client, told: str) -> None:
+    headers = {"content-type": "image/jpeg"}
+    url = f"/api/robots/r1/goal-check?map=flat&field_of_view_deg={told}"
+    assert http.post(url, content=photo(), headers=headers).status_code == 422
+
+
+def test_a_photo_as_goal_reaches_the_planner_with_its_camera(http: httpx.Client, planner: Planner) -> None:
+    answer = http.post(
+        "/api/robots/r1/missions/goto?map=flat&field_of_view_deg=70",
+        content=photo(),
+        headers={"content-type": "image/jpeg"},
+    )
+    assert answer.status_code == 202, answer.text
+    goal = planner.asked[-1].goal
+    assert goal is not None
+    assert goal.photo is not None
+    assert goal.photo.fov_known
+    planner.say(state="idle")
 
 
 def test_large_pictures_reach_the_features_at_2048(http: httpx.Client, features: FeatureService) -> None:

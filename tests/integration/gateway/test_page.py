@@ -60,6 +60,28 @@ def test_an_uploaded_picture_is_localised_and_driven_to(page: "Page", planner: P
     page.wait_for_selector("#state.cancelled", timeout=WAIT_MS)
 
 
+PREVIEWED = """() => {
+    const canvas = document.getElementById("preview");
+    if (canvas.hidden) return null;
+    const row = canvas.getContext("2d").getImageData(0, canvas.height / 2, canvas.width, 1).data;
+    return [...Array(canvas.width).keys()].filter((x) => row[4 * x + 3] > 0).length / canvas.height;
+}"""
+"""Width over height of what the preview shows."""
+
+
+@pytest.mark.parametrize(("size", "shape"), [((256, 128), 2.0), ((400, 300), 4 / 3), ((300, 400), 0.75)])
+@pytest.mark.usefixtures("map_store")
+def test_a_picture_is_shown_in_its_own_shape(page: "Page", size: tuple[int, int], shape: float) -> None:
+    page.wait_for_selector("#map option", state="attached", timeout=WAIT_MS)
+    out = io.BytesIO()
+    Image.new("RGB", size, (90, 120, 30)).save(out, "JPEG")
+    goal = {"name": "goal.jpg", "mimeType": "image/jpeg", "buffer": out.getvalue()}
+    page.set_input_files("#picture", files=[goal])
+    page.wait_for_selector("#goal-answer .verdict", timeout=WAIT_MS)
+    page.wait_for_function(PREVIEWED, timeout=WAIT_MS)
+    assert page.evaluate(PREVIEWED) == pytest.approx(shape, abs=0.02)
+
+
 def test_a_broken_picture_is_explained(page: "Page") -> None:
     page.wait_for_selector("#map option", state="attached", timeout=WAIT_MS)
     goal = {"name": "goal.gif", "mimeType": "image/gif", "buffer": b"GIF89a"}

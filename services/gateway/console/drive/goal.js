@@ -44,8 +44,10 @@ export class Goal {
   async preview(file) {
     const canvas = $("preview");
     try {
-      const bitmap = await createImageBitmap(file, { resizeWidth: canvas.width, resizeHeight: canvas.height });
-      canvas.getContext("2d").drawImage(bitmap, 0, 0);
+      const bitmap = await createImageBitmap(file, { resizeHeight: canvas.height });
+      const context = canvas.getContext("2d");
+      context.clearRect(0, 0, canvas.width, canvas.height);
+      context.drawImage(bitmap, (canvas.width - bitmap.width) / 2, 0);
       canvas.hidden = false;
       $("drop-text").hidden = true;
     } catch {

@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from services.drive.bases.course import BaseLimits
 from services.drive.core import Memory, Since, compute_velocity, speed, velocity_gain
 from services.drive.limits import DriveLimits, SpeedLimits
 from shared.messages.drive import Heading
 from shared.messages.sensors import Ranges
+from shared.motion.motion import Motion
 
 RANGES_PERIOD_MS = 100
 ANGLES = tuple(i * math.tau / 12 for i in range(12))
@@ -28,6 +30,34 @@ def test_hold_gives_a_robot_that_stands():
     answer = velocity(Heading(robot="r1", seq=7, action="hold", heading_rad=1.0), ranges())
     assert answer.stands
     assert answer.seq == 7
+
+
+@pytest.mark.parametrize(("face_rad", "sign"), [(1.0, 1.0), (-2.5, -1.0)])
+def test_holding_with_a_direction_to_face_turns_on_the_spot_the_short_way(face_rad, sign):
+    answer = velocity(Heading(robot="r1", action="hold", face_rad=face_rad), ranges(ahead_m=0.3))
+    assert answer.speed_mps == 0.0
+    assert answer.turn_radps * sign == pytest.approx(1.5)
+
+
+def test_what_the_robot_turned_since_the_frame_is_taken_off_what_is_left_to_turn():
+    heading, limits, rng = (
+        Heading(robot="r1", action="hold", face_rad=0.3),
+        DriveLimits(),
+        np.random.default_rng(0),
+    )
+
+    def turning(turned_rad):
+        since = Since(frame=Motion(turn_rad=turned_rad))
+        return compute_velocity(heading, ranges(), since, Memory(), rng, limits)[0]
+
+    assert turning(0.1).turn_radps == pytest.approx(0.4)
+    assert turning(0.295).stands
+    assert turning(0.4).turn_radps == pytest.approx(-0.2)
+
+
+def test_a_car_cannot_turn_on_the_spot_and_stands():
+    limits = DriveLimits(base=BaseLimits(name="ackermann"))
+    assert velocity(Heading(robot="r1", action="hold", face_rad=1.0), ranges(), limits).stands
 
 
 def test_free_way_follows_the_heading_at_full_speed():

@@ -10,7 +10,20 @@ from typer.testing import CliRunner
 
 from services.launcher import cli
 
-DOCUMENTED = {"demo", "explore", "goto", "up", "down", "status", "doctor", "estop", "world", "models", "map"}
+DOCUMENTED = {
+    "demo",
+    "explore",
+    "goto",
+    "locate",
+    "up",
+    "down",
+    "status",
+    "doctor",
+    "estop",
+    "world",
+    "models",
+    "map",
+}
 DOCUMENTED |= {"record", "replay", "recover", "foxglove", "mcp", "certs", "token"}
 HEAVY = {"zenoh", "torch", "cv2", "sapien", "matplotlib", "numpy", "httpx", "pydantic", "cryptography"}
 

@@ -5,14 +5,20 @@ import pytest
 from services.planner.remote import RemoteMap, RemoteMatcher
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.routing import GOAL
+from shared.messages.features import PhotoView
 from shared.messages.maps import Edge, MapDelta, MapReply, Node, PutEdge
 from shared.messages.matching import MatchReply, NodeMatch
+from tests.plane_world import picture
 
 
 class Answers:
     """A bus on which every question about matches has the same answer."""
 
-    def ask(self, _query, _request, _timeout_s, **_names):
+    def __init__(self):
+        self.asked = []
+
+    def ask(self, _query, request, _timeout_s, **_names):
+        self.asked.append(request)
         results = tuple(NodeMatch(node_id=n, raw_matches=9, inliers=9, status="ok") for n in (GOAL, 1, 2))
         return MatchReply(map="flat", match_ms=2.0, verify_ms=7.5, results=results)
 
@@ -41,6 +47,15 @@ def test_costs_start_at_zero_with_each_frame(matcher):
 
 def test_a_place_of_another_robot_that_the_planner_has_not_heard_of_yet_is_left_out(matcher):
     assert matcher.match((), best_k=3).keys() == {GOAL, 1}
+
+
+@pytest.mark.parametrize("photo", [None, PhotoView(fov_rad=1.2, fov_known=True, aspect=0.75)])
+def test_only_of_a_photo_the_matches_themselves_are_asked_for(photo):
+    bus = Answers()
+    matcher = RemoteMatcher(bus, "r1", RemoteMap(bus, "flat", 1.0), 1.0)
+    matcher.locate(picture((0.0, 0.0, 0.0)).model_copy(update={"photo": photo}), 60)
+    (asked,) = bus.asked
+    assert (asked.best_k, asked.with_matches) == (60, photo is not None)
 
 
 class Store:

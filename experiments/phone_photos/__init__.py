@@ -1,0 +1,1 @@
+"""Phone pictures of rendered worlds: where the core says they were taken, against the truth."""

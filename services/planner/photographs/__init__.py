@@ -1,0 +1,1 @@
+"""Missions to where ordinary photos were taken."""
