@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from shared.mapgraph.local.hypotheses import COMPARED_NODES
 from tests.integration.gateway.standins import FeatureService, Planner
 
 pytestmark = pytest.mark.usefixtures("map_store")
@@ -42,7 +43,7 @@ def test_a_raw_picture_is_localised_best_node_first(
     assert (frame.encoding, frame.width_px, frame.height_px) == ("bgr8", 256, 128)
     assert frame.data[2] > 190 > 20 > frame.data[0]  # red comes last
     question = features.matched[-1]
-    assert (question.map, question.best_k, question.with_matches) == ("flat", 24, False)
+    assert (question.map, question.best_k, question.with_matches) == ("flat", COMPARED_NODES, False)
     assert question.features is not None
 
 
