@@ -59,17 +59,22 @@ class LastMetre:
         self._leg_left -= observation.frame_share
         if heading_rad is None or self._leg_left < 0.0:
             return None
-        left_m = math.hypot(place.x_m - here.x_m, place.y_m - here.y_m)
+        left_m = self._left_m()
         if free_way_m(observation.ranges, heading_rad, self._profile) < min(left_m, REACHED_M):
             return None
         slow = min(1.0, max(SLOWEST, left_m))
         why = f"{left_m:.1f} m to where the photo was taken"
         return Decision("go", heading_rad, speed_fraction=slow, distance_m=left_m, method="map", why=why)
 
+    def _left_m(self) -> float:
+        return math.hypot(self._place.x_m - self._here.x_m, self._place.y_m - self._here.y_m)
+
     def _turn(self) -> Decision:
         off_rad = math.remainder(self._place.yaw_rad - self._here.yaw_rad, math.tau)
         told = f"{math.degrees(off_rad):.0f} degrees from the photo's direction"
+        left_m = self._left_m()
+        short = f"{left_m:.1f} m from " if left_m > REACHED_M else ""
         if abs(off_rad) <= FACED_RAD or self._turns_left <= 0:
-            return Decision("hold", why=f"where the photo was taken, {told}", outcome="succeeded")
+            return Decision("hold", why=f"{short}where the photo was taken, {told}", outcome="succeeded")
         self._turns_left -= 1
         return Decision("hold", face_rad=off_rad, why=f"turning: {told}")

@@ -47,6 +47,7 @@ def test_the_robot_goes_to_the_spot_and_turns_to_what_the_photo_shows(last_metre
     assert decisions[-1].outcome == ""
     turned = last_metre.decide(observed(Motion(0.0, 0.0, 0.98)))
     assert (turned.outcome, turned.face_rad) == ("succeeded", None)
+    assert turned.why.startswith("where the photo was taken")
 
 
 def test_where_nothing_free_leads_on_the_robot_turns_where_it_is(last_metre):
@@ -56,9 +57,10 @@ def test_where_nothing_free_leads_on_the_robot_turns_where_it_is(last_metre):
     assert last_metre.decide(observed(Motion())).action == "hold"
 
 
-def test_a_robot_that_comes_no_nearer_and_cannot_turn_ends_and_says_how_it_looks(last_metre):
+def test_a_robot_that_comes_no_nearer_and_cannot_turn_ends_and_says_where_it_is_and_how_it_looks(last_metre):
     decisions = [last_metre.decide(observed(Motion())) for _ in range(int(LEG_STEPS) + TURN_STEPS + 2)]
     ended = [one for one in decisions if one.outcome]
     assert {one.outcome for one in ended} == {"succeeded"}
     assert decisions.index(ended[0]) >= TURN_STEPS
-    assert "57 degrees from the photo's direction" in ended[0].why
+    told = "0.8 m from where the photo was taken, 57 degrees from the photo's direction"
+    assert {one.why for one in ended} == {told}
