@@ -20,7 +20,7 @@ log = logging.getLogger(__name__)
 STEP_S = 0.05
 """Between two steps when nothing wakes the loop; chosen: half the period of frames."""
 STATE_PERIOD_S = 1.0
-"""Between two reports on the camera; chosen."""
+"""Between two reports on the camera while nothing changes; chosen. What begins or ends is said at once."""
 REPEAT_S = 0.5
 """After which a frame of a stepped source that has no features yet is sent again, as the simulator does."""
 JOIN_S = 1.0
@@ -39,7 +39,7 @@ class Camera:
         self.reader = Reader(
             camera.opener(stop), self._name, stop, bus.wake, self._refuse, camera.kind.live, camera.stepped
         )
-        self._seq, self._due_s, self._state_s = 0, 0.0, 0.0
+        self._seq, self._due_s, self._state_s, self._told = 0, 0.0, 0.0, ""
         self._sent: Frame | None = None
         self._sent_s, self._answered, self._fault, self._fault_s = 0.0, True, "", -math.inf
 
@@ -49,8 +49,10 @@ class Camera:
             self._step_on(now_s)
         elif now_s >= self._due_s:
             self._send_next(now_s)
-        if now_s - self._state_s >= STATE_PERIOD_S:
-            self._state_s = now_s
+        problem = self.reader.status().problem
+        # A stream that breaks is open again after half a second: one report a second would miss many.
+        if problem != self._told or now_s - self._state_s >= STATE_PERIOD_S:
+            self._told, self._state_s = problem, now_s
             self._states.put(self._state(now_s))
 
     def _step_on(self, now_s: float) -> None:

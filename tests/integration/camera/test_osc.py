@@ -52,8 +52,9 @@ def test_a_camera_whose_mode_somebody_changes_is_changed_back(pictures, serve, l
     with OscCamera(pictures) as camera:
         serve(camera.url)
         listener.frame()
+        listener.until(lambda s: s.problem == "")
         camera.touch("video")
-        listener.until(lambda s: s.problem != "")
+        listener.until(lambda s: s.problem == "the stream ended")
         listener.until(lambda s: s.problem == "" and s.rate_hz > 1.0)
         assert camera.mode == "image"
         assert camera.previews == 2
