@@ -97,6 +97,7 @@ class MissionControl:
             decision = Decision("hold", why=why, outcome="failed", failure="timeout")
         else:
             decision = self._mission.decide(observation)
+            self._keep_checkpoint(self._mission.progress)
             decision = at_speed(decision, self.map.graph, self._mission.progress.nearest_node, self._profile)
         self.step_count += 1
         self._reason = decision.why
@@ -248,7 +249,9 @@ class MissionControl:
     def _make(self, record: MissionRecord, maps: RemoteMap, matcher: RemoteMatcher) -> Mission:
         rng = np.random.default_rng(record.seed)
         whereabouts = self._whereabouts.of(record.map)
-        context = MissionContext(self._profile, maps, matcher, rng, record.goal, whereabouts)
+        context = MissionContext(
+            self._profile, maps, matcher, rng, record.goal, whereabouts, record.checkpoint
+        )
         mission = self._kinds[record.action].start(context, _parameters(record))
         self._whereabouts = whereabouts
         return mission
@@ -278,6 +281,14 @@ class MissionControl:
         )
         how = {"ended_action": self._record.action, "outcome": state, "failure": failure}
         self._save(ended.model_copy(update={**how, "reason": reason[:400]}))
+
+    def _keep_checkpoint(self, progress: Progress) -> None:
+        """What a mission has done is on record before the robot does what comes next."""
+        checkpoint = dict(progress.checkpoint)
+        if checkpoint != self._record.checkpoint:
+            record = self._record.model_copy(update={"checkpoint": checkpoint})
+            self._save(record)
+            self._record = record
 
     def _save(self, record: MissionRecord | None = None) -> None:
         request = MissionRecordRequest(action="save", record=record or self._record)

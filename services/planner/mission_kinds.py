@@ -8,7 +8,7 @@ here.
 import importlib.util
 import pkgutil
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -53,6 +53,7 @@ class MissionContext:
         goal: features of the picture that came with the request.
         rng: seeded by the request.
         whereabouts: where the mission before left the robot; None where nobody knows.
+        checkpoint: the last one of the same mission, where a planner before had got to; else empty.
     """
 
     profile: Profile
@@ -61,6 +62,7 @@ class MissionContext:
     rng: np.random.Generator
     goal: Features | None = None
     whereabouts: Whereabouts | None = None
+    checkpoint: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
+from pydantic import JsonValue
+
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.rules import Limits
 from shared.messages.features import Features
@@ -112,6 +114,7 @@ class Progress:
         travel: state of the travel machine, "" while the mission does not travel; travel_reason: of its last
             transition.
         figures: of this kind of mission, for its record.
+        checkpoint: what a planner that restarts needs to go on from here; kept whenever it changes.
     """
 
     via_points: tuple[int, ...] = ()
@@ -122,6 +125,7 @@ class Progress:
     travel: str = ""
     travel_reason: str = ""
     figures: Mapping[str, float | int | str | bool | None] = field(default_factory=dict)
+    checkpoint: Mapping[str, JsonValue] = field(default_factory=dict)
 
 
 class Mission(Protocol):

@@ -192,6 +192,7 @@ class MissionRecord(Message):
     Attributes:
         action: kind of mission; "" once it has ended: then `ended_action` says what it was, `outcome` and
             what follows how.
+        checkpoint: how far it has got, in words of its kind.
     """
 
     SCHEMA: ClassVar[str] = "mission_record.v1"
@@ -202,6 +203,7 @@ class MissionRecord(Message):
     action: KindName = ""
     map: Name = "default"
     parameters: Parameters = Field(default_factory=dict)
+    checkpoint: Parameters = Field(default_factory=dict)
     goal: Features | None = None
     goal_node: int | None = None
     seed: int = 0

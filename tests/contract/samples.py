@@ -126,6 +126,7 @@ def mission() -> maps.MissionRecord:
         action="goto",
         map="flat",
         parameters={"rounds": 2, "places": ["dock", "door"]},
+        checkpoint={"visit": 3},
         goal=features(),
         goal_node=4,
         seed=1,

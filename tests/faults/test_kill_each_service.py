@@ -5,15 +5,16 @@ import threading
 import time
 from contextlib import suppress
 
+import httpx
 import pytest
 
 from services.launcher.processes.wait import LaunchError
 from shared.bus import wait_until
 from shared.messages.features import ExtractRequest
-from shared.messages.missions import MissionRequest
-from shared.topics import EXTRACT
+from shared.messages.missions import Event, MissionRequest
+from shared.topics import EVENT, EXTRACT
 from tests.e2e.near_node import hiding_place_near_a_node
-from tests.faults.watching import MOVES_S, TRIES, Watch
+from tests.faults.watching import MOVES_S, TRIES, Watch, ask
 
 pytestmark = [
     pytest.mark.render,
@@ -124,3 +125,31 @@ def test_a_restarted_simulator_is_a_robot_put_elsewhere_and_the_mission_complete
     assert killer.healthy_s <= BACK_S
     assert played.run.succeeded, played.run.status.reason
     assert played.distance_m <= 0.5
+
+
+def test_a_patrol_makes_each_visit_once_whatever_dies_right_after_one(real_time):
+    stack, names = real_time.stack, ["start", "middle", "end"]
+    nodes = sorted(node.node_id for node in real_time.result.graph.nodes)
+    for name, node in zip(names, (nodes[0], nodes[len(nodes) // 2], nodes[-1]), strict=True):
+        place = {"name": name, "nodes": [node]}
+        httpx.put(
+            f"{stack.gateway_url}/api/maps/small/places", json=place, trust_env=False
+        ).raise_for_status()
+    events, visits = stack.bus.subscribe(EVENT, robot=stack.robot), []
+
+    def made(count):
+        found: list[Event] = events.take_all()
+        visits.extend(
+            value.value for e in found if e.kind == "visited" for value in e.values if value.name == "visit"
+        )
+        return len(visits) >= count
+
+    real_time.game.begin(seed=1)
+    ask(stack, action="patrol", map="small", parameters={"places": names, "rounds": 2}, max_steps=5000)
+    for count, service in enumerate(("planner", "map-store", "planner", "features", "drive"), start=1):
+        assert wait_until(lambda count=count: made(count), PATIENCE_S), visits
+        stack.launcher.kill(service)
+    assert wait_until(lambda: made(6), PATIENCE_S), visits
+    assert visits == [0, 1, 2, 3, 4, 5]
+    assert wait_until(lambda: ask(stack, action="status").state == "succeeded", PATIENCE_S)
+    assert ask(stack, action="status").reason == "all 6 visits made"

@@ -14,6 +14,11 @@ from services.mcp.tools.photos import Photo, picture_of
 SENDS = ToolAnnotations(read_only_hint=False, destructive_hint=False, idempotent_hint=False)
 
 PlaceName = Annotated[str, Field(max_length=64, description="as `list_places` has it")]
+PlaceNames = Annotated[
+    list[PlaceName], Field(min_length=1, max_length=64, description="in the order of visits")
+]
+Rounds = Annotated[int, Field(ge=1, le=1000, description="how often all of them")]
+Dwell = Annotated[float, Field(ge=0.0, le=3600.0, description="seconds to stay at each place")]
 Node = Annotated[int | None, Field(ge=0, lt=2**63, description="a node of the map")]
 Steps = Annotated[int, Field(ge=1, le=20_000, description="give up after so many pictures")]
 Seed = Annotated[int, Field(ge=0, lt=2**63, description="of every random draw")]
@@ -38,3 +43,15 @@ def add_sending(server: MCPServer[Any], gateway: Gateway) -> None:
     async def explore(max_steps: Steps = 5000, seed: Seed = 0) -> Mission:
         """Start exploring what the map does not show yet. Then `wait`, again and again: it takes long."""
         return Mission.of(await gateway.start("explore", {}, seed, max_steps))
+
+    @server.tool(annotations=SENDS)
+    async def patrol(
+        places: PlaceNames,
+        rounds: Rounds = 1,
+        dwell_s: Dwell = 0.0,
+        max_steps: Steps = 20_000,
+        seed: Seed = 0,
+    ) -> Mission:
+        """Start driving from place to place; what cannot be reached is left out and told. Then `wait`."""
+        wish = {"places": places, "rounds": rounds, "dwell_s": dwell_s}
+        return Mission.of(await gateway.start("patrol", wish, seed, max_steps))

@@ -67,6 +67,27 @@ def test_a_place_named_by_command_is_driven_to_by_name_and_home_too(
     assert mission["state"] == "succeeded", mission["reason"]
 
 
+def test_a_patrol_by_command_visits_places_in_rounds_and_leaves_out_what_is_forbidden(
+    http: httpx.Client, explored: Explored
+) -> None:
+    explored.game.begin(seed=1)
+    for node, name in enumerate(("Kitchen", "Bath", "Lab")):
+        http.put(f"/api/maps/{MAP}/places", json={"name": name, "nodes": [node]}).raise_for_status()
+    figures = explored.data_dir / "patrol.json"
+    wish = ("mission", "start", "patrol", "--map", MAP, "--set", "rounds=2", "--json", str(figures))
+    whole = topnav(explored, *wish, "--set", 'places=["kitchen", "bath"]')
+    assert whole.returncode == 0, whole.stderr
+    report = json.loads(figures.read_text())
+    assert (report["visited"], report["missed"], report["reason"]) == (4, 0, "all 4 visits made")
+    begun = start(http, explored, action="patrol", parameters={"places": ["bath", "lab"], "dwell_s": 5.0})
+    assert begun.status_code == 202, begun.text
+    rule = {"kind": "keep_out", "name": "no robots here", "nodes": [2]}
+    http.put(f"/api/maps/{MAP}/rules", json=rule).raise_for_status()
+    mission = ended(http, explored, begun.json()["mission_id"])
+    assert (mission["state"], mission["failure"]) == ("failed", "forbidden")
+    assert mission["reason"] == "1 of 2 visits made, missed: lab (forbidden)"
+
+
 def test_a_forbidden_goal_is_refused_by_the_name_of_the_rule_until_it_is_lifted(
     http: httpx.Client, explored: Explored
 ) -> None:

@@ -17,7 +17,7 @@ from tests.integration.mcp.conftest import ByHttp, by_stdio, during
 TOOLS = {
     *("look", "where_am_i", "locate", "how_is_it"),
     *("list_places", "name_place"),
-    *("go_to", "explore", "wait", "cancel", "stop"),
+    *("go_to", "explore", "patrol", "wait", "cancel", "stop"),
 }
 
 

@@ -74,7 +74,7 @@ def test_a_file_of_ones_own_is_one_more_kind(tmp_path, context):
 @pytest.mark.parametrize(
     ("name", "values", "words"),
     [
-        ("patrol", {}, r"unknown mission 'patrol', this planner knows explore, goto"),
+        ("dance", {}, r"unknown mission 'dance', this planner knows explore, goto"),
         ("explore", {"speed": 3}, "parameters of explore: speed"),
         ("goto", {"goal_node": "kitchen"}, "parameters of goto: goal_node"),
         ("goto", {}, "exactly one of them"),
