@@ -47,6 +47,7 @@ class MissionControl:
         self._known = MapGraph()
         self._whereabouts = Whereabouts()
         self.step_count = 0
+        self._got_on_at = 0
 
     @property
     def epoch(self) -> int:
@@ -92,7 +93,7 @@ class MissionControl:
         self._matcher.begin(observation.features.seq, observation.features.stamp_ns)
         if (lost := self._notice_lost_nodes()) is not None:
             decision = lost
-        elif self.step_count >= self._record.max_steps:
+        elif self.step_count - self._got_on_at >= self._record.max_steps:
             why = f"not done within {self._record.max_steps} steps"
             decision = Decision("hold", why=why, outcome="failed", failure="timeout")
         else:
@@ -237,6 +238,7 @@ class MissionControl:
         self._begin(record, create=self._kinds[record.action].makes_map)
         self._save()
         self.state, self._failure, self._reason, self.step_count = "running", "", "started", 0
+        self._got_on_at = 0
 
     def _begin(self, record: MissionRecord, *, create: bool) -> None:
         """Take up a mission; one that cannot be leaves everything as it was."""
@@ -289,6 +291,7 @@ class MissionControl:
             record = self._record.model_copy(update={"checkpoint": checkpoint})
             self._save(record)
             self._record = record
+            self._got_on_at = self.step_count  # a round without an end may take as long as it gets on
 
     def _save(self, record: MissionRecord | None = None) -> None:
         request = MissionRecordRequest(action="save", record=record or self._record)

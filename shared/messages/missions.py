@@ -53,6 +53,7 @@ class MissionRequest(Message):
         parameters: of the kind.
         goal: features of a goal picture, for kinds that take one.
         goal_node: the parameter of that name, from senders that know no parameters.
+        max_steps: frames after which it is given up; of a kind with checkpoints, frames since the last one.
     """
 
     SCHEMA: ClassVar[str] = "mission_request.v1"

@@ -18,7 +18,7 @@ PlaceNames = Annotated[
     list[PlaceName], Field(min_length=1, max_length=64, description="in the order of visits")
 ]
 Rounds = Annotated[int, Field(ge=1, le=1000, description="how often all of them")]
-Dwell = Annotated[float, Field(ge=0.0, le=3600.0, description="seconds to stay at each place")]
+Dwell = Annotated[float, Field(ge=0.0, le=600.0, description="seconds to stay at each place")]
 Node = Annotated[int | None, Field(ge=0, lt=2**63, description="a node of the map")]
 Steps = Annotated[int, Field(ge=1, le=20_000, description="give up after so many pictures")]
 Seed = Annotated[int, Field(ge=0, lt=2**63, description="of every random draw")]

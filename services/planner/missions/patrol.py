@@ -26,7 +26,7 @@ class PatrolParameters(BaseModel):
         min_length=1, max_length=64, description="Names of places, in the order of the round."
     )
     rounds: int = Field(default=1, ge=0, le=100_000, description="0: until it is cancelled.")
-    dwell_s: float = Field(default=0.0, ge=0.0, le=86_400.0, description="Stay at each place so long.")
+    dwell_s: float = Field(default=0.0, ge=0.0, le=600.0, description="Stay at each place so long.")
 
 
 class Missed(BaseModel):

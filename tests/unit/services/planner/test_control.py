@@ -208,3 +208,15 @@ def test_a_mission_that_ended_leaves_no_checkpoint_to_the_next():
     control.handle(MissionRequest(action="count", map="flat"))
     frames(control, 2)
     assert store.record.checkpoint == {"count": 1}
+
+
+def test_a_mission_that_gets_on_may_take_longer_than_one_that_does_not():
+    store = Store(MissionRecord(robot="r1", epoch=4, mission_id="m", map="flat"))
+    control = counting_control(store)
+    control.handle(MissionRequest(action="count", map="flat", max_steps=3))
+    frames(control, 20)
+    assert control.state == "running"
+    control.handle(MissionRequest(action="cancel"))
+    control.handle(MissionRequest(action="count", map="flat", max_steps=1))
+    frames(control, 2)
+    assert (control.state, control.status().failure) == ("failed", "timeout")
