@@ -98,8 +98,9 @@ class MissionControl:
             decision = Decision("hold", why=why, outcome="failed", failure="timeout")
         else:
             decision = self._mission.decide(observation)
-            self._keep_checkpoint(self._mission.progress)
-            decision = at_speed(decision, self.map.graph, self._mission.progress.nearest_node, self._profile)
+            progress = self._mission.progress
+            self._keep_checkpoint(progress)
+            decision = at_speed(decision, self.map.graph, progress.nearest_node, self._profile)
         self.step_count += 1
         self._reason = decision.why
         if decision.outcome:
@@ -213,8 +214,7 @@ class MissionControl:
         try:
             self._mission = self._make(self._record, self.map, self._matcher)
         except MissionError as error:
-            kind: FailureKind = "forbidden" if error.code == "forbidden" else "goal_not_in_map"
-            return Decision("hold", why=f"{why}: {error}", outcome="failed", failure=kind)
+            return Decision("hold", why=f"{why}: {error}", outcome="failed", failure=error.failure)
         log.info("%s: planning anew", why)
         self._known = self.map.graph
         return None

@@ -22,7 +22,7 @@ from services.planner.ports import MapAccess, Matcher, Mission
 from services.planner.profiles import Profile
 from services.planner.travel.whereabouts import Whereabouts
 from shared.messages.features import Features
-from shared.messages.missions import CONTROLS, MissionKindInfo
+from shared.messages.missions import CONTROLS, FailureKind, MissionKindInfo
 
 P = TypeVar("P", bound=BaseModel)
 
@@ -37,6 +37,11 @@ class MissionError(ValueError):
     def __init__(self, text: str, code: str = "invalid") -> None:
         super().__init__(text)
         self.code = code
+
+    @property
+    def failure(self) -> FailureKind:
+        """How a mission under way ends that meets it: its goal is forbidden, or not there any more."""
+        return "forbidden" if self.code == "forbidden" else "goal_not_in_map"
 
 
 class NoParameters(BaseModel):

@@ -297,6 +297,12 @@ class Goto:
         return replace(decision, outcome="succeeded") if travel.state is State.ARRIVED else decision
 
 
+def goto_place(context: MissionContext, name: str) -> Goto:
+    """To the place of a name; MissionError where there is none that the rules allow."""
+    goal = context.maps.features_of(node_called(context.maps, name))
+    return Goto(context.profile, context.maps, context.matcher, goal, context.whereabouts)
+
+
 def _make(context: MissionContext, parameters: GotoParameters) -> Mission:
     node_id, place = parameters.goal_node, parameters.place
     if sum(given is not None for given in (context.goal, node_id, place)) != 1:

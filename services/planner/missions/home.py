@@ -1,8 +1,7 @@
 """Mission home: drive to the place of that name, wherever people put it."""
 
-from services.planner.goal_nodes import node_called
 from services.planner.mission_kinds import MissionContext, MissionError, MissionKind, NoParameters
-from services.planner.missions.goto import Goto
+from services.planner.missions.goto import Goto, goto_place
 from shared.messages.places import key_of
 
 HOME = "home"
@@ -14,8 +13,7 @@ def _make(context: MissionContext, _parameters: NoParameters) -> Goto:
             f"the map has no place {HOME!r}: give its node that name ('topnav place name {HOME} NODE')",
             "missing",
         )
-    goal = context.maps.features_of(node_called(context.maps, HOME))
-    return Goto(context.profile, context.maps, context.matcher, goal, context.whereabouts)
+    return goto_place(context, HOME)
 
 
 KIND = MissionKind(

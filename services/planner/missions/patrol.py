@@ -1,14 +1,14 @@
 """Mission patrol: drive from place to place, in rounds, and say which were missed."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import partial
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from services.planner.goal_nodes import node_called
 from services.planner.mission_kinds import MissionContext, MissionError, MissionKind
-from services.planner.missions.goto import Goto
+from services.planner.missions.goto import goto_place
 from services.planner.ports import Decision, Mission, Note, Observation, Progress
 from shared.messages.missions import FailureKind
 from shared.messages.places import PlaceName
@@ -109,7 +109,7 @@ class Patrol:
             try:
                 self._leg = self._travel_to(self._place)
             except MissionError as error:
-                return self._miss(_failure_of(error), str(error))
+                return self._miss(error.failure, str(error))
         decision = self._leg.decide(observation)
         if decision.outcome == "succeeded":
             return self._arrive(observation, decision)
@@ -165,23 +165,11 @@ class Patrol:
         return Decision("hold", why=why, outcome="failed", failure=missed[0].failure)
 
 
-def _failure_of(error: MissionError) -> FailureKind:
-    return "forbidden" if error.code == "forbidden" else "goal_not_in_map"
-
-
 def _make(context: MissionContext, parameters: PatrolParameters) -> Patrol:
     for name in parameters.places:
         node_called(context.maps, name)
-
-    def travel_to(name: str) -> Goto:
-        goal = context.maps.features_of(node_called(context.maps, name))
-        return Goto(context.profile, context.maps, context.matcher, goal, context.whereabouts)
-
-    return Patrol(parameters, travel_to, _begun(context.checkpoint))
-
-
-def _begun(kept: Mapping[str, Any]) -> Checkpoint | None:
-    return Checkpoint.model_validate(kept) if kept else None
+    begun = Checkpoint.model_validate(context.checkpoint)
+    return Patrol(parameters, partial(goto_place, context), begun)
 
 
 KIND = MissionKind(
