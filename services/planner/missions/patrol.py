@@ -166,8 +166,9 @@ class Patrol:
 
 
 def _make(context: MissionContext, parameters: PatrolParameters) -> Patrol:
-    for name in parameters.places:
-        node_called(context.maps, name)
+    if not context.checkpoint:  # one that has begun leaves out what is gone or forbidden by now
+        for name in parameters.places:
+            node_called(context.maps, name)
     begun = Checkpoint.model_validate(context.checkpoint)
     return Patrol(parameters, partial(goto_place, context), begun)
 

@@ -121,6 +121,15 @@ def test_a_planner_that_takes_over_goes_on_with_the_place_under_way(free):
     assert second.visits == [("visited", "door", ["door"])]
 
 
+def test_a_planner_that_takes_over_leaves_out_what_was_forbidden_meanwhile(free):
+    kept = free.patrol(places=PLACES).progress.checkpoint
+    free.maps.commit([PutRule(rule=KeepOut(name="wet floor", nodes=(free.nodes["bath"],)))])
+    decision, _ = run(free.world, free.patrol(checkpoint=kept, places=PLACES), DriveLimits(), 5000)
+    assert decision.why == "2 of 3 visits made, missed: bath (forbidden)"
+    with pytest.raises(MissionError, match="forbidden by rule 'wet floor'"):
+        free.patrol(places=PLACES)
+
+
 @pytest.mark.parametrize(
     ("parameters", "words"),
     [
