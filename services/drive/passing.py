@@ -25,6 +25,11 @@ PREFERENCE_RAD = math.radians(50.0)
 """So much easier must the other side be to be taken; chosen: five of the directions that are tried."""
 JUMP_RAD = math.radians(60.0)
 """A wish that changes this much between two steps is for another destination (chosen, decision 0005)."""
+ONWARD_RAD = math.radians(100.0)
+"""Deflection up to which the robot still goes on or aside; chosen: beyond a right angle it goes back."""
+SQUEEZE_SHARE = 0.5
+"""Share of the look-ahead that is enough for going on or aside, where only the way back has all of it: a gap
+of 0.82 m beside an open leaf begins a step aside; chosen: two steps."""
 FULL_TURN_RAD = 2.0 * math.pi
 SPOT_M_PER_RAD = 0.1
 """A robot that goes less than this for each radian that it turns, turns on the spot; chosen: a quarter of the
@@ -149,7 +154,10 @@ def steer_past(
     offsets_rad = np.arange(first_rad, first_rad + FULL_TURN_RAD, STEP_RAD)
     headings_rad = wished_rad + side * offsets_rad
     clearances_m = obstacles.clearance_m(headings_rad, radius_m)
-    chosen = _first_free(clearances_m, lookahead_m, limits.lookahead_min_m)
+    onward_m = clearances_m[offsets_rad <= ONWARD_RAD]
+    chosen = _first_free(onward_m, lookahead_m, SQUEEZE_SHARE * lookahead_m)
+    if chosen is None:
+        chosen = _first_free(clearances_m, lookahead_m, limits.lookahead_min_m)
     if chosen is None:
         return Steering(wished_rad, True, "no free direction", 0.0, True), replace(memory, side=side)
     deflection_rad = float(offsets_rad[chosen])

@@ -72,6 +72,31 @@ def test_a_dead_end_is_left_without_help():
     assert math.dist(path[-1], (2.5, 0.2)) < 0.15
 
 
+def beams(points):
+    """What twelve sensors with beams of 30 degrees read of points around."""
+    bearings, apart_m = np.arctan2(points[:, 1], points[:, 0]), np.hypot(*points.T)
+    axes = np.arange(12) * math.tau / 12
+    within = np.abs(np.angle(np.exp(1j * (bearings - axes[:, None])))) <= math.radians(15.0)
+    return Obstacles.from_ranges(axes, np.where(within, apart_m, 4.0).min(axis=1), 4.0)
+
+
+@pytest.mark.parametrize("y_m", [0.5, 0.8, 1.0, 1.3, 1.6])
+def test_a_gap_little_wider_than_the_robot_is_driven_through_beside_an_open_leaf(y_m):
+    """A corridor 2 m wide, of which the leaf leaves 0.82 m: a robot that only meets it must step aside."""
+    along = np.arange(-1.0, 6.0, 0.03)
+    sides = [np.stack([along, np.full(len(along), y)], axis=-1) for y in (0.0, 2.0)]
+    points = np.concatenate([*sides, wall(2.9, 0.0, 1.18), wall(2.95, 0.0, 1.18)])
+    at, goal, memory = np.array([0.5, y_m]), np.array([4.5, 1.0]), Passing()
+    for _ in range(60):
+        left = goal - at
+        if np.hypot(*left) < 0.3:
+            return
+        steering, memory = steer_past(math.atan2(left[1], left[0]), beams(points - at), memory, 0.5, LIMITS)
+        at = at + 0.12 * np.array([math.cos(steering.heading_rad), math.sin(steering.heading_rad)])
+        assert np.hypot(*(points - at).T).min() > 0.25, "touched something"
+    pytest.fail(f"still at {at}")
+
+
 def test_the_side_is_kept_while_the_border_lasts():
     memory = Passing()
     sides = set()

@@ -51,6 +51,11 @@ class Flat:
             self.maps.commit([PutRule(rule=KeepOut(name=f"rule {number}", areas=(f"area {number}",)))])
         return set(self.maps.limits().forbidden)
 
+    def furthest(self):
+        """The node furthest from the robot."""
+        poses = self.maps.poses
+        return max(poses, key=lambda n: math.dist(poses[n][:2], self.world.pose[:2]))
+
     def nearest_m(self, path, nodes):
         """How near a way came to any of some nodes."""
         return min(math.dist(p[:2], self.maps.poses[n][:2]) for p in path for n in nodes)
@@ -152,7 +157,7 @@ def test_a_robot_that_stands_in_an_area_stays_there_and_says_so(explored):
 
 def test_a_rule_set_while_the_robot_drives_stops_it_before_the_area(free):
     here = free
-    goal, path = here.maps.poses[9], []
+    goal, path = here.maps.poses[here.furthest()], []
     mission = Goto(DEFAULT, here.maps, here.matcher, picture(goal))
     run(here.world, mission, DriveLimits(), 10, path)
     ahead = mission._travel._follower.path
@@ -185,7 +190,7 @@ def speeds(here, goal):
 
 
 def test_slow_edges_are_driven_slowly_until_the_rule_is_lifted(free):
-    goals = [free.maps.poses[node] for node in (12, 56)]
+    goals = [free.maps.poses[free.furthest()], free.world.pose]
     free.maps.commit([PutRule(rule=Slow(name="wet", edges=tuple(free.maps.graph.edges), speed_share=0.25))])
     for goal, share in zip(goals, (0.25, 1.0), strict=True):
         told = speeds(free, goal)
