@@ -76,6 +76,10 @@ class FrameCache:
         kept = self._kept.get(seq)
         return kept[1] if kept is not None else None
 
+    def is_ahead(self, seq: int) -> bool:
+        """Whether the frame with this number would be newer than all that came."""
+        return self._last is None or seq > self._last.seq
+
     def span(self) -> str:
         """Numbers kept, for an error text."""
         return f"{next(iter(self._kept))} to {next(reversed(self._kept))}" if self._kept else "none"

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Self
 
+from services.features.early_questions import EarlyQuestions
 from services.features.frame_cache import FrameCache
 from services.features.map_features.map_cache import CachedMap
 from shared.bus import Bus, Inbox, Publisher, Requests
@@ -36,6 +37,7 @@ class RobotStreams:
     frames: Inbox[Frame]
     features: Publisher[Features]
     matches: Requests[MatchRequest, MatchReply]
+    early: EarlyQuestions
     kept: FrameCache
     answered: Answered
 
@@ -46,6 +48,7 @@ class RobotStreams:
             frames=bus.subscribe(FRAME, robot=robot),
             features=bus.publisher(FEATURES, robot=robot),
             matches=bus.requests(MATCH, robot=robot),
+            early=EarlyQuestions(),
             kept=FrameCache(frames_kept),
             answered=Answered(),
         )

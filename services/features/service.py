@@ -56,7 +56,9 @@ class FeatureService:
         self._maps.follow()
         if (frame := robot.frames.take()) is not None:
             self._on_frame(robot, frame)
-        if (match := robot.matches.take()) is not None:
+        for early in robot.early.due(robot.kept):
+            self._on_match(robot, early)
+        if (match := robot.matches.take()) is not None and not robot.early.keep(match, robot.kept):
             self._on_match(robot, match)
         if (picture := self._extracts.take()) is not None:
             self._on_extract(picture)
@@ -139,8 +141,9 @@ def _current(robot: RobotStreams, request: MatchRequest) -> Features:
         return request.features
     features = robot.kept.get(request.seq)
     if features is None:
+        what = "has not come" if robot.kept.is_ahead(request.seq) else "is not kept"
         raise FrameNotKeptError(
-            f"frame {request.seq} is not kept (kept: {robot.kept.span()}): ask about a newer one"
+            f"frame {request.seq} {what} (kept: {robot.kept.span()}): ask about the newest one"
         )
     return features
 

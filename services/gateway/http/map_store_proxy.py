@@ -23,13 +23,15 @@ SENT_ON = ("accept", "content-type", "if-match", "if-none-match", AUTHOR)
 SENT_BACK = ("content-type", "content-length", "content-disposition", "etag", "cache-control", "location")
 MAX_PROBLEM_BYTES = 64_000
 """Of an error's body that may be passed back; the store's own have one."""
-TIMEOUTS = httpx.Timeout(10.0, connect=2.0)
-"""Seconds; chosen: twice what a question on the bus may take, GATEWAY_ASK_TIMEOUT_S."""
-STREAM_TIMEOUTS = httpx.Timeout(120.0, connect=2.0)
+TIMEOUTS = httpx.Timeout(10.0, connect=5.0)
+"""Seconds; chosen: twice what a question on the bus may take, GATEWAY_ASK_TIMEOUT_S; a machine that renders
+and matches on all its cores was seen to stand still for two."""
+STREAM_TIMEOUTS = httpx.Timeout(120.0, connect=5.0)
 """Seconds; chosen: the store answers an import once all of an archive is written."""
 KEPT = httpx.Limits(max_connections=100, max_keepalive_connections=20, keepalive_expiry=2.0)
 """A connection is given up before the map store, which keeps one for five seconds, ends it: a request sent on
 it at that moment would be lost."""
+READING = ("GET", "HEAD")
 LEAST_BYTES_PER_S = 50_000
 """Of an archive on its way in: the longest one, GATEWAY_MAX_IMPORT_BYTES, takes three hours at it."""
 
@@ -106,13 +108,23 @@ async def _answer(gateway: Gateway, wish: httpx.Request) -> Response:
 
 async def _send(store: httpx.AsyncClient, wish: httpx.Request) -> httpx.Response:
     try:
-        return await store.send(wish, stream=True)
+        return await _sent(store, wish)
     except (httpx.ConnectError, httpx.ConnectTimeout, httpx.RemoteProtocolError, httpx.WriteError) as error:
         raise absent("map_store", f"the map store at {store.base_url}", _name(error)) from error
     except httpx.TimeoutException as error:
         raise slow("map_store", "an answer of the map store", _name(error)) from error
     except httpx.HTTPError as error:
         raise _nonsense(_name(error)) from error
+
+
+async def _sent(store: httpx.AsyncClient, wish: httpx.Request) -> httpx.Response:
+    """Reading is asked once more where the connection was ended as the question went out."""
+    try:
+        return await store.send(wish, stream=True)
+    except (httpx.RemoteProtocolError, httpx.WriteError):
+        if wish.method not in READING:
+            raise
+    return await store.send(wish, stream=True)
 
 
 async def _problem(answer: httpx.Response) -> Response:

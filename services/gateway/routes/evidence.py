@@ -20,7 +20,7 @@ from shared.web.problems import ProblemError
 router = APIRouter(tags=["evidence"])
 
 LIVE_TRIES, LIVE_PAUSE_S = 5, 0.1
-"""The feature service may not have the newest frame yet, or have dropped it for a newer one; chosen."""
+"""The feature service may have dropped the newest frame for a newer one; chosen."""
 
 
 class Matches(NodeAnswer):

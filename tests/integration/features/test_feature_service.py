@@ -1,11 +1,13 @@
 """The feature service on a real bus: frames in, features out, questions answered or refused."""
 
 import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import cv2
 import numpy as np
 import pytest
 
+from services.features import early_questions
 from services.features.map_features.map_reader import PIECE
 from shared.bus import Bus, wait_until
 from shared.messages.features import ExtractRequest, Features
@@ -139,10 +141,31 @@ def test_the_same_question_has_the_same_answer(bus: Bus, store) -> None:
 
 
 @pytest.mark.usefixtures("service", "store")
+def test_a_question_that_comes_before_its_frame_is_answered_with_it(bus: Bus, monkeypatch) -> None:
+    monkeypatch.setattr(early_questions, "EARLY_S", ANSWER_S)
+    with ThreadPoolExecutor() as pool:
+        early = pool.submit(match, bus, seq=9, best_k=1)
+        missed = pool.submit(match, bus, seq=8, best_k=1)
+        assert not wait_until(lambda: early.done() or missed.done(), timeout_s=1.0)
+        send_until_features(bus, frame_at(0.0, 0.0, seq=9))
+        assert early.result(ANSWER_S).seq == 9
+        with pytest.raises(RefusedError, match="frame 8 is not kept"):
+            missed.result(ANSWER_S)
+
+
+@pytest.mark.usefixtures("service", "store")
+def test_a_question_whose_frame_does_not_come_is_refused(bus: Bus) -> None:
+    with pytest.raises(RefusedError, match=r"frame 5 has not come \(kept: none\)") as refused:
+        match(bus, seq=5, best_k=1)
+    assert refused.value.code == "passing"
+
+
+@pytest.mark.usefixtures("service", "store")
 def test_what_cannot_be_answered_is_refused_with_the_reason(bus: Bus) -> None:
     current = extract(bus, frame_at(0.0, 0.0))
     foreign = current.model_copy(update={"pipeline": "orb-equirectangular-150"})
-    with pytest.raises(RefusedError, match="frame 5 is not kept") as gone:
+    send_until_features(bus, frame_at(0.0, 0.0, seq=9))
+    with pytest.raises(RefusedError, match=r"frame 5 is not kept \(kept: 9 to 9\)") as gone:
         match(bus, seq=5, best_k=1)
     assert gone.value.code == "passing"
     with pytest.raises(RefusedError, match="map 'cellar' is not known to the map store"):

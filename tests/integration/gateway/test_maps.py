@@ -1,5 +1,9 @@
 """Maps through the gateway: paths, bodies, files and problems of the map store unchanged."""
 
+import socket
+import threading
+from contextlib import suppress
+
 import httpx
 import pytest
 
@@ -82,6 +86,43 @@ def test_a_store_that_is_down_is_a_missing_service(endpoint: str) -> None:
         assert answer.status_code == 503
         assert answer.json()["service"] == "map_store"
         assert answers(address)
+
+
+class HangsUp(threading.Thread):
+    """A map store that ends its first connection as a request comes, and answers on the next ones."""
+
+    def __init__(self) -> None:
+        super().__init__(daemon=True)
+        self.listening = socket.create_server(("127.0.0.1", 0))
+        self.asked: list[bytes] = []
+
+    def run(self) -> None:
+        with suppress(OSError):
+            while True:
+                with self.listening.accept()[0] as caller:
+                    self.asked.append(caller.recv(65536).split(b" ", 1)[0])
+                    if len(self.asked) > 1:
+                        caller.sendall(b"HTTP/1.1 200 OK\r\nContent-Length: 2\r\nConnection: close\r\n\r\n[]")
+
+
+@pytest.mark.parametrize(
+    ("method", "status", "asked"),
+    [
+        pytest.param("GET", 200, [b"GET", b"GET"], id="reading is asked again"),
+        pytest.param("DELETE", 503, [b"DELETE"], id="changing is not"),
+    ],
+)
+def test_a_connection_that_the_store_ends_as_it_is_asked(
+    endpoint: str, method: str, status: int, asked: list[bytes]
+) -> None:
+    store = HangsUp()
+    store.start()
+    for address in serve_gateway(
+        endpoint, map_store_url=f"http://127.0.0.1:{store.listening.getsockname()[1]}"
+    ):
+        answer = httpx.request(method, f"{address}/api/maps/flat", trust_env=False, timeout=WAIT_S)
+        assert (answer.status_code, store.asked) == (status, asked), answer.text
+    store.listening.close()
 
 
 def test_an_import_beyond_the_limit_is_refused(endpoint: str, stored: Stored) -> None:

@@ -31,6 +31,11 @@ def test_only_the_newest_are_kept(cache):
     assert cache.span() == "7 to 9"
 
 
+def test_only_a_frame_newer_than_all_is_ahead(cache):
+    assert [seq for seq in range(4, 12) if cache.is_ahead(seq)] == [10, 11]
+    assert FrameCache(capacity=3).is_ahead(0)
+
+
 @pytest.mark.parametrize("lockstep", [True, False])
 def test_the_same_picture_is_sent_again_without_work(cache, lockstep):
     key = FrameKey(9, 900, 0)
