@@ -87,7 +87,7 @@ class MappingRules(_Rules):
     edge_window: NonNegativeInt = 0
     explored: ExploredRules = ExploredRules()
     covers_m: float | None = Field(default=None, ge=0.0)
-    gain_min: float = Field(default=0.1, ge=0.0, le=1.0)
+    gain_min: float = Field(default=0.15, ge=0.0, le=1.0)
     departure_m: PositiveFloat = 2.2  # the median S is below s_node_max after 1 m
     saturation_steps: PositiveInt = 5  # reading Q17 (decision 0012)
     exploration_noise_rad: float = math.radians(50.0)  # the thesis's 50, read as degrees (Q18)

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 
 from services.planner.mapping.edges import CONFIDENCE_MIN, NewEdges, judge_edges
 from services.planner.mapping.floor_gain import gain_here
+from services.planner.mapping.floor_views import FloorViews
 from services.planner.mapping.nodes import add_node, is_new_node
 from services.planner.mapping.reach import distances, elsewhere, in_reach, nodes_nearby
 from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.similarity import ranked, similarity, trusted
-from services.planner.surroundings import free_ways_m, hidden_openings, through_gap
+from services.planner.surroundings import hidden_openings, through_gap
 from shared.mapgraph.frontiers import mark_explored, sector_rad
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
@@ -76,8 +77,9 @@ class Departure:
         sector: int,
         heading_rad: float,
         start: Displacement,
+        views: FloorViews,
     ) -> None:
-        self._profile, self._maps, self._matcher = profile, maps, matcher
+        self._profile, self._maps, self._matcher, self._views = profile, maps, matcher, views
         self.node_id, self.sector, self.heading_rad = start.node_id, sector, heading_rad
         self.here = start
         self._steps = self._unseen_frames = self._unsure_frames = 0.0
@@ -104,6 +106,7 @@ class Departure:
         self.progress = Progress(nearest_node=best[0][0] if best else None, similarity=s_best)
         self.unseen = s_best <= rules.s_edge_min
         self._keep_course(matches.get(self.node_id))
+        self._views.add(self.here, observation.ranges)
         if self.unseen:
             return self._out_of_sight(s_best)
         if self._retreating or self._doorway(observation.ranges, matches):
@@ -111,8 +114,8 @@ class Departure:
         if is_new_node(matches, self._profile) and not self._is_crowded(matches):
             return self._new_or_known(observation, {**self._candidates(), **matches})
         if self._driven_m > rules.departure_m * self._view_carries(matches.get(self.node_id)):
-            free_m = free_ways_m(observation.ranges, self._profile)
-            if gain_here(self._maps.graph, self.here, free_m, self._profile) >= rules.gain_min:
+            gain = gain_here(self._maps.graph, self.here, observation.ranges, self._profile, self._views)
+            if gain >= rules.gain_min:
                 return self._new_node(observation, {**self._candidates(), **matches})
             return self._close("nothing new on the way")
         return self._straight_on(observation.ranges, s_best)
@@ -220,7 +223,7 @@ class Departure:
             )
         if self._is_on_course():
             self._mark_explored()
-        node_id, refused = add_node(self._maps, observation, edges, self._profile, self.here)
+        node_id, refused = add_node(self._maps, observation, edges, self._profile, self.here, self._views)
         count = len(self._maps.graph.neighbours(node_id))
         nearest, match = ranked(matches, self._profile)[0]
         values: dict[str, float | int | str | bool | None] = {

@@ -7,7 +7,9 @@ from functools import reduce
 import numpy as np
 import numpy.typing as npt
 
+from services.planner.mapping.floor_views import OCCLUDED, FloorViews
 from services.planner.profiles import Profile
+from services.planner.surroundings import free_ways_m
 from shared.mapgraph.frontiers import SECTOR_RAD, frontier_sectors, mark_explored, sector_rad
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
@@ -16,17 +18,18 @@ from shared.mapgraph.local.relative_poses import RelativePose, relative_poses
 from shared.mapgraph.local.view_range import edge_length_m, openness
 from shared.messages.base import SECTORS
 from shared.messages.maps import Node
+from shared.messages.sensors import Ranges
 
 FloatArray = npt.NDArray[np.float64]
 ACROSS = 13
 """Points across the disc that a node covers; chosen: 130 in all, so that 1 % of it counts."""
-OCCLUDED = 0.25
-"""What floor behind an obstacle counts: there may be a way round it, or none; chosen."""
 ROOM_COVERS_M = 1.0
 """How far around a node floor counts as known in a room, unless a mission says otherwise; chosen."""
 STRAIGHT_SHARE = 0.25
 """Share of its gain that a direction loses which turns the robot round; chosen: of two that are as good the
 one ahead comes first."""
+VIEWED_M = 1.5
+"""Beyond, floor is looked for farther away than distance sensors reach, and free ways tell more; chosen."""
 AHEAD = (1.0, 2.0)
 """Where new floor is looked for along a free direction, in radii that a node covers; chosen: through a door
 that is one away, floor begins behind the walls beside it."""
@@ -35,13 +38,14 @@ SIDE_FACTOR = AHEAD[-1] + 1.5
 every wall; chosen: beyond one radius more than the farthest floor looked at, little is covered."""
 
 
-def without_poor_directions(graph: MapGraph, root: int, profile: Profile) -> list[Node]:
+def without_poor_directions(graph: MapGraph, root: int, profile: Profile, views: FloorViews) -> list[Node]:
     """Nodes around one that have less to explore than they say: what lies there is known.
 
     Args:
         graph: the map.
         root: the node just added.
         profile: how far a node covers, and the share of that which a new one must add.
+        views: what was seen from the nodes.
 
     Returns:
         Those nodes, with the directions explored that are not worth the way.
@@ -53,7 +57,7 @@ def without_poor_directions(graph: MapGraph, root: int, profile: Profile) -> lis
     near = [n for n, pose in poses.items() if np.linalg.norm(pose.position_m) < (AHEAD[-1] + 2.0) * covers_m]
     changed = []
     for node in (graph.nodes[node_id] for node_id in near):
-        gains = _gains(graph, poses, node, covers_m)
+        gains = _gains(graph, poses, node, covers_m, views)
         poor = [sector for sector, gain in gains.items() if gain < profile.mapping.gain_min]
         if poor:
             changed.append(reduce(mark_explored, poor, node))
@@ -68,7 +72,12 @@ def _covered_m(graph: MapGraph, node_id: int, profile: Profile) -> float:
 
 
 def best_sector(
-    graph: MapGraph, node_id: int, sectors: Sequence[int], preferred_rad: float, profile: Profile
+    graph: MapGraph,
+    node_id: int,
+    sectors: Sequence[int],
+    preferred_rad: float,
+    profile: Profile,
+    views: FloorViews,
 ) -> int | None:
     """The direction of a node with most new floor, rather about a preferred one; None without any.
 
@@ -78,6 +87,7 @@ def best_sector(
         sectors: its unexplored directions to choose from.
         preferred_rad: where the robot goes already, in the node's camera frame.
         profile: how far a node covers.
+        views: what was seen from the nodes.
     """
 
     def worth(sector: int) -> tuple[float, int]:
@@ -87,26 +97,34 @@ def best_sector(
     node, covers_m = graph.nodes[node_id], _covered_m(graph, node_id, profile)
     gains = dict.fromkeys(sectors, 1.0)
     if covers_m and sectors:
-        worths = _gains(graph, _poses_around(graph, node_id), node, covers_m)
+        worths = _gains(graph, _poses_around(graph, node_id), node, covers_m, views)
         gains = {sector: worths[sector] for sector in sectors}
     return max(gains, key=worth, default=None)
 
 
-def gain_here(graph: MapGraph, here: Displacement, free_m: Sequence[float], profile: Profile) -> float:
+def gain_here(
+    graph: MapGraph, here: Displacement, ranges: Ranges, profile: Profile, views: FloorViews
+) -> float:
     """Share of the floor around the robot which no node covers; 0 where every direction is to be explored.
 
     Args:
         graph: the map.
         here: where the robot is.
-        free_m: how far it could go in each sector of its own frame.
+        ranges: the distances here.
         profile: how far a node covers.
+        views: what was seen from the nodes; gets this view.
     """
     covers_m = _covered_m(graph, here.node_id, profile)
     if not covers_m:
         return 0.0
-    known_m = _known_m(graph, _poses_around(graph, here.node_id), here.node_id, covers_m)
+    views.add(here, ranges)
+    poses = _poses_around(graph, here.node_id)
+    known_m = _known_m(graph, poses, here.node_id, covers_m)
     spot = np.array([here.x_m, here.y_m])
-    return _new_share(known_m, spot, spot, here.yaw_rad, free_m, covers_m)
+    new = _new_floor_m(known_m, spot, covers_m)
+    if covers_m <= VIEWED_M:
+        return _share(views.weights(new, poses, covers_m))
+    return _share(_weights(new - spot, here.yaw_rad, np.array(free_ways_m(ranges, profile))))
 
 
 def _poses_around(graph: MapGraph, node_id: int) -> dict[int, RelativePose]:
@@ -114,7 +132,7 @@ def _poses_around(graph: MapGraph, node_id: int) -> dict[int, RelativePose]:
 
 
 def _gains(
-    graph: MapGraph, poses: Mapping[int, RelativePose], node: Node, covers_m: float
+    graph: MapGraph, poses: Mapping[int, RelativePose], node: Node, covers_m: float, views: FloorViews
 ) -> dict[int, float]:
     sectors = frontier_sectors(node)
     if not sectors:
@@ -127,9 +145,12 @@ def _gains(
         way = np.array([math.cos(angle_rad), math.sin(angle_rad)])
         spots = [own.position_m + min(ahead * covers_m, free_m[sector]) * way for ahead in AHEAD]
         spots[1:] = [spot for spot in spots[1:] if not _seen_nearer(graph, poses, node.node_id, spot)]
-        gains[sector] = max(
-            _new_share(known_m, spot, own.position_m, own.yaw_rad, free_m, covers_m) for spot in spots
-        )
+        floors = [_new_floor_m(known_m, spot, covers_m) for spot in spots]
+        if views.cover(node.node_id) and covers_m <= VIEWED_M:
+            counts = [views.weights(floor, poses, covers_m) for floor in floors]
+        else:
+            counts = [_weights(floor - own.position_m, own.yaw_rad, np.array(free_m)) for floor in floors]
+        gains[sector] = max(_share(count) for count in counts)
     return gains
 
 
@@ -153,32 +174,20 @@ def _known_m(graph: MapGraph, poses: Mapping[int, RelativePose], node_id: int, c
     return np.array([poses[n].position_m for n in beside if n in poses])
 
 
-def _new_share(
-    known_m: FloatArray,
-    spot_m: FloatArray,
-    own_m: FloatArray,
-    own_yaw_rad: float,
-    free_m: Sequence[float],
-    covers_m: float,
-) -> float:
-    """Share of the disc around a spot which no node covers.
-
-    Args:
-        known_m: (N, 2) of the nodes on this side of the walls, in one frame.
-        spot_m: (2,) in the same frame.
-        own_m: (2,) from where its floor was seen.
-        own_yaw_rad: yaw of the camera there.
-        free_m: how far the robot could go from there, by sector.
-        covers_m: radius of the disc.
-    """
+def _new_floor_m(known_m: FloatArray, spot_m: FloatArray, covers_m: float) -> FloatArray:
+    """(M, 2) points of the disc around a spot (2,) which none of the nodes at `known_m` (N, 2) covers."""
     floor = spot_m + covers_m * _disc()
     gaps = np.linalg.norm(floor[:, None] - known_m[None], axis=2)
-    new = floor[(gaps > covers_m).all(axis=1)]
-    return float(_weights(new - own_m, own_yaw_rad, np.array(free_m)).sum()) / len(floor)
+    return np.asarray(floor[(gaps > covers_m).all(axis=1)])
+
+
+def _share(counts: FloatArray) -> float:
+    """Of the disc, by what its new points count."""
+    return float(counts.sum()) / len(_disc())
 
 
 def _weights(offset: FloatArray, own_yaw_rad: float, free_m: FloatArray) -> FloatArray:
-    """1 for floor that the sensors saw, by its offset from them; less behind what they saw."""
+    """What floor counts beside a node without views: 1 where its free ways lead, by its offset from it."""
     return np.where(_saw(offset, own_yaw_rad, free_m), 1.0, OCCLUDED)
 
 

@@ -5,6 +5,7 @@ from typing import Any
 
 from services.planner.mapping.edges import NewEdges
 from services.planner.mapping.floor_gain import without_poor_directions
+from services.planner.mapping.floor_views import FloorViews
 from services.planner.ports import MapAccess, Matches, Note, Observation
 from services.planner.profiles import Profile
 from services.planner.similarity import heading_of, ranked, similarity
@@ -32,6 +33,7 @@ def add_node(
     edges: NewEdges,
     profile: Profile,
     here: Displacement | None,
+    views: FloorViews | None = None,
 ) -> tuple[int, tuple[Note, ...]]:
     """Write the frame as a node with its edges, in one transaction.
 
@@ -42,6 +44,7 @@ def add_node(
         profile: thresholds.
         here: where the robot is relative to the node it came from, whose edge counts as driven; None where
             nobody knows.
+        views: what was seen of the floor so far; gets this view.
 
     Returns:
         The new node's id, and a note for each edge that was refused.
@@ -65,7 +68,9 @@ def add_node(
     operations += [UpdateNode(node=other) for other in others]
     maps.commit(operations)
     node_id = max(maps.graph.nodes)  # another robot may have taken the id meanwhile: the newest one is this
-    if poor := without_poor_directions(maps.graph, node_id, profile):
+    views = FloorViews(profile.sensing.robot_slim_m) if views is None else views
+    views.add(Displacement(node_id), observation.ranges)
+    if poor := without_poor_directions(maps.graph, node_id, profile, views):
         maps.commit([UpdateNode(node=n) for n in poor])
     why = [f"node {node_id}: {reason}" for reason in edges.refused.values()]
     return node_id, tuple(Note("closure_refused", reason) for reason in why)

@@ -13,6 +13,7 @@ from services.planner.mapping.allowed_directions import AllowedDirections
 from services.planner.mapping.departure import Departure, NewNode
 from services.planner.mapping.edges import NewEdges
 from services.planner.mapping.floor_gain import best_sector
+from services.planner.mapping.floor_views import FloorViews
 from services.planner.mapping.nodes import add_node
 from services.planner.mapping.reach import nodes_nearby
 from services.planner.mapping.reobservation import close_known_directions
@@ -65,6 +66,7 @@ class FrontierExploration:
         self._destination = FrontierDestination(profile, maps, matcher, experience, self._directions)
         self._travel = Travel(profile, maps, matcher, self._destination, experience, whereabouts)
         self._departure: Departure | None = None
+        self._views = FloorViews(profile.sensing.robot_slim_m)
         self._heading_rad = 0.0
         self._told_m = 0.0
         self.progress = Progress()
@@ -89,7 +91,7 @@ class FrontierExploration:
 
     def _first(self, observation: Observation) -> Decision:
         """The only node: random heading (thesis section 4.2)."""
-        node_id, _ = add_node(self._maps, observation, NewEdges(), self._profile, None)
+        node_id, _ = add_node(self._maps, observation, NewEdges(), self._profile, None, self._views)
         self._head(float(self._rng.uniform(-math.pi, math.pi)))
         note = Note("node_added", "first node of the map", {"node": node_id})
         return self._leave(Displacement(node_id), (note,))
@@ -110,11 +112,14 @@ class FrontierExploration:
         self._travel.set_out(here)
         sectors = self._directions.of(node_id)
         preferred_rad = self._heading_rad - yaw_rad
-        sector = best_sector(self._maps.graph, node_id, sectors, preferred_rad, self._profile)
+        graph = self._maps.graph
+        sector = best_sector(graph, node_id, sectors, preferred_rad, self._profile, self._views)
         if sector is None:
             return Decision("hold", why=f"node {node_id} has no unexplored direction", notes=notes)
         heading_rad = math.remainder(sector_rad(sector) + yaw_rad, math.tau)
-        self._departure = Departure(self._profile, self._maps, self._matcher, sector, heading_rad, here)
+        self._departure = Departure(
+            self._profile, self._maps, self._matcher, sector, heading_rad, here, self._views
+        )
         self._head(heading_rad)
         why = f"leaving node {node_id} by direction {sector}"
         return Decision("go", heading_rad, method="frontier", why=why, notes=notes)

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from services.planner.mapping.departure import UNSURE_FRAMES, Departure, NewNode
+from services.planner.mapping.floor_views import FloorViews
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT
 from shared.mapgraph.graph import MapGraph
@@ -42,7 +43,7 @@ def matcher():
 def departure(matcher):
     """Straight ahead from node 0, whose camera looks along x as the robot's does."""
     maps = Maps(MapGraph([Node(node_id=node, open=(True,) * 12) for node in (0, 7)]))
-    return Departure(DEFAULT, maps, matcher, 0, 0.0, Displacement(0))
+    return Departure(DEFAULT, maps, matcher, 0, 0.0, Displacement(0), FloorViews(0.27))
 
 
 def drive(departure, matcher, view):
@@ -107,7 +108,7 @@ def test_a_room_furnished_like_another_is_new(departure, matcher):
 def beside():
     """A departure straight ahead that begins 0.4 m to the left of its node."""
     maps = Maps(MapGraph([Node(node_id=0, open=(True,) * 12)]))
-    return Departure(DEFAULT, maps, Matcher(), 0, 0.0, Displacement(0, y_m=0.4))
+    return Departure(DEFAULT, maps, Matcher(), 0, 0.0, Displacement(0, y_m=0.4), FloorViews(0.27))
 
 
 def walled(beside):
@@ -136,7 +137,9 @@ def test_a_direction_blocked_at_its_node_too_is_closed(beside):
 def test_a_new_node_closes_the_direction_it_lies_in(matcher, aside_m, explored):
     """What begins beside its node and makes a node there has not gone in the direction."""
     maps = Maps(MapGraph([Node(node_id=0, open=(True,) * 12)]))
-    departure = Departure(DEFAULT, maps, matcher, 3, math.pi / 2, Displacement(0, aside_m, 0.05))
+    departure = Departure(
+        DEFAULT, maps, matcher, 3, math.pi / 2, Displacement(0, aside_m, 0.05), FloorViews(0.27)
+    )
     found = []
     while not isinstance(found, NewNode):
         matcher.seen = match(0, -departure.here.x_m, -departure.here.y_m, 60)
@@ -167,7 +170,7 @@ def test_a_node_is_made_at_the_end_of_a_long_way_though_one_far_off_is_still_lik
         a=0, b=7, inliers=150, heading_ab_rad=math.pi, heading_ba_rad=0.0, yaw_ab_rad=0.0, length_m=0.3
     )
     maps = Maps(MapGraph([Node(node_id=node, open=(True,) * 12) for node in (0, 7)], [behind_0]))
-    departure = Departure(DEFAULT, maps, matcher, 0, 0.0, Displacement(0))
+    departure = Departure(DEFAULT, maps, matcher, 0, 0.0, Displacement(0), FloorViews(0.27))
     step = 0
     found = None
     while not departure.done and not isinstance(found, NewNode):

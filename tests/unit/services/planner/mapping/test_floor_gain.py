@@ -3,16 +3,20 @@
 import pytest
 
 from services.planner.mapping.floor_gain import best_sector, without_poor_directions
+from services.planner.mapping.floor_views import FloorViews
 from services.planner.profiles import DEFAULT
-from shared.mapgraph.frontiers import frontier_sectors
+from shared.mapgraph.frontiers import frontier_sectors, sector_rad
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.displacement import Displacement
 from shared.messages.maps import Node
+from shared.messages.sensors import Ranges
 from tests.unit.shared.mapgraph.local.grid import edge
 
 ALL = (True,) * 12
 EAST, SOUTH, WEST, NORTH = {11, 0, 1}, {8, 9, 10}, {5, 6, 7}, {2, 3, 4}
 COLUMNS, ROWS = 5, 4
 INSIDE, BORDER, CORNER = 7, 2, 0
+RADIUS_M = 0.27
 
 
 def grid(free_m=(3.0,) * 12, *, clear=True):
@@ -26,12 +30,15 @@ def grid(free_m=(3.0,) * 12, *, clear=True):
 
 
 def chosen(graph, node, preferred_rad, profile=DEFAULT):
-    return best_sector(graph, node, frontier_sectors(graph.nodes[node]), preferred_rad, profile)
+    sectors = frontier_sectors(graph.nodes[node])
+    return best_sector(graph, node, sectors, preferred_rad, profile, FloorViews(RADIUS_M))
 
 
-def left(graph, root, **changes):
+def left(graph, root, views=None, **changes):
     """Directions that are still to be explored, by node."""
-    changed = {n.node_id: n for n in without_poor_directions(graph, root, DEFAULT.replaced(**changes))}
+    views = FloorViews(RADIUS_M) if views is None else views
+    poor = without_poor_directions(graph, root, DEFAULT.replaced(**changes), views)
+    changed = {n.node_id: n for n in poor}
     return {n: set(frontier_sectors(changed.get(n, node))) for n, node in graph.nodes.items()}
 
 
@@ -78,6 +85,24 @@ def test_far_from_the_new_node_nothing_is_judged():
 @pytest.mark.parametrize("changes", [{"covers_m": 0.0}, {"gain_min": 0.0}])
 def test_profiles_that_ask_for_no_gain_explore_everything(changes):
     assert left(grid(), INSIDE, **changes)[INSIDE] == set(range(12))
+
+
+def wall_in_the_south(away_m):
+    """Views from the nodes along the southern border, every quarter of a metre."""
+    views, echo_m = FloorViews(RADIUS_M), [4.0] * 12
+    echo_m[7:12] = [1.41 * away_m, away_m, away_m, away_m, 1.41 * away_m]
+    angles_rad = tuple(sector_rad(sector) for sector in range(12))
+    seen = Ranges(robot="r1", angles_rad=angles_rad, distances_m=tuple(echo_m), max_range_m=4.0)
+    for node in range(COLUMNS):
+        for x_m in (0.0, 0.25, 0.5, 0.75):
+            views.add(Displacement(node, x_m), seen)
+    return views
+
+
+def test_a_wall_seen_from_close_by_leads_nowhere_though_the_robot_would_fit_between_two_echoes():
+    assert left(grid(), INSIDE)[BORDER] >= SOUTH
+    assert not left(grid(), INSIDE, wall_in_the_south(0.9))[BORDER] & SOUTH
+    assert left(grid(), INSIDE, wall_in_the_south(1.8))[BORDER] >= SOUTH
 
 
 def test_an_empty_neighbourhood_is_all_new():

@@ -19,6 +19,8 @@ from shared.messages.places import DeleteRule, KeepOut, OneWay, Place, PutPlace,
 from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, picture, run
 
 START = (2.6, 1.3, 0.0)
+KEPT_OUT = -7
+"""Stands for a node that rule 1 forbids."""
 INSIDE_M = 0.35
 """Nearer than this to a forbidden node a robot is in the area: half of the way between two nodes."""
 
@@ -63,7 +65,7 @@ class Flat:
 
 @pytest.mark.parametrize("seed", [2, 3, 5])
 def test_exploration_with_three_areas_enters_none_and_makes_no_node_in_them(seed):
-    here = Flat(seed, 150)
+    here = Flat(seed, 100)
     graph, rng = here.maps.graph, np.random.default_rng(seed)
     far = [n for n in graph.nodes if math.dist(here.maps.poses[n][:2], here.world.pose[:2]) > 1.5]
     frontiers = [n for n in far if frontier_sectors(graph.nodes[n])]
@@ -209,15 +211,23 @@ def context_of(here, profile=DEFAULT):
     return MissionContext(profile, maps, here.matcher, np.random.default_rng(0))
 
 
+def ruled(here):
+    """A node that rule 1 forbids, and the one that is furthest from all that are forbidden."""
+    forbidden, poses = here.maps.limits().forbidden, here.maps.poses
+    kept_out = min(n for n, rule in forbidden.items() if rule == "rule 1")
+    return kept_out, max(poses, key=lambda n: min(math.dist(poses[n][:2], poses[f][:2]) for f in forbidden))
+
+
 def test_places_are_driven_to_by_name_and_home_is_one(explored):
     here, _ = explored
-    here.maps.commit([PutPlace(place=Place(name="Home", nodes=(59,)))])
+    home = ruled(here)[1]
+    here.maps.commit([PutPlace(place=Place(name="Home", nodes=(home,)))])
     kinds, context = mission_kinds(), context_of(here)
     for kind, parameters in (("home", {}), ("goto", {"place": "HOME"})):
-        here.world.pose = here.maps.poses[36]
+        here.world.pose = here.maps.poses[here.maps.graph.nearest(home, 9)[-1]]
         decision, _ = run(here.world, kinds[kind].start(context, parameters), DriveLimits(), 1500)
         assert decision.outcome == "succeeded", decision.why
-        assert math.dist(here.world.pose[:2], here.maps.poses[59][:2]) < 0.35
+        assert math.dist(here.world.pose[:2], here.maps.poses[home][:2]) < 0.35
 
 
 @pytest.mark.parametrize(
@@ -225,7 +235,7 @@ def test_places_are_driven_to_by_name_and_home_is_one(explored):
     [
         ("goto", {"place": "Hom"}, "no place 'Hom'; nearest: 'Home'", "missing"),
         ("goto", {"place": "area 1"}, "place 'area 1' is forbidden by rule 'rule 1'", "forbidden"),
-        ("goto", {"goal_node": 17}, "node 17 is forbidden by rule 'rule 1'", "forbidden"),
+        ("goto", {"goal_node": KEPT_OUT}, "is forbidden by rule 'rule 1'", "forbidden"),
         ("goto", {"place": "a\nb"}, "control characters", "invalid"),
         ("goto", {"place": "home", "goal_node": 3}, "exactly one of them", "invalid"),
         ("goto", {"place": "empty"}, "has no nodes left", "missing"),
@@ -233,8 +243,10 @@ def test_places_are_driven_to_by_name_and_home_is_one(explored):
 )
 def test_what_cannot_be_driven_to_is_refused_at_once(explored, kind, parameters, words, code):
     here, _ = explored
-    marks = [Place(name="Home", nodes=(59,)), Place(name="empty")]
+    kept_out, home = ruled(here)
+    marks = [Place(name="Home", nodes=(home,)), Place(name="empty")]
     here.maps.commit([PutPlace(place=place) for place in marks])
+    parameters = {k: kept_out if v == KEPT_OUT else v for k, v in parameters.items()}
     with pytest.raises(MissionError, match=words) as refused:
         mission_kinds()[kind].start(context_of(here), parameters)
     assert refused.value.code == code
@@ -249,8 +261,9 @@ def test_without_a_place_called_home_the_mission_says_how_to_name_one():
 
 def test_of_an_area_the_first_node_that_is_allowed_is_driven_to(explored):
     here, _ = explored
-    here.maps.commit([PutPlace(place=Place(name="half", nodes=(17, 59, 3)))])
-    assert node_called(here.maps, "half") == 59
+    kept_out, allowed = ruled(here)
+    here.maps.commit([PutPlace(place=Place(name="half", nodes=(kept_out, allowed, 3)))])
+    assert node_called(here.maps, "half") == allowed
 
 
 def test_random_exploration_does_not_start_where_something_is_forbidden(explored):

@@ -1,0 +1,110 @@
+"""What the distance sensors saw of the floor at each node and on the ways out of it. Pure.
+
+A beam of 30 degrees (decision 0006) reads the nearest thing in it: all floor before that is free, and what
+lies behind it is a wall's other side or the room past a door. From afar a door shows in no beam, as the wall
+beside it is nearer; from close by a beam fits through it. So a wall that the robot went along has no door
+where none showed, and one seen from afar may have one.
+"""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from shared.mapgraph.frontiers import SECTOR_RAD, sector_rad
+from shared.mapgraph.local.displacement import Displacement
+from shared.mapgraph.local.relative_poses import RelativePose
+from shared.messages.base import SECTORS
+from shared.messages.sensors import Ranges
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+OCCLUDED = 0.5
+"""What floor counts that nobody saw, where there may be a way to it; chosen."""
+APART_M = 0.2
+"""The robot goes as far from one view to the next; chosen: a quarter of a narrow door."""
+DOOR_SEEN_M = 1.3
+"""From so near a beam fits through a door: there it is 0.7 m wide, and a door that one can pass has 0.82."""
+WALL_VIEWS = 3
+"""So many views from close by show a wall; chosen: 0.4 m along it. One alone may show the frame of a door, or
+a table beside a passage."""
+WALL_M = 1.0
+"""How far behind such an echo no floor counts; chosen: beyond, other views tell."""
+BESIDE_M = 0.4
+"""Floor this near to floor that was seen may belong to it; chosen: half a narrow door."""
+RING_M = BESIDE_M * np.array([[math.cos(turn), math.sin(turn)] for turn in np.arange(8) * math.tau / 8])
+
+
+class FloorViews:
+    """Views by node, each as it was seen from there; lives as long as a mission."""
+
+    def __init__(self, robot_radius_m: float) -> None:
+        self._radius_m = robot_radius_m
+        self._views: dict[int, list[FloatArray]] = {}
+
+    def add(self, here: Displacement, ranges: Ranges) -> None:
+        """Keep a view, unless the last one from that node was taken hardly elsewhere."""
+        views = self._views.setdefault(here.node_id, [])
+        if views and math.dist(views[-1][:2], (here.x_m, here.y_m)) < APART_M:
+            return
+        views.append(np.array([here.x_m, here.y_m, here.yaw_rad, *_by_sector(ranges)]))
+
+    def cover(self, node_id: int) -> bool:
+        """Whether anything was seen from a node."""
+        return node_id in self._views
+
+    def weights(self, floor_m: FloatArray, poses: Mapping[int, RelativePose], covers_m: float) -> FloatArray:
+        """What floor counts: 1 where it was seen, OCCLUDED where there may be a way to it, 0 behind walls.
+
+        Args:
+            floor_m: (N, 2) in the frame of `poses`.
+            poses: of the nodes whose views tell.
+            covers_m: as far behind what was seen from afar there may be floor.
+
+        Returns:
+            (N,).
+        """
+        views = self._in_one_frame(poses)
+        seen, hidden = self._looked_at(floor_m, views, covers_m)
+        rest = ~seen & ~hidden
+        beside = self._looked_at((floor_m[rest, None] + RING_M).reshape(-1, 2), views, covers_m)[0]
+        hidden[rest] = beside.reshape(-1, len(RING_M)).any(axis=1)
+        return np.where(seen, 1.0, np.where(hidden, OCCLUDED, 0.0))
+
+    def _in_one_frame(self, poses: Mapping[int, RelativePose]) -> FloatArray:
+        """(V, 3 + SECTORS) position, yaw and readings of all views from these nodes."""
+        moved = [np.zeros((0, 3 + SECTORS))]
+        for node_id, pose in poses.items():
+            if node_id not in self._views:
+                continue
+            views = np.array(self._views[node_id])
+            cos, sin = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
+            views[:, :2] = views[:, :2] @ np.array([[cos, sin], [-sin, cos]]) + pose.position_m
+            views[:, 2] += pose.yaw_rad
+            moved.append(views)
+        return np.concatenate(moved)
+
+    def _looked_at(
+        self, floor_m: FloatArray, views: FloatArray, covers_m: float
+    ) -> tuple[BoolArray, BoolArray]:
+        """(N,) each: seen by any view; else behind what was seen, and not behind a wall."""
+        offset = floor_m[:, None] - views[None, :, :2]
+        away_m = np.hypot(offset[..., 0], offset[..., 1])
+        bearing_rad = np.arctan2(offset[..., 1], offset[..., 0]) - views[:, 2]
+        sector = np.rint(bearing_rad / SECTOR_RAD).astype(int) % SECTORS
+        echo_m = views[np.arange(len(views)), 3 + sector]
+        seen = away_m <= echo_m - self._radius_m
+        near = echo_m <= DOOR_SEEN_M
+        blocked = ~seen & near & (away_m <= echo_m + WALL_M)
+        hidden = blocked | (~seen & ~near & (away_m <= echo_m + covers_m))
+        found = seen.any(axis=1)
+        return found, ~found & hidden.any(axis=1) & (blocked.sum(axis=1) < WALL_VIEWS)
+
+
+def _by_sector(ranges: Ranges) -> list[float]:
+    """The reading nearest to the middle of each sector."""
+    angles_rad = np.array(ranges.angles_rad)
+    off_rad = [np.abs(np.angle(np.exp(1j * (angles_rad - sector_rad(s))))) for s in range(SECTORS)]
+    return [ranges.distances_m[int(off.argmin())] for off in off_rad]
