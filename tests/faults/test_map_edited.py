@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 import httpx
+import networkx as nx
 import pytest
 
 from services.launcher.client.experimenter import Experimenter
@@ -20,7 +21,7 @@ pytestmark = [
     pytest.mark.usefixtures("patient_sessions"),
 ]
 
-STEPS = 60
+STEPS = 120
 LONGEST = 300
 
 
@@ -44,12 +45,12 @@ def client(stack: Stack) -> MissionClient:
     return client
 
 
-def goto(client, node, edit):
-    """Drive to a node; `edit` is called once with the status when a path with via points stands."""
+def goto(client, node, edit, nodes=2):
+    """Drive to a node; `edit` is called once with the status when a path over so many nodes stands."""
     seen = []
 
     def watch(status):
-        if not seen and status.state == "running" and len(status.via_points) > 2:
+        if not seen and status.state == "running" and len(status.via_points) > nodes:
             seen.append(status)
             edit(status)
 
@@ -59,8 +60,10 @@ def goto(client, node, edit):
 
 
 def farthest(stack):
-    """The place that was found last: the robot started at the first one."""
-    return max(node.node_id for node in read_map(stack, "small").nodes)
+    """The place with most edges between it and the first one, where the robot starts."""
+    found = read_map(stack, "small")
+    away = nx.single_source_shortest_path_length(nx.Graph((e.a, e.b) for e in found.edges), 0)
+    return max(away, key=lambda node: (away[node], node))
 
 
 def delete(stack, node):
@@ -77,7 +80,7 @@ def test_a_via_point_that_is_deleted_is_not_driven_to(stack, client):
         gone.append(status.via_points[1])
         delete(stack, gone[0])
 
-    ended = goto(client, farthest(stack), edit)
+    ended = goto(client, farthest(stack), edit, nodes=3)
     assert ended.state == "succeeded" or ended.failure, ended.reason
     assert gone[0] not in ended.via_points
     found = read_map(stack, "small")
