@@ -112,18 +112,17 @@ def gain_here(
         here: where the robot is.
         ranges: the distances here.
         profile: how far a node covers.
-        views: what was seen from the nodes; gets this view.
+        views: what was seen from the nodes, and on the way here.
     """
     covers_m = _covered_m(graph, here.node_id, profile)
     if not covers_m:
         return 0.0
-    views.add(here, ranges)
     poses = _poses_around(graph, here.node_id)
     known_m = _known_m(graph, poses, here.node_id, covers_m)
     spot = np.array([here.x_m, here.y_m])
     new = _new_floor_m(known_m, spot, covers_m)
     if covers_m <= VIEWED_M:
-        return _share(views.weights(new, poses, covers_m))
+        return _share(views.weights(new, views.around(poses), covers_m))
     return _share(_weights(new - spot, here.yaw_rad, np.array(free_ways_m(ranges, profile))))
 
 
@@ -139,6 +138,7 @@ def _gains(
         return {}
     known_m, own = _known_m(graph, poses, node.node_id, covers_m), poses[node.node_id]
     free_m = node.free_m or (covers_m,) * SECTORS
+    seen = views.around(poses)
     gains = {}
     for sector in sectors:
         angle_rad = own.yaw_rad + sector * SECTOR_RAD
@@ -147,7 +147,7 @@ def _gains(
         spots[1:] = [spot for spot in spots[1:] if not _seen_nearer(graph, poses, node.node_id, spot)]
         floors = [_new_floor_m(known_m, spot, covers_m) for spot in spots]
         if views.cover(node.node_id) and covers_m <= VIEWED_M:
-            counts = [views.weights(floor, poses, covers_m) for floor in floors]
+            counts = [views.weights(floor, seen, covers_m) for floor in floors]
         else:
             counts = [_weights(floor - own.position_m, own.yaw_rad, np.array(free_m)) for floor in floors]
         gains[sector] = max(_share(count) for count in counts)

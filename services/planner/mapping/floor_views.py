@@ -55,26 +55,25 @@ class FloorViews:
         """Whether anything was seen from a node."""
         return node_id in self._views
 
-    def weights(self, floor_m: FloatArray, poses: Mapping[int, RelativePose], covers_m: float) -> FloatArray:
+    def weights(self, floor_m: FloatArray, views: FloatArray, covers_m: float) -> FloatArray:
         """What floor counts: 1 where it was seen, OCCLUDED where there may be a way to it, 0 behind walls.
 
         Args:
-            floor_m: (N, 2) in the frame of `poses`.
-            poses: of the nodes whose views tell.
+            floor_m: (N, 2) in the frame of the views.
+            views: those `around` a node.
             covers_m: as far behind what was seen from afar there may be floor.
 
         Returns:
             (N,).
         """
-        views = self._in_one_frame(poses)
         seen, hidden = self._looked_at(floor_m, views, covers_m)
         rest = ~seen & ~hidden
         beside = self._looked_at((floor_m[rest, None] + RING_M).reshape(-1, 2), views, covers_m)[0]
         hidden[rest] = beside.reshape(-1, len(RING_M)).any(axis=1)
         return np.where(seen, 1.0, np.where(hidden, OCCLUDED, 0.0))
 
-    def _in_one_frame(self, poses: Mapping[int, RelativePose]) -> FloatArray:
-        """(V, 3 + SECTORS) position, yaw and readings of all views from these nodes."""
+    def around(self, poses: Mapping[int, RelativePose]) -> FloatArray:
+        """(V, 3 + SECTORS) position, yaw and readings of all views from these nodes, in one frame."""
         moved = [np.zeros((0, 3 + SECTORS))]
         for node_id, pose in poses.items():
             if node_id not in self._views:

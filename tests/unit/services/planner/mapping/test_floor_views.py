@@ -46,7 +46,7 @@ def read(distances_m):
 
 
 def counts(views, *floor_m, poses=None):
-    return views.weights(np.array(floor_m), poses or {0: pose()}, COVERS_M).tolist()
+    return views.weights(np.array(floor_m), views.around(poses or {0: pose()}), COVERS_M).tolist()
 
 
 def test_floor_that_a_beam_passed_over_counts_in_full():
