@@ -45,9 +45,12 @@ class FloorViews:
         self._views: dict[int, list[FloatArray]] = {}
 
     def add(self, here: Displacement, ranges: Ranges) -> None:
-        """Keep a view, unless the last one from that node was taken hardly elsewhere."""
+        """Keep a view, unless one from that node was taken hardly elsewhere.
+
+        A spot passed again, at another departure say, shows no more of a wall.
+        """
         views = self._views.setdefault(here.node_id, [])
-        if views and math.dist(views[-1][:2], (here.x_m, here.y_m)) < APART_M:
+        if any(math.dist(view[:2], (here.x_m, here.y_m)) < APART_M for view in views):
             return
         views.append(np.array([here.x_m, here.y_m, here.yaw_rad, *_by_sector(ranges)]))
 

@@ -99,6 +99,14 @@ def test_less_than_three_views_from_close_by_show_no_wall():
     assert counts(views, (0.3, 1.6)) == [0.0]
 
 
+def test_a_spot_passed_again_is_not_seen_twice():
+    """Three departures from a node past the frame of a door are no three views of a wall."""
+    views = FloorViews(RADIUS_M)
+    for x_m in (0.0, 0.3, 0.0, 0.3, 0.0, 0.3):
+        views.add(Displacement(0, x_m), wall(x_m, 1.0, None, 0.0))
+    assert counts(views, (0.3, 1.6)) == [OCCLUDED]
+
+
 def test_only_nodes_with_views_are_covered():
     views = along_wall(1.0)
     assert [views.cover(node) for node in (0, 1)] == [True, False]
