@@ -209,10 +209,13 @@ class PlaneMatcher:
     """Matches by true distance and line of sight; `blind` sees nothing that resembles anything.
 
     With a `period_m` all looks alike again so far along x: nodes are seen where the nearest image of them is.
+    Views carry `carries` times as far as in a furnished flat.
     """
 
-    def __init__(self, world: PlaneWorld, maps: PlaneMap, period_m: float = math.inf) -> None:
-        self._world, self._maps, self._period_m = world, maps, period_m
+    def __init__(
+        self, world: PlaneWorld, maps: PlaneMap, period_m: float = math.inf, carries: float = 1.0
+    ) -> None:
+        self._world, self._maps, self._period_m, self._carries = world, maps, period_m, carries
         self.blind = False
 
     def match(
@@ -245,8 +248,9 @@ class PlaneMatcher:
         distance_m = math.dist(here[:2], there[:2])
         rng = self._world.rng
         seen = 0.0 if self.blind else alike * self._world.view(here, there)
-        inliers = int(np.interp(distance_m, DISTANCES_M, INLIERS) * seen * rng.uniform(0.85, 1.15))
-        disparity_deg = float(np.interp(distance_m, DISTANCES_M, DISPARITY_DEG))
+        as_far_m = distance_m / self._carries
+        inliers = int(np.interp(as_far_m, DISTANCES_M, INLIERS) * seen * rng.uniform(0.85, 1.15))
+        disparity_deg = float(np.interp(as_far_m, DISTANCES_M, DISPARITY_DEG))
         heading = math.atan2(there[1] - here[1], there[0] - here[0]) - here[2]
         wild = rng.uniform() < 0.02 * (1.0 if inliers > 30 else 5.0)
         noise = rng.uniform(-math.pi, math.pi) if wild else rng.normal(0.0, math.radians(0.5))

@@ -5,6 +5,7 @@ import math
 from pydantic import BaseModel, ConfigDict, PositiveFloat, PositiveInt
 
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.local.view_range import edge_length_m
 from shared.messages.base import SECTORS
 from shared.messages.maps import Node
 
@@ -38,12 +39,21 @@ def sector_rad(sector: int) -> float:
     return math.remainder(sector * SECTOR_RAD, math.tau)
 
 
-def with_explored(node: Node, graph: MapGraph, rules: ExploredRules) -> Node:
-    """The node with the sectors explored that its edges in `graph` cover."""
+def with_explored(node: Node, graph: MapGraph, rules: ExploredRules, longest_m: float = math.inf) -> Node:
+    """The node with the sectors explored that its edges in `graph` cover.
+
+    Args:
+        node: of the map.
+        graph: its edges.
+        rules: what they cover.
+        longest_m: a longer edge covers nothing.
+    """
     explored = list(node.explored)
     for neighbour in graph.neighbours(node.node_id):
         edge, heading = graph.edge(node.node_id, neighbour), graph.heading(node.node_id, neighbour)
         if edge is None or heading is None or edge.inliers < rules.s_explored:
+            continue
+        if math.isfinite(longest_m) and edge_length_m(graph, edge) > longest_m:
             continue
         near = edge.inliers > NEARER * rules.s_explored
         half_rad = rules.near_half_rad if near else rules.explored_half_rad

@@ -2,6 +2,7 @@
 
 pytest -q -s tests/benchmarks/test_exploring_plans.py
 PLANS=hostel-0-medium,apartment SEEDS=1,2 pytest -q -s tests/benchmarks/test_exploring_plans.py
+CARRIES=1.6 PLANS=school-15-small pytest -q -s tests/benchmarks/test_exploring_plans.py  # as in a bare hall
 
 Views follow distance and line of sight (tests/plane_world.py) and nothing is rendered: a world takes seconds,
 so that ways of exploring can be compared on many. What is chosen here is judged on rendered worlds later.
@@ -81,7 +82,9 @@ def test_metres_on_a_floor_plan(name, seed, tmp_path, keep):
     world = world_of(name, tmp_path)
     space, start = free_space(world), world.start
     plane, maps = PlaneWorld((start.x_m, start.y_m, 0.0), np.random.default_rng(seed), space), PlaneMap()
-    mission = FrontierExploration(DEFAULT, maps, PlaneMatcher(plane, maps), np.random.default_rng(seed))
+    matcher = PlaneMatcher(plane, maps, carries=float(os.environ.get("CARRIES", "1")))
+    told = DEFAULT.replaced(covers_m=COVERS_M)
+    mission = FrontierExploration(told, maps, matcher, np.random.default_rng(seed))
     watched = Watched(plane, maps, mission)
     decision, _ = run(plane, watched, DriveLimits(), STEPS_MAX)
     curve = curve_of(space, watched)

@@ -113,12 +113,16 @@ class Departure:
             return self._new_node(observation, {**self._candidates(), **matches})
         if is_new_node(matches, self._profile) and not self._is_crowded(matches):
             return self._new_or_known(observation, {**self._candidates(), **matches})
-        if self._driven_m > rules.departure_m * self._view_carries(matches.get(self.node_id)):
+        if self._driven_m > rules.departure_m * self._room_lengths(matches.get(self.node_id)):
             gain = gain_here(self._maps.graph, self.here, observation.ranges, self._profile, self._views)
             if gain >= rules.gain_min:
                 return self._new_node(observation, {**self._candidates(), **matches})
             return self._close("nothing new on the way")
         return self._straight_on(observation.ranges, s_best)
+
+    def _room_lengths(self, origin: NodeMatch | None) -> float:
+        """How many times as far as in a room a departure goes: as views carry, unless nodes cover less."""
+        return min(self._view_carries(origin), self._profile.mapping.covers_m or math.inf)
 
     def _view_carries(self, origin: NodeMatch | None) -> float:
         """How many times further views carry here than in a room, as far as this way has told."""

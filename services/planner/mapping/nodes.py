@@ -1,5 +1,6 @@
 """Making a node and its edges from the current frame (thesis equations 4.1 and 4.2)."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -18,6 +19,10 @@ from shared.mapgraph.local.driven_length import driven_length
 from shared.mapgraph.local.reach import LOOP_NODES
 from shared.messages.maps import AddNode, Edge, Node, Operation, PutEdge, UpdateNode
 from shared.messages.matching import NodeMatch
+
+EXPLORED_FACTOR = 1.6
+"""Between nodes at most so many times as far apart as a mission has them cover, no floor is left to explore:
+as far as s_explored stands for in a room, of which a node covers 1 m. In a bare hall it stands for more."""
 
 
 def is_new_node(matches: Matches, profile: Profile) -> bool:
@@ -78,12 +83,13 @@ def add_node(
 
 def explored_along(graph: MapGraph, node: Node, seen: Sequence[Edge], profile: Profile) -> list[Node]:
     """`node`, then each node at the other end of `seen` with less left to explore than before."""
-    rules = profile.mapping.explored
+    rules, covers_m = profile.mapping.explored, profile.mapping.covers_m
+    longest_m = EXPLORED_FACTOR * covers_m if covers_m else math.inf
     grown = MapGraph([*graph.nodes.values(), node], [*graph.edges.values(), *seen])
     others = [graph.nodes[e.b if e.a == node.node_id else e.a] for e in seen]
-    known = [with_explored(other, grown, rules) for other in others]
+    known = [with_explored(other, grown, rules, longest_m) for other in others]
     changed = [n for n in known if n != graph.nodes[n.node_id]]
-    return [with_explored(node, grown, rules), *changed]
+    return [with_explored(node, grown, rules, longest_m), *changed]
 
 
 def edges_to(node_id: int, matches: Matches, judged: NewEdges, profile: Profile) -> list[Edge]:

@@ -45,3 +45,12 @@ def test_edge_to_a_far_place_leaves_the_ground_between_unexplored():
     far = Edge(a=0, b=1, heading_ab_rad=0.0, heading_ba_rad=math.pi, inliers=35)
     nodes = [Node(node_id=0, open=ALL_OPEN), Node(node_id=1)]
     assert not any(with_explored(nodes[0], MapGraph(nodes, [far]), ExploredRules()).explored)
+
+
+def test_a_longer_edge_than_nodes_cover_leaves_the_ground_between_unexplored():
+    """In a bare hall a view from two metres away still has many matches."""
+    seen = Edge(a=0, b=1, heading_ab_rad=0.0, heading_ba_rad=math.pi, inliers=60, length_m=2.0)
+    nodes = [Node(node_id=0, open=ALL_OPEN), Node(node_id=1)]
+    graph = MapGraph(nodes, [seen])
+    assert with_explored(nodes[0], graph, ExploredRules(), longest_m=2.1).explored[0]
+    assert not any(with_explored(nodes[0], graph, ExploredRules(), longest_m=1.9).explored)

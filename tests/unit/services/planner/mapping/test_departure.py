@@ -164,19 +164,24 @@ def test_a_view_without_a_sure_direction_is_driven_on_from_and_given_up_in_the_e
     assert found[-1].method == "reverse"
 
 
-def test_a_node_is_made_at_the_end_of_a_long_way_though_one_far_off_is_still_like_it(matcher):
-    """Between containers the view of the node before the last one came back."""
+@pytest.mark.parametrize(("covers_m", "carries"), [(None, 1), (1.0, 2)])
+def test_a_node_is_made_at_the_end_of_a_long_way_though_one_far_off_is_still_like_it(
+    matcher, covers_m, carries
+):
+    """Between containers the view of the node before the last came back; in a hall all views carry far."""
     behind_0 = Edge(
         a=0, b=7, inliers=150, heading_ab_rad=math.pi, heading_ba_rad=0.0, yaw_ab_rad=0.0, length_m=0.3
     )
     maps = Maps(MapGraph([Node(node_id=node, open=(True,) * 12) for node in (0, 7)], [behind_0]))
-    departure = Departure(DEFAULT, maps, matcher, 0, 0.0, Displacement(0), FloorViews(0.27))
+    profile = DEFAULT.replaced(covers_m=covers_m)
+    departure = Departure(profile, maps, matcher, 0, 0.0, Displacement(0), FloorViews(0.27))
     step = 0
     found = None
     while not departure.done and not isinstance(found, NewNode):
         step += 1
         matcher.also = match(7, -0.3 - 0.12 * step, 0.0, 95)
-        found = drive(departure, matcher, match(0, -0.12 * step, 0.0, inliers_at(0.12 * step, ROOM_HALF_M)))
+        inliers = inliers_at(0.12 * step, carries * ROOM_HALF_M)
+        found = drive(departure, matcher, match(0, -0.12 * step, 0.0, inliers))
     assert isinstance(found, NewNode), found.why
     assert 0.12 * step == pytest.approx(DEFAULT.mapping.departure_m, abs=0.2)
 
