@@ -23,7 +23,7 @@ import { locked } from "./page/session.js";
 import { TEXT } from "./page/text.js";
 import { Views } from "./page/views.js";
 
-const SERVICES = ["simulator", "features", "map_store", "planner", "drive", "gateway"];
+const SERVICES = ["simulator", "features", "map_store", "planner", "drive", "dispatch", "gateway"];
 const REAL = ["ros", "camera"]; // in whose place no simulator is missed
 const BODY = ["odometry", "imu", "battery", "camera"];
 const DEFAULT_ROBOT = "r1";
