@@ -86,10 +86,10 @@ def _step(queue: TaskReply, seen: Seen, limits: Limits, on_hold: bool) -> Step:
         return Step(why="nothing is heard of the planner")
     low = seen.charge is not None and seen.charge < limits.low
     if status.state in ("running", "paused"):
-        if running is None or running.task_id != status.mission_id:
+        if running is None or running.mission_id != status.mission_id:
             return Step(why=f"mission {status.mission_id} is {status.state}")
         return _under_way(running, status, seen, low)
-    if running is not None and running.task_id == status.mission_id:
+    if running is not None and running.mission_id == status.mission_id:
         return Step(why=f"the end of {running.task_id} is being recorded")
     if not queue.tasks:
         return Step()

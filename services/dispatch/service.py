@@ -57,15 +57,15 @@ class Dispatch:
             self._ask(TaskRequest(action="go_home", task=task))
         elif step.action in ("resume", "cancel"):
             assert seen.status is not None
-            log.info("%s mission %s", step.action, task.task_id)
-            self._mission(MissionRequest(action=step.action, map=task.map, mission_id=task.task_id))
+            log.info("%s mission %s", step.action, task.mission_id)
+            self._mission(MissionRequest(action=step.action, map=task.map, mission_id=task.mission_id))
 
     def _begin(self, task: Task) -> None:
         """Ask the planner for the mission. Only a refusal that stays ends the task; else it waits."""
         wish = MissionRequest(
             action=task.kind,
             map=task.map,
-            mission_id=task.task_id,
+            mission_id=task.mission_id,
             parameters=task.parameters,
             checkpoint=task.checkpoint,
             seed=task.seed,

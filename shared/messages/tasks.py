@@ -11,7 +11,7 @@ TaskState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 OPEN_STATES: tuple[TaskState, ...] = ("queued", "running")
 """Of a task that has not ended."""
 
-TaskId = Annotated[str, Field(pattern=r"^[a-z0-9_.-]{1,64}$")]
+TaskId = Annotated[str, Field(pattern=r"^[a-z0-9_.-]{1,56}$")]
 ScheduleName = Annotated[str, Field(pattern=r"^[a-z0-9_-]{1,40}$")]
 Priority = Annotated[int, Field(ge=0, le=9)]
 """Higher first."""
@@ -19,6 +19,8 @@ Moment = Annotated[int, Field(ge=0, lt=2**63)]
 """By the wall clock, nanoseconds since the Unix epoch; 0: never, or not yet."""
 
 USUAL_PRIORITY = 4
+AGAIN = "~"
+"""In no id of a task: what follows it counts attempts."""
 
 
 class Errand(Part):
@@ -33,12 +35,13 @@ class Errand(Part):
 
 
 class Task(Errand):
-    """One errand in the queue of a robot. The mission that carries it out has its id.
+    """One errand in the queue of a robot. The mission that carries it out has its id, see `mission_id`.
 
     Attributes:
         state: of the mission, once it was begun.
         failure: a `FailureKind`, or "refused": the planner did not take it.
-        checkpoint: how far it had got when it went back into the queue.
+        attempt: how often it went back into the queue.
+        checkpoint: how far it had got then.
         put_back: it goes back into the queue when its mission is cancelled.
         for_battery: it brings a robot home that has little charge left.
         schedule: what made it, at `due_ns`; "" for a task that somebody asked for.
@@ -51,6 +54,7 @@ class Task(Errand):
     state: TaskState = "queued"
     failure: str = Field(default="", max_length=32)
     reason: str = Field(default="", max_length=400)
+    attempt: int = Field(default=0, ge=0, le=999_999)
     checkpoint: Parameters = Field(default_factory=dict)
     put_back: bool = False
     for_battery: bool = False
@@ -60,6 +64,16 @@ class Task(Errand):
     created_ns: Moment = 0
     started_ns: Moment = 0
     ended_ns: Moment = 0
+
+    @property
+    def mission_id(self) -> str:
+        """Of the mission that carries it out: another one each time, as each has an end of its own."""
+        return f"{self.task_id}{AGAIN}{self.attempt}" if self.attempt else self.task_id
+
+
+def task_id_of(mission_id: str) -> str:
+    """The id of the task that a mission carries out, if it carries out one."""
+    return mission_id.partition(AGAIN)[0]
 
 
 class Schedule(Part):
@@ -109,7 +123,7 @@ class TaskRequest(Message):
         "remove_schedule",
         "make_due",
     ]
-    task_id: str = Field(default="", pattern=r"^[a-z0-9_.-]{0,64}$")
+    task_id: str = Field(default="", pattern=r"^[a-z0-9_.-]{0,56}$")
     task: Task | None = None
     priority: Priority = USUAL_PRIORITY
     reason: str = Field(default="", max_length=400)

@@ -391,6 +391,7 @@ def task() -> tasks.Task:
         state="failed",
         failure="refused",
         reason="no place 'dock'",
+        attempt=2,
         checkpoint={"visit": 1},
         put_back=True,
         for_battery=True,

@@ -95,9 +95,6 @@ class MissionWatch:
         begun = self._begun.get(robot, ("", now))
         if status.state not in ENDS:
             self._begun[robot] = begun if begun[0] == mission_id else (mission_id, now)
-            self._ended.discard(
-                (robot, mission_id)
-            )  # a task that waited again after its mission was cancelled
             return None
         # After a refused start a planner names the new mission beside the state of the one before: an end
         # counts where the mission was seen under way, or where the gateway may have missed that.

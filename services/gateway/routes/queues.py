@@ -15,9 +15,10 @@ from shared.web.problems import ProblemError
 
 
 class TaskAnswer(BaseModel):
-    """A task; times are null until they come."""
+    """A task and the mission that carries it out; times are null until they come."""
 
     task_id: str
+    mission_id: str
     robot: str
     kind: str
     map: str
@@ -42,7 +43,7 @@ class TaskAnswer(BaseModel):
         times = {
             name: time_of(getattr(task, f"{name}_ns")) for name in ("due", "created", "started", "ended")
         }
-        return cls.model_validate({**task.model_dump(), **times})
+        return cls.model_validate({**task.model_dump(), **times, "mission_id": task.mission_id})
 
 
 class ScheduleAnswer(BaseModel):

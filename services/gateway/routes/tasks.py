@@ -20,7 +20,7 @@ from shared.web.problems import ProblemError
 
 router = APIRouter(tags=["tasks"])
 
-TaskPath = Annotated[str, Path(pattern=r"^[a-z0-9_.-]{1,64}$", description="id of a task")]
+TaskPath = Annotated[str, Path(pattern=r"^[a-z0-9_.-]{1,56}$", description="id of a task")]
 PriorityField = Annotated[int, Field(ge=0, le=9, description="Higher first.")]
 
 
@@ -60,7 +60,7 @@ class AddTask(AskedErrand):
         task_id: of your choice, so that a request that is sent again adds no second task; else one is made.
     """
 
-    task_id: str = Field(default="", pattern=r"^[a-z0-9_.-]{0,64}$")
+    task_id: str = Field(default="", pattern=r"^[a-z0-9_.-]{0,56}$")
 
 
 class ChangeTask(BaseModel):
@@ -153,7 +153,7 @@ async def cancel_task(
         raise ProblemError(
             403, "role_too_low", expected, got, "ask an operator", needed="operator", role=token.role
         )
-    wish = MissionRequest(action="cancel", map=task.map, mission_id=task_id)
+    wish = MissionRequest(action="cancel", map=task.map, mission_id=task.mission_id)
     await gateway.asker_for(robot).ask("planner", MISSION, wish, gateway.settings.ask_timeout_s, robot=robot)
     return await _about(gateway, robot, TaskRequest(action="read", task_id=task_id))
 

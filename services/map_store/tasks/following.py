@@ -13,7 +13,7 @@ from services.map_store.storage.tables import tasks
 from services.map_store.tasks.records import find_task, tasks_in, write_task
 from shared.messages.maps import MissionRecord
 from shared.messages.missions import Parameters
-from shared.messages.tasks import Task, TaskState
+from shared.messages.tasks import Task, TaskState, task_id_of
 
 log = logging.getLogger(__name__)
 
@@ -29,10 +29,10 @@ def follow(connection: Connection, before: MissionRecord, record: MissionRecord,
     Raises:
         ConflictError: the mission is that of a task that is over.
     """
-    task = find_task(connection, record.robot, record.mission_id) if record.mission_id else None
+    task = find_task(connection, record.robot, task_id_of(record.mission_id))
     if task is not None and record.action:
-        _begin(connection, task, now_ns)
-    elif task is not None and task.state not in ENDED:
+        _begin(connection, task, record.mission_id, now_ns)
+    elif task is not None and task.state not in ENDED and task.mission_id == record.mission_id:
         same = before.mission_id == record.mission_id
         _end(connection, task, record, before.checkpoint if same else {}, now_ns)
     give_up_lost(connection, record, now_ns)
@@ -42,9 +42,9 @@ def give_up_lost(connection: Connection, record: MissionRecord, now_ns: int) -> 
     """End tasks that are said to run and are not the mission on record, as when that was damaged."""
     under_way = record.mission_id if record.action else ""
     for task in tasks_in(connection, record.robot, ["running"])[0]:
-        if task.task_id != under_way and task.put_back:
+        if task.mission_id != under_way and task.put_back:
             _wait_again(connection, task, {})
-        elif task.task_id != under_way:
+        elif task.mission_id != under_way:
             log.error("robot %s: task %s failed, %s", record.robot, task.task_id, LOST)
             finish(connection, task, "failed", "service_lost", LOST, now_ns)
 
@@ -64,8 +64,10 @@ def finish(
     return ended
 
 
-def _begin(connection: Connection, task: Task, now_ns: int) -> None:
+def _begin(connection: Connection, task: Task, mission_id: str, now_ns: int) -> None:
     """A mission began, or goes on."""
+    if task.mission_id != mission_id:
+        raise ConflictError(f"mission {mission_id!r} is over: task {task.task_id!r} is {task.state} again")
     if task.state in ENDED:
         raise ConflictError(f"task {task.task_id!r} is over ({task.state}): it is not begun again")
     if task.state == "queued":
@@ -88,5 +90,5 @@ def _end(
 
 
 def _wait_again(connection: Connection, task: Task, checkpoint: Parameters) -> None:
-    waits = {"state": "queued", "put_back": False, "checkpoint": checkpoint}
+    waits = {"state": "queued", "put_back": False, "checkpoint": checkpoint, "attempt": task.attempt + 1}
     write_task(connection, task.model_copy(update=waits))

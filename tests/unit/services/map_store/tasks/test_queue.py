@@ -165,12 +165,14 @@ def test_low_battery_puts_the_running_task_back_with_what_it_has_done_behind_the
     queue = desk.ask("read").tasks
     assert [task.kind for task in queue] == ["home", "wave", "wave"]
     assert [task.task_id for task in queue[1:]] == ["b", "a"]
-    assert queue[2].checkpoint == {"visit": 3}
+    assert (queue[2].checkpoint, queue[2].mission_id) == ({"visit": 3}, "a~1")
     desk.begin(queue[0].task_id)
     desk.end(queue[0].task_id)
     assert desk.ask("read").latest.for_battery
-    desk.begin("a")
-    desk.end("a")
+    with pytest.raises(ConflictError, match="mission 'a' is over: task 'a' is queued again"):
+        desk.begin("a")
+    desk.begin("a~1")
+    desk.end("a~1")
     assert not desk.ask("read").latest.for_battery
     assert desk.task("a").state == "succeeded"
 
