@@ -1,4 +1,4 @@
-"""A queue of tasks and a schedule while every service in turn gets kill -9: all end, each once, none is lost."""
+"""A queue of tasks and a schedule while every service in turn gets kill -9: all end, each once."""
 
 import time
 from collections import Counter

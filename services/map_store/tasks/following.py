@@ -40,11 +40,12 @@ def follow(connection: Connection, before: MissionRecord, record: MissionRecord,
 
 def give_up_lost(connection: Connection, record: MissionRecord, now_ns: int) -> None:
     """End tasks that are said to run and are not the mission on record, as when that was damaged."""
-    under_way = record.mission_id if record.action else ""
     for task in tasks_in(connection, record.robot, ["running"])[0]:
-        if task.mission_id != under_way and task.put_back:
+        if task.mission_id == record.mission_id:
+            continue
+        if task.put_back:
             _wait_again(connection, task, {})
-        elif task.mission_id != under_way:
+        else:
             log.error("robot %s: task %s failed, %s", record.robot, task.task_id, LOST)
             finish(connection, task, "failed", "service_lost", LOST, now_ns)
 

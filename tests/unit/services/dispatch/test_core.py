@@ -105,6 +105,11 @@ def test_a_low_battery_sends_the_robot_home_and_puts_the_running_task_back():
     assert step(put_back, seen("cancelled", "a", charge=0.19)) == ("begin", "home-1")
 
 
+def test_a_robot_on_its_way_home_goes_on():
+    way = queue(task("home-1", "running", for_battery=True), task("a"))
+    assert step(way, seen("running", "home-1", charge=0.1)) == ("wait", "")
+
+
 def test_a_robot_without_a_task_is_left_alone_and_one_whose_tasks_wait_goes_home_first():
     assert step(queue(), seen(charge=0.1)) == ("wait", "")
     assert step(queue(), seen("running", "m-0", charge=0.1)) == ("wait", "")
