@@ -37,7 +37,7 @@ def states(http: httpx.Client) -> dict[str, str]:
 
 def test_the_mission_of_the_form_is_queued_by_one_click(page: Any, http: httpx.Client):
     page.click("#queue-it")
-    page.wait_for_selector("#tasks td:has-text('explore in flat')", timeout=WAIT_MS)
+    page.wait_for_selector("#task-list td:has-text('explore in flat')", timeout=WAIT_MS)
     (task,) = http.get(TASKS_URL).json()["tasks"]
     assert (task["kind"], task["map"], task["state"]) == ("explore", "flat", "queued")
 
@@ -45,18 +45,18 @@ def test_the_mission_of_the_form_is_queued_by_one_click(page: Any, http: httpx.C
 def test_a_task_is_moved_and_cancelled(page: Any, http: httpx.Client, store: Store):
     for task_id in ("one", "two"):
         http.post(TASKS_URL, json={**ERRAND, "task_id": task_id})
-    page.wait_for_selector("#tasks tbody tr:nth-child(2)", timeout=WAIT_MS)
-    page.select_option("#tasks tbody tr:nth-child(2) select", "9")
+    page.wait_for_selector("#task-list tbody tr:nth-child(2)", timeout=WAIT_MS)
+    page.select_option("#task-list tbody tr:nth-child(2) select", "9")
     assert wait_until(
         lambda: [one["task_id"] for one in http.get(TASKS_URL).json()["tasks"]] == ["two", "one"], WAIT_S
     )
-    page.wait_for_selector("#tasks tbody tr:first-child span[title^=two]", timeout=WAIT_MS)
-    page.click("#tasks tbody tr:nth-child(2) button")
+    page.wait_for_selector("#task-list tbody tr:first-child span[title^=two]", timeout=WAIT_MS)
+    page.click("#task-list tbody tr:nth-child(2) button")
     page.wait_for_selector("#ended-tasks span.cancelled", timeout=WAIT_MS)
     assert states(http) == {"one": "cancelled", "two": "queued"}
     store.begin("two")
-    page.wait_for_selector("#tasks span.state:text-is('running')", timeout=WAIT_MS)
-    page.click("#tasks button")
+    page.wait_for_selector("#task-list span.state:text-is('running')", timeout=WAIT_MS)
+    page.click("#task-list button")
     page.click("#confirm-yes")
 
 
@@ -90,7 +90,7 @@ def test_the_view_is_accessible(page: Any, http: httpx.Client, store: Store):
     errand = {"cron": "30 22 * * *", "time_zone": "Europe/Zurich", "task": ERRAND}
     assert http.put(f"{SCHEDULES_URL}/night", json=errand).status_code == 200
     page.wait_for_selector("#schedules td time", timeout=WAIT_MS)
-    page.wait_for_selector("#tasks span.state:text-is('running')", timeout=WAIT_MS)
+    page.wait_for_selector("#task-list span.state:text-is('running')", timeout=WAIT_MS)
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
         found = Axe().run(page).response["violations"]

@@ -24,7 +24,7 @@ export class Queue {
   clear() {
     this.seen = "";
     $("queue-why").textContent = "";
-    for (const id of ["tasks", "ended-tasks", "schedules"]) $(id).replaceChildren();
+    for (const id of ["task-list", "ended-tasks", "schedules"]) $(id).replaceChildren();
     if (this.shown()) this.show();
   }
 
@@ -38,7 +38,7 @@ export class Queue {
     try {
       const [queue, schedules] = await Promise.all([get(this.url("tasks?ended=8")), get(this.url("schedules"))]);
       const seen = JSON.stringify([queue, schedules]);
-      const busy = document.activeElement?.closest("#tasks select");
+      const busy = document.activeElement?.closest("#task-list select");
       if (robot !== this.where().robot || seen === this.seen || busy) return;
       this.seen = seen;
       this.list(queue);
@@ -54,7 +54,7 @@ export class Queue {
     $("queue-why").classList.toggle("bad", Boolean(queue.alarm));
     const rows = queue.tasks.map((task) => [this.what(task), this.state(task),
       task.state === "running" ? String(task.priority) : this.priority(task), this.canceller(task)]);
-    $("tasks").replaceChildren(rows.length ? table(TEXT.taskColumns, rows) : html("p", { class: "quiet" }, TEXT.noTasks));
+    $("task-list").replaceChildren(rows.length ? table(TEXT.taskColumns, rows) : html("p", { class: "quiet" }, TEXT.noTasks));
     const ended = queue.ended.map((task) => [this.what(task), this.state(task), when(task.ended), task.reason]);
     $("ended-tasks").replaceChildren(...(ended.length ? [table(TEXT.endedColumns, ended)] : []));
   }

@@ -12,7 +12,7 @@ S = 1_000_000_000
 NOW_NS = 1_000 * S
 
 
-class Desk:
+class Times:
     """A store of tasks whose clock is set by hand."""
 
     def __init__(self, database: Database) -> None:
@@ -32,23 +32,23 @@ class Desk:
 
 
 @pytest.fixture
-def desk(database: Database) -> Desk:
-    return Desk(database)
+def times(database: Database) -> Times:
+    return Times(database)
 
 
-def test_a_due_time_makes_one_task_however_often_it_is_asked_for(desk: Desk):
-    desk.put()
-    task = desk.due(1_100)
+def test_a_due_time_makes_one_task_however_often_it_is_asked_for(times: Times):
+    times.put()
+    task = times.due(1_100)
     assert (task.task_id, task.schedule, task.priority, task.due_ns) == ("night-1100", "night", 6, 1_100 * S)
-    assert desk.due(1_100) is None
-    assert desk.due(1_099) is None
-    assert [task.task_id for task in desk.ask("read").tasks] == ["night-1100"]
+    assert times.due(1_100) is None
+    assert times.due(1_099) is None
+    assert [task.task_id for task in times.ask("read").tasks] == ["night-1100"]
 
 
-def test_times_from_before_a_schedule_was_set_make_none(desk: Desk):
-    desk.put()
-    assert desk.due(1_000) is None
-    assert desk.due(1_001) is not None
+def test_times_from_before_a_schedule_was_set_make_none(times: Times):
+    times.put()
+    assert times.due(1_000) is None
+    assert times.due(1_001) is not None
 
 
 @pytest.mark.parametrize(
@@ -61,53 +61,55 @@ def test_times_from_before_a_schedule_was_set_make_none(desk: Desk):
     ],
     ids=["task", "cron", "time zone", "enabled"],
 )
-def test_a_changed_schedule_begins_anew_only_where_its_times_changed(desk: Desk, changes, forgets):
-    desk.put()
-    desk.due(1_100)
-    desk.now_ns = 2_000 * S
-    assert desk.put(**changes).handled_ns == (2_000 if forgets else 1_100) * S
+def test_a_changed_schedule_begins_anew_only_where_its_times_changed(times: Times, changes, forgets):
+    times.put()
+    times.due(1_100)
+    times.now_ns = 2_000 * S
+    assert times.put(**changes).handled_ns == (2_000 if forgets else 1_100) * S
 
 
-def test_a_schedule_that_is_off_makes_none_and_catches_nothing_up_when_it_is_on_again(desk: Desk):
-    desk.put(enabled=False)
-    assert desk.due(1_100) is None
-    desk.now_ns = 1_200 * S
-    desk.put()
-    assert desk.due(1_100) is None
+def test_a_schedule_that_is_off_makes_none_and_catches_nothing_up_when_it_is_on_again(times: Times):
+    times.put(enabled=False)
+    assert times.due(1_100) is None
+    times.now_ns = 1_200 * S
+    times.put()
+    assert times.due(1_100) is None
 
 
-def test_a_skipped_time_is_counted_and_handled(desk: Desk):
-    desk.put()
-    assert desk.due(1_100, skip=True, reason="the robot was off") is None
-    assert desk.due(1_100) is None
-    (schedule,) = desk.ask("read").schedules
+def test_a_skipped_time_is_counted_and_handled(times: Times):
+    times.put()
+    assert times.due(1_100, skip=True, reason="the robot was off") is None
+    assert times.due(1_100) is None
+    (schedule,) = times.ask("read").schedules
     assert (schedule.skipped, schedule.skipped_ns, schedule.handled_ns) == (1, NOW_NS, 1_100 * S)
 
 
-def test_while_a_task_of_an_earlier_time_waits_no_other_is_made(desk: Desk):
-    desk.put()
-    desk.due(1_100)
-    assert desk.due(1_200) is None
-    assert desk.ask("read").schedules[0].skipped == 1
-    desk.ask("cancel", task_id="night-1100")
-    assert desk.due(1_300) is not None
+def test_while_a_task_of_an_earlier_time_waits_no_other_is_made(times: Times):
+    times.put()
+    times.due(1_100)
+    assert times.due(1_200) is None
+    assert times.ask("read").schedules[0].skipped == 1
+    times.ask("cancel", task_id="night-1100")
+    assert times.due(1_300) is not None
 
 
-def test_a_schedule_removed_and_set_again_does_not_make_the_same_task_twice(desk: Desk):
-    desk.put()
-    desk.due(1_100)
-    desk.ask("cancel", task_id="night-1100")
-    desk.ask("remove_schedule", name="night")
-    desk.put()
-    assert desk.due(1_100) is None
-    assert desk.ask("read").tasks == ()
+def test_a_schedule_removed_and_set_again_does_not_make_the_same_task_twice(times: Times):
+    times.put()
+    times.due(1_100)
+    times.ask("cancel", task_id="night-1100")
+    times.ask("remove_schedule", name="night")
+    times.put()
+    assert times.due(1_100) is None
+    assert times.ask("read").tasks == ()
 
 
-def test_what_is_not_there_or_too_much_is_said(desk: Desk, monkeypatch: pytest.MonkeyPatch):
+def test_a_schedule_that_is_not_there_or_one_too_many_is_refused(
+    times: Times, monkeypatch: pytest.MonkeyPatch
+):
     with pytest.raises(MissingError, match="r1 has no schedule 'night'"):
-        desk.due(1_100)
+        times.due(1_100)
     with pytest.raises(MissingError):
-        desk.ask("remove_schedule", name="night")
+        times.ask("remove_schedule", name="night")
     monkeypatch.setattr(timetable, "MOST", 0)
     with pytest.raises(ConflictError, match="has 0 schedules"):
-        desk.put()
+        times.put()
