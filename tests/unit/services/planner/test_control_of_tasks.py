@@ -122,8 +122,18 @@ def test_an_end_that_could_not_be_saved_is_saved_before_anything_else(control, s
         start(control, "two")
     assert control.state == "cancelled"
     store.away = False
-    control.settle()
-    assert (store.record.mission_id, store.record.outcome) == ("one", "cancelled")
     saves = store.saves
     control.settle()
-    assert store.saves == saves, "once is enough"
+    assert (store.record.mission_id, store.record.outcome, store.saves) == ("one", "cancelled", saves + 1)
+    control.settle()
+    assert store.saves == saves + 1, "once is enough"
+
+
+def test_the_end_of_a_mission_is_on_record_before_the_next_begins(control, store):
+    start(control)
+    store.away = True
+    with pytest.raises(QueryError):
+        control.handle(MissionRequest(action="cancel"))
+    store.away, saves = False, store.saves
+    start(control, "two")
+    assert (store.record.mission_id, store.saves) == ("two", saves + 2)
