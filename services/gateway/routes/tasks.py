@@ -144,15 +144,17 @@ async def cancel_task(
     request: Request, robot: RobotPath, task_id: TaskPath, gateway: GatewayDep
 ) -> TaskAnswer:
     """Cancel a task that waits; one that runs is cancelled with its mission, by an operator."""
-    task = await _about(gateway, robot, TaskRequest(action="cancel", task_id=task_id))
+    token = person_of(request).token
+    for action in ("read", "cancel"):  # it may begin in between
+        task = await _about(gateway, robot, TaskRequest(action=action, task_id=task_id))
+        if task.state == "running" and token is not None and not includes(token.role, "operator"):
+            expected, got = "role operator to cancel a task that runs", token.role
+            next_step = "ask somebody who is operator"
+            raise ProblemError(
+                403, "role_too_low", expected, got, next_step, needed="operator", role=token.role
+            )
     if task.state != "running":
         return task
-    token = person_of(request).token
-    if token is not None and not includes(token.role, "operator"):
-        expected, got = "role operator to cancel a task that runs", token.role
-        raise ProblemError(
-            403, "role_too_low", expected, got, "ask an operator", needed="operator", role=token.role
-        )
     wish = MissionRequest(action="cancel", map=task.map, mission_id=task.mission_id)
     await gateway.asker_for(robot).ask("planner", MISSION, wish, gateway.settings.ask_timeout_s, robot=robot)
     return await _about(gateway, robot, TaskRequest(action="read", task_id=task_id))

@@ -16,10 +16,11 @@ class CountParameters(BaseModel):
     frames: int = Field(default=3, ge=1, le=10_000)
     file: str = ""
     name: str = ""
+    keeps: bool = Field(default=True, description="What it has counted is its checkpoint.")
 
 
 class Count:
-    """Holds still; what it has counted is its checkpoint."""
+    """Holds still."""
 
     def __init__(self, parameters: CountParameters, counted: int) -> None:
         self._parameters, self._counted = parameters, counted
@@ -27,7 +28,7 @@ class Count:
     @property
     def progress(self) -> Progress:
         """How far it is."""
-        return Progress(checkpoint={"counted": self._counted})
+        return Progress(checkpoint={"counted": self._counted} if self._parameters.keeps else {})
 
     def decide(self, _observation: Observation) -> Decision:
         """Count one frame."""
