@@ -15,6 +15,7 @@ from shared.messages import (
     missions,
     sensors,
     simulation,
+    tasks,
 )
 from shared.messages.base import Message
 from shared.transport.keys import fill
@@ -82,6 +83,7 @@ BATTERY = Topic("topnav/{robot}/battery", body.Battery, Delivery.DATA, 10_000)
 ESTOP_STATE = Topic("topnav/{robot}/stopped", estop.EStopState, Delivery.COMMAND, 10_000)
 ROBOT_ESTOP_STATE = Topic("topnav/{robot}/standing", estop.EStopState, Delivery.COMMAND, 10_000)
 STATUS = Topic("topnav/{robot}/status", missions.MissionStatus, Delivery.LOG, 1 * MB)
+QUEUE = Topic("topnav/{robot}/queue", tasks.QueueStatus, Delivery.DATA, 10_000)
 EVENT = Topic("topnav/{robot}/event", missions.Event, Delivery.LOG, 100_000)
 TRUTH = Topic("topnav/{robot}/truth", simulation.Truth, Delivery.LOG, 10_000)
 MAP_DELTA = Topic("topnav/maps/{map}/delta", maps.MapDelta, Delivery.RECOVERED, 64 * MB)
@@ -101,6 +103,7 @@ MAP_READ = Query("topnav/maps/{map}/read", maps.MapRequest, maps.MapReply, 512 *
 MISSION_RECORD = Query(
     "topnav/missions/{robot}", maps.MissionRecordRequest, maps.MissionRecord, 8 * MB, anyone=True
 )
+TASKS = Query("topnav/missions/{robot}/tasks", tasks.TaskRequest, tasks.TaskReply, 8 * MB, anyone=True)
 SIMULATION = Query(
     "topnav/{robot}/simulation", simulation.SimulationRequest, simulation.SimulationReply, 64 * MB
 )

@@ -15,6 +15,7 @@ SERVICES = (
     "map_store",
     "planner",
     "drive",
+    "dispatch",
     "gateway",
     "recorder",
     "launcher",
@@ -88,6 +89,7 @@ IMPURE_OURS = {
 FORBIDDEN = {
     "planner": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
     "drive": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
+    "dispatch": {"torch", "kornia", "cv2", "sapien", "fastapi", "sqlalchemy"},
     "camera": {"torch", "kornia", "sapien", "fastapi", "sqlalchemy"},
     "gateway": {"torch", "kornia", "sapien", "sqlalchemy"},
     "map_store": {"torch", "kornia", "cv2", "sapien"},

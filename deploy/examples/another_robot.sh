@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# One more simulated robot beside a running stack, in the same maps: its own simulator, planner and drive; feature
-# service, map store and page are shared. The simulators do not show each other's robots.
+# One more simulated robot beside a running stack, in the same maps: its own simulator, planner, drive and
+# dispatch; feature service, map store and page are shared. The simulators do not show each other's robots.
 #
 #   TOPNAV_FEATURES_ROBOTS=r1,r2 topnav up --detach
 #   deploy/examples/another_robot.sh r2
 #
-# PYTHON, TOPNAV_ENDPOINT, TOPNAV_DATA_DIR and the settings of the three services may be set before.
+# PYTHON, TOPNAV_ENDPOINT, TOPNAV_DATA_DIR and the settings of the four services may be set before.
 set -euo pipefail
 
 export TOPNAV_ROBOT=${1:?name of the robot, for example r2}
@@ -19,7 +19,7 @@ export SIMULATOR_STATE_DIR=$state/robot-state DRIVE_STATE_DIR=$state/drive-state
 services=()
 trap 'kill "${services[@]}" 2>/dev/null; wait' EXIT
 trap 'exit 0' INT TERM
-for module in simulator services.planner services.drive; do
+for module in simulator services.planner services.drive services.dispatch; do
     "${PYTHON:-python}" -m "$module" &
     services+=($!)
 done

@@ -12,7 +12,7 @@ read -ra docker <<<"${DOCKER:-docker}"
 read -ra curl <<<"${CURL:-curl}"
 folder=$(mktemp -d)
 export COMPOSE_PROJECT_NAME=topnav-containers TOPNAV_SEED=1
-services=(router map-store simulator features planner drive gateway)
+services=(router map-store simulator features planner drive dispatch gateway)
 
 if ! "${docker[@]}" compose version >/dev/null 2>&1 || ! "${docker[@]}" info >/dev/null 2>&1; then
     echo "make containers: skipped, no Docker Engine with Compose answers" >&2

@@ -33,7 +33,9 @@ from services.gateway.routes import (
     missions,
     robots,
     runs,
+    schedules,
     session,
+    tasks,
     whereabouts,
 )
 from services.gateway.settings import GatewaySettings
@@ -42,6 +44,22 @@ from shared.bus import Bus
 from shared.web.openapi import describe
 
 CONSOLE = Path(__file__).resolve().parent / "console"
+
+GUARDED = (
+    driving,
+    estop,
+    evidence,
+    goals,
+    missions,
+    maps,
+    robots,
+    runs,
+    schedules,
+    session,
+    tasks,
+    whereabouts,
+)
+"""Routes that ask who sends a request."""
 
 
 def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
@@ -79,7 +97,7 @@ def create_app(settings: GatewaySettings, bus: Bus) -> FastAPI:
     app.state.access = Access(settings, ValidTokens.chosen(settings))
     problems.install(app, metrics)
     app.add_middleware(ResponseHeaders, metrics=metrics)
-    for resource in (driving, estop, evidence, goals, missions, maps, robots, runs, session, whereabouts):
+    for resource in GUARDED:
         app.include_router(resource.router, dependencies=[Depends(guard)])
     for open_to_all in (live, health):
         app.include_router(open_to_all.router)

@@ -32,7 +32,9 @@ from services.launcher.commands import (
     replay,
     robot,
     rule,
+    schedule,
     status,
+    task,
     token,
     up,
     world,
@@ -67,7 +69,22 @@ for command in (
     mcp,
 ):
     app.add_typer(command.app)
-for command in (map, place, rule, mission, camera, robot, certs, token, up, down, status, doctor):
+for command in (
+    map,
+    place,
+    rule,
+    mission,
+    task,
+    schedule,
+    camera,
+    robot,
+    certs,
+    token,
+    up,
+    down,
+    status,
+    doctor,
+):
     app.add_typer(command.app)
 
 

@@ -14,6 +14,7 @@ from services.map_store.settings import MapStoreSettings
 from services.map_store.storage.database import Database
 from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
+from services.map_store.tasks.queue import TaskStore
 from shared.bus import Bus
 from shared.lifecycle import run_service
 from shared.web.origins import LOOPBACK_NAMES
@@ -56,7 +57,8 @@ def main() -> None:
         )
         try:
             with serve(app, settings, stop):
-                run(bus, stop, store, MissionStore(database), deltas, announce)
+                missions, tasks = MissionStore(database), TaskStore(database, time.time_ns)
+                run(bus, stop, store, missions, tasks, deltas, announce)
         finally:
             merges.close()
             database.close()

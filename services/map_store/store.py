@@ -20,6 +20,7 @@ from services.map_store.storage.graph import Graph, Step, added_by, apply
 from services.map_store.storage.graphs import Graphs
 from services.map_store.storage.missions import follow_rename
 from services.map_store.storage.operations import prepare
+from services.map_store.tasks import records
 from shared.messages.maps import MapDelta, Operation
 
 
@@ -92,10 +93,11 @@ class MapStore:
             deltas.append(MapDelta(map=name, revision=revision, reset=True))
 
     def rename(self, name: str, new_name: str) -> None:
-        """Give a map another name, also in the missions in it; followers of both are told to read again."""
+        """Give a map another name, also in missions and tasks in it; followers of both must read again."""
         with self._write() as (connection, deltas):
             found = catalogue.rename(connection, name, new_name)
             follow_rename(connection, name, new_name)
+            records.follow_rename(connection, name, new_name)
             # In this order: who follows to the new name, which may be gone again, finds no reset there.
             deltas.append(MapDelta(map=new_name, revision=found.revision, reset=True))
             deltas.append(MapDelta(map=name, revision=found.revision, reset=True, renamed_to=new_name))

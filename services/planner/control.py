@@ -25,9 +25,11 @@ from shared.messages.missions import (
     MissionRequest,
     MissionState,
     MissionStatus,
+    PausedBy,
 )
-from shared.queries import RefusedError
+from shared.queries import QueryError, RefusedError
 from shared.topics import MISSION_RECORD
+from shared.wire import WireError
 
 log = logging.getLogger(__name__)
 
@@ -42,12 +44,14 @@ class MissionControl:
         self._matcher: RemoteMatcher | None = None
         self.map: RemoteMap | None = None
         self.state: MissionState = "idle"
+        self._paused_by: PausedBy = ""
         self._failure: FailureKind = ""
         self._reason = ""
         self._known = MapGraph()
         self._whereabouts = Whereabouts()
         self.step_count = 0
         self._got_on_at = 0
+        self._unsaved: MissionRecord | None = None
 
     @property
     def epoch(self) -> int:
@@ -77,13 +81,24 @@ class MissionControl:
         if request.action not in CONTROLS:
             self._start(request)
         elif request.action != "status":
-            self._change(request.action)
+            if request.mission_id not in ("", self._record.mission_id):
+                why = (
+                    f"mission {request.mission_id} is not the one of now, that is {self._record.mission_id!r}"
+                )
+                raise MissionError(why, "conflict")
+            self._change(request.action, "person")
         return self.status()
 
-    def pause(self, reason: str) -> None:
+    def pause(self, reason: str, by: PausedBy) -> None:
         """Pause a running mission for a reason that the status then gives."""
         self._reason = reason
-        self._change("pause")
+        self._change("pause", by)
+
+    def settle(self) -> None:
+        """Save an end that the map store was not there to hear of; QueryError while it is away."""
+        if self._unsaved is not None:
+            self._save(self._unsaved)
+            self._unsaved = None
 
     def step(self, observation: Observation) -> Decision:
         """Decide for one frame of a running mission."""
@@ -131,6 +146,7 @@ class MissionControl:
             via_index=progress.via_index,
             nearest_node=progress.nearest_node,
             epoch=self.epoch,
+            paused_by=self._paused_by if self.state == "paused" else "",
             travel=progress.travel,
             travel_reason=progress.travel_reason,
             figures=self._figures({**facts, **progress.figures}),
@@ -169,6 +185,7 @@ class MissionControl:
             self._lose_map(error)
             return
         self.state = "paused" if self._record.paused else "running"
+        self._paused_by = self._record.paused_by
         self._reason = "taken over after a restart"
 
     def _remember_end(self) -> None:
@@ -223,6 +240,7 @@ class MissionControl:
         if self.state in ("running", "paused"):
             why = f"mission {self._record.mission_id} is {self.state}; cancel it first"
             raise MissionError(why, "conflict")
+        self.settle()
         record = MissionRecord(
             robot=self._settings.robot,
             epoch=self.epoch,
@@ -230,13 +248,19 @@ class MissionControl:
             action=request.action,
             map=request.map,
             parameters=request.parameters,
+            checkpoint=request.checkpoint,
             goal=request.goal,
             goal_node=request.goal_node,
             seed=request.seed,
             max_steps=request.max_steps,
         )
+        before = self._mission, self._record, self.map, self._matcher, self._known, self._whereabouts
         self._begin(record, create=self._kinds[record.action].makes_map)
-        self._save()
+        try:
+            self._save()
+        except (QueryError, WireError):
+            self._mission, self._record, self.map, self._matcher, self._known, self._whereabouts = before
+            raise
         self.state, self._failure, self._reason, self.step_count = "running", "", "started", 0
         self._got_on_at = 0
 
@@ -258,7 +282,10 @@ class MissionControl:
         self._whereabouts = whereabouts
         return mission
 
-    def _change(self, action: str) -> None:
+    def _change(self, action: str, by: PausedBy) -> None:
+        if action == "pause" and by == "person" and self._waits_for_stop():
+            self._save_pause(by)  # it stays paused when the stop is cleared
+            return
         allowed = {"pause": ("running",), "resume": ("paused",), "cancel": ("running", "paused")}[action]
         if self.state not in allowed:
             why = f"{action} needs a mission that is {' or '.join(allowed)}, it is {self.state}"
@@ -267,7 +294,14 @@ class MissionControl:
             self._finish("cancelled", "cancelled", "cancelled by request")
             return
         self.state = "paused" if action == "pause" else "running"
-        self._record = self._record.model_copy(update={"paused": action == "pause"})
+        self._save_pause(by if action == "pause" else "")
+
+    def _waits_for_stop(self) -> bool:
+        return self.state == "paused" and self._paused_by == "emergency_stop"
+
+    def _save_pause(self, by: PausedBy) -> None:
+        self._paused_by = by
+        self._record = self._record.model_copy(update={"paused": bool(by), "paused_by": by})
         self._save()
 
     def _finish(self, state: MissionState, failure: FailureKind, reason: str) -> None:
@@ -282,7 +316,8 @@ class MissionControl:
             step=self.step_count,
         )
         how = {"ended_action": self._record.action, "outcome": state, "failure": failure}
-        self._save(ended.model_copy(update={**how, "reason": reason[:400]}))
+        self._unsaved = ended.model_copy(update={**how, "reason": reason[:400]})
+        self.settle()
 
     def _keep_checkpoint(self, progress: Progress) -> None:
         """What a mission has done is on record before the robot does what comes next."""

@@ -96,7 +96,8 @@ class MissionKind(Generic[P]):
         """A mission of this kind.
 
         Raises:
-            MissionError: parameters that it does not have or refuses, or a picture that it does not take.
+            MissionError: parameters that it does not have or refuses, a picture that it does not take, or a
+                checkpoint that is none of its own.
         """
         if context.goal is not None and not self.takes_picture:
             raise MissionError(f"{self.name} takes no goal picture")
@@ -105,7 +106,11 @@ class MissionKind(Generic[P]):
         except ValidationError as error:
             faults = "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors())
             raise MissionError(f"parameters of {self.name}: {faults}") from None
-        return self.make(context, wanted)
+        try:
+            return self.make(context, wanted)
+        except ValidationError as error:  # of its checkpoint: another program had other words for it
+            why = f"{self.name} cannot go on from {dict(context.checkpoint)}: {error.error_count()} errors"
+            raise MissionError(why) from None
 
     def info(self) -> MissionKindInfo:
         """What other processes need to know of it."""

@@ -84,10 +84,8 @@ class Planner:
         while (question := self._kind_requests.take()) is not None:
             question.reply(MissionKinds(kinds=self._kinds.infos()))
         by_hand = [wish.who for wish in self._wishes.take_all() if wish.action == "drive"]
-        held = self._emergency_stop() or (f"{by_hand[-1]} drives by hand" if by_hand else "")
-        if held and self.control.state == "running":
-            self.control.pause(held)
-            self._publish_status(now_s)
+        if self.control.state == "running":
+            self._pause_where_held(by_hand[-1] if by_hand else "", now_s)
         for delta in self._deltas.take_all():
             self.control.follow_store(delta)
         self._follow_robot(now_s)
@@ -100,6 +98,17 @@ class Planner:
             self._answer(self._motion.observe(self._features, now_s))
         if now_s - self._heartbeat_s > HEARTBEAT_S:
             self._publish_status(now_s)
+            self.control.settle()
+
+    def _pause_where_held(self, driver: str, now_s: float) -> None:
+        """Pause for the emergency stop, or for a person who drives by hand."""
+        if stop := self._emergency_stop():
+            self.control.pause(stop, "emergency_stop")
+        elif driver:
+            self.control.pause(f"{driver} drives by hand", "by_hand")
+        else:
+            return
+        self._publish_status(now_s)
 
     def _follow_robot(self, now_s: float) -> None:
         """How the robot moves and what is around it."""

@@ -24,6 +24,7 @@ class Role(Enum):
     MAP_STORE = "map_store"
     PLANNER = "planner"
     DRIVE = "drive"
+    DISPATCH = "dispatch"
     GATEWAY = "gateway"
     RECORDER = "recorder"
     OPERATOR = "operator"
@@ -32,7 +33,7 @@ class Role(Enum):
     @property
     def of_one_robot(self) -> bool:
         """Whether such a service belongs to one robot and may touch the keys of no other."""
-        return self in (Role.ROBOT, Role.SIMULATOR, Role.CAMERA, Role.FEATURES, Role.PLANNER, Role.DRIVE)
+        return self in OF_ONE_ROBOT
 
     def common_name(self, robot: str) -> str:
         """Common name of a certificate, "drive.r1" or "map_store".
@@ -42,6 +43,17 @@ class Role(Enum):
         """
         check_robot(robot)
         return f"{self.value}.{robot}" if self.of_one_robot else self.value
+
+
+OF_ONE_ROBOT = (
+    Role.ROBOT,
+    Role.SIMULATOR,
+    Role.CAMERA,
+    Role.FEATURES,
+    Role.PLANNER,
+    Role.DRIVE,
+    Role.DISPATCH,
+)
 
 
 def robot_names(variables: Mapping[str, str]) -> tuple[str, ...]:
@@ -94,13 +106,14 @@ STREAMS: dict[Topic[Any], Grant] = {
     topics.FEATURES: _grant([Role.FEATURES], [Role.PLANNER, Role.CAMERA, *WATCHERS]),
     topics.HEADING: _grant([Role.PLANNER], [Role.DRIVE, *WATCHERS]),
     topics.VELOCITY: _grant([Role.DRIVE], [*BODIES, Role.PLANNER, *WATCHERS]),
-    topics.MANUAL: _grant(PEOPLE, [Role.DRIVE, Role.PLANNER, *WATCHERS]),
+    topics.MANUAL: _grant(PEOPLE, [Role.DRIVE, Role.PLANNER, Role.DISPATCH, *WATCHERS]),
     topics.ODOMETRY: _grant(BODIES, [Role.DRIVE, Role.PLANNER, *WATCHERS]),
     topics.IMU: _grant(BODIES, WATCHERS),
-    topics.BATTERY: _grant(BODIES, WATCHERS),
-    topics.ESTOP_STATE: _grant([Role.DRIVE], [*BODIES, Role.PLANNER, *WATCHERS]),
+    topics.BATTERY: _grant(BODIES, [Role.DISPATCH, *WATCHERS]),
+    topics.ESTOP_STATE: _grant([Role.DRIVE], [*BODIES, Role.PLANNER, Role.DISPATCH, *WATCHERS]),
     topics.ROBOT_ESTOP_STATE: _grant(BODIES, [Role.DRIVE, *WATCHERS]),
-    topics.STATUS: _grant([Role.PLANNER], [Role.PLANNER, Role.ROBOT, *WATCHERS]),
+    topics.STATUS: _grant([Role.PLANNER], [Role.PLANNER, Role.DISPATCH, Role.ROBOT, *WATCHERS]),
+    topics.QUEUE: _grant([Role.DISPATCH], WATCHERS),
     topics.EVENT: _grant([Role.PLANNER], WATCHERS),
     # Only evaluation may know where the robot really is.
     topics.TRUTH: _grant([Role.SIMULATOR], [*PEOPLE, Role.RECORDER]),
@@ -110,12 +123,13 @@ QUESTIONS: dict[Query[Any, Any], Grant] = {
     topics.MATCH: _grant([Role.FEATURES], [Role.PLANNER, Role.MAP_STORE, *PEOPLE]),
     topics.EXTRACT: _grant([Role.FEATURES], ASKERS),
     topics.EXTRACT_PHOTO: _grant([Role.FEATURES], ASKERS),
-    topics.MISSION: _grant([Role.PLANNER], ASKERS),
+    topics.MISSION: _grant([Role.PLANNER], [Role.DISPATCH, *ASKERS]),
     topics.MISSION_KINDS: _grant([Role.PLANNER], PEOPLE),
     topics.ESTOP: _grant([Role.DRIVE], ASKERS),
     # One key reads and writes: who only reads has a key of its own.
     topics.MAP: _grant([Role.MAP_STORE], [Role.PLANNER, *PEOPLE]),
     topics.MAP_READ: _grant([Role.MAP_STORE], [Role.FEATURES]),
     topics.MISSION_RECORD: _grant([Role.MAP_STORE], [Role.PLANNER]),
+    topics.TASKS: _grant([Role.MAP_STORE], [Role.DISPATCH, *PEOPLE]),
     topics.SIMULATION: _grant([Role.SIMULATOR], [Role.OPERATOR]),
 }

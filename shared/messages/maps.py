@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from shared.messages.base import SECTORS, Bearing, Message, Name, Part
 from shared.messages.features import Features
-from shared.messages.missions import FailureKind, KindName, Parameters
+from shared.messages.missions import FailureKind, KindName, Parameters, PausedBy
 from shared.messages.places import DeletePlace, DeleteRule, Place, PutPlace, PutRule, Rule
 
 Ways = Annotated[
@@ -210,6 +210,7 @@ class MissionRecord(Message):
     max_steps: int = 20_000
     step: int = 0
     paused: bool = False
+    paused_by: PausedBy = ""
     ended_action: KindName = ""
     outcome: Literal["", "succeeded", "failed", "cancelled"] = ""
     failure: FailureKind = ""

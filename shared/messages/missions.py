@@ -45,6 +45,10 @@ Parameters = Annotated[dict[str, JsonValue], Field(max_length=64), AfterValidato
 """What a kind of mission asks for, by name; its own model checks them."""
 
 
+PausedBy = Literal["", "person", "by_hand", "emergency_stop"]
+"""What a paused mission waits for: a person who paused it or drives by hand, or the stop's clearing."""
+
+
 class MissionRequest(Message):
     """Start, pause, resume, cancel or ask.
 
@@ -53,6 +57,8 @@ class MissionRequest(Message):
         parameters: of the kind.
         goal: features of a goal picture, for kinds that take one.
         goal_node: the parameter of that name, from senders that know no parameters.
+        mission_id: of the mission to start; of a control, the only one that it is for, "" for any.
+        checkpoint: how far the same mission had got before.
         max_steps: frames after which it is given up; of a kind with checkpoints, frames since the last one.
     """
 
@@ -62,6 +68,7 @@ class MissionRequest(Message):
     map: Name = "default"
     mission_id: str = Field(default="", max_length=64)
     parameters: Parameters = Field(default_factory=dict)
+    checkpoint: Parameters = Field(default_factory=dict)
     goal: Features | None = None
     goal_node: int | None = None
     seed: int = Field(default=0, ge=0)
@@ -80,6 +87,7 @@ class MissionStatus(Message):
 
     Attributes:
         figures: those that the kind's record shows.
+        paused_by: what it waits for while it is paused.
         travel: state of the travel machine (deploy/TRAVEL.md); "" while the mission does not travel.
         travel_reason: of its last transition.
     """
@@ -105,6 +113,7 @@ class MissionStatus(Message):
     disparity_rad: float | None = None
     epoch: int = 0
     figures: tuple[EventValue, ...] = Field(default=(), max_length=64, fail_fast=True)
+    paused_by: PausedBy = ""
     travel: str = Field(default="", max_length=32)
     travel_reason: str = Field(default="", max_length=200)
 

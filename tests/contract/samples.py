@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from shared.messages import body, camera, drive, estop, maps, matching, places, sensors, simulation
+from shared.messages import body, camera, drive, estop, maps, matching, places, sensors, simulation, tasks
 from shared.messages import features as looks
 from shared.messages import missions as orders
 from shared.messages.base import Message
@@ -133,6 +133,7 @@ def mission() -> maps.MissionRecord:
         max_steps=500,
         step=12,
         paused=True,
+        paused_by="emergency_stop",
         ended_action="explore",
         outcome="failed",
         failure="lost",
@@ -274,6 +275,7 @@ def missions() -> tuple[Message, ...]:
             map="flat",
             mission_id="m-1",
             parameters={"rounds": 2, "places": ["dock", "door"]},
+            checkpoint={"visit": 3},
             goal=features(),
             goal_node=4,
             seed=1,
@@ -299,9 +301,16 @@ def missions() -> tuple[Message, ...]:
             disparity_rad=0.25,
             epoch=3,
             figures=(orders.EventValue(name="similarity", value=70),),
+            paused_by="emergency_stop",
             travel="following",
             travel_reason="a path leads from a node in sight to the destination",
         ),
+    )
+
+
+def kinds() -> tuple[Message, ...]:
+    """Kinds of mission, and decisions."""
+    return (
         orders.MissionKindsRequest(**AT),
         orders.MissionKinds(
             **AT,
@@ -363,6 +372,90 @@ def mapped() -> tuple[Message, ...]:
     )
 
 
+def errand() -> dict[str, object]:
+    return {
+        "kind": "patrol",
+        "map": "flat",
+        "parameters": {"places": ["dock", "door"]},
+        "priority": 7,
+        "seed": 3,
+        "max_steps": 99,
+    }
+
+
+def task() -> tasks.Task:
+    return tasks.Task(
+        **errand(),
+        task_id="night-1700000000",
+        robot="r1",
+        state="failed",
+        failure="refused",
+        reason="no place 'dock'",
+        attempt=2,
+        checkpoint={"visit": 1},
+        put_back=True,
+        for_battery=True,
+        schedule="night",
+        by="anna",
+        due_ns=STAMP_NS,
+        created_ns=STAMP_NS + 1,
+        started_ns=STAMP_NS + 2,
+        ended_ns=STAMP_NS + 3,
+    )
+
+
+def schedule() -> tasks.Schedule:
+    return tasks.Schedule(
+        name="night",
+        robot="r1",
+        cron="30 22 * * MON-FRI",
+        time_zone="Europe/Zurich",
+        task=tasks.Errand(**errand()),
+        enabled=False,
+        handled_ns=STAMP_NS,
+        skipped_ns=STAMP_NS + 1,
+        skipped=2,
+    )
+
+
+def queued() -> tuple[Message, ...]:
+    """Tasks, schedules, and what is told of the queue."""
+    return (
+        tasks.TaskRequest(
+            **AT,
+            action="make_due",
+            task_id="night-1700000000",
+            task=task(),
+            priority=7,
+            reason="the robot was off",
+            schedule=schedule(),
+            name="night",
+            due_ns=STAMP_NS,
+            skip=True,
+            ended=20,
+        ),
+        tasks.TaskReply(
+            **AT,
+            robot="r1",
+            tasks=(task(),),
+            ended=(task(),),
+            latest=task(),
+            task=task(),
+            schedules=(schedule(),),
+            damaged=1,
+        ),
+        tasks.QueueStatus(
+            **AT,
+            robot="r1",
+            waiting=2,
+            running="night-1700000000",
+            why="anna drives by hand",
+            on_hold=True,
+            alarm="did not get home",
+        ),
+    )
+
+
 def simulated() -> tuple[Message, ...]:
     """Simulation only."""
     return (
@@ -382,7 +475,7 @@ def simulated() -> tuple[Message, ...]:
 
 def samples() -> dict[type[Message], Message]:
     """Message type -> a full example."""
-    examples = (*seen(), *driven(), *missions(), *mapped(), *simulated())
+    examples = (*seen(), *driven(), *missions(), *kinds(), *mapped(), *queued(), *simulated())
     return {type(example): example for example in examples}
 
 

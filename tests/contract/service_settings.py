@@ -21,6 +21,7 @@ MODULES = {
     "features": "services.features.settings",
     "planner": "services.planner.settings",
     "drive": "services.drive.settings",
+    "dispatch": "services.dispatch.settings",
     "gateway": "services.gateway.settings",
 }
 HEADER = """\

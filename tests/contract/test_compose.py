@@ -89,7 +89,8 @@ def test_the_schema_would_notice_a_misspelt_key(schema):
 
 def test_every_process_of_the_architecture_is_there():
     assert set(SERVICES) == {
-        "router", "map-store", "simulator", "camera", "ros", "features", "planner", "drive", "gateway",
+        "router", "map-store", "simulator", "camera", "ros", "features", "planner", "drive", "dispatch",
+        "gateway",
     }  # fmt: skip
 
 

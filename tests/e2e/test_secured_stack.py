@@ -20,7 +20,7 @@ from shared.topics import ESTOP, TRUTH
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(900)]
 
 STEPS = "12"
-SERVICES = {"router", "map_store", "simulator", "features", "planner", "drive", "gateway"}
+SERVICES = {"router", "map_store", "simulator", "features", "planner", "drive", "dispatch", "gateway"}
 
 
 @pytest.fixture(scope="module")

@@ -19,6 +19,8 @@ AGENT = frozenset(
         ("POST", "/api/robots/{robot}/missions"),
         ("POST", "/api/robots/{robot}/missions/goto"),
         ("POST", "/api/robots/{robot}/missions/{action}"),
+        ("POST", "/api/robots/{robot}/tasks"),
+        ("DELETE", "/api/robots/{robot}/tasks/{task_id}"),  # one that waits; more is asked for one that runs
     }
 )
 """A program that decides by itself sends robots somewhere: never how fast, and it clears no stop."""
@@ -28,6 +30,9 @@ OPERATOR = frozenset(
         ("POST", "/api/maps"),
         ("DELETE", "/api/maps/{map_name}/places"),
         ("POST", "/api/robots/{robot}/drive"),
+        ("PATCH", "/api/robots/{robot}/tasks/{task_id}"),
+        ("PUT", "/api/robots/{robot}/schedules/{name}"),
+        ("DELETE", "/api/robots/{robot}/schedules/{name}"),
     }
 )
 DRIVING = frozenset({("POST", "/api/robots/{robot}/drive")})

@@ -17,13 +17,14 @@ import { Marks } from "./map/marks.js";
 import { Matches } from "./drive/matches.js";
 import { Mission } from "./drive/mission.js";
 import { Panorama } from "./drive/panorama.js";
+import { Queue } from "./drive/queue.js";
 import { Polar } from "./drive/polar.js";
 import { Runs } from "./record/runs.js";
 import { locked } from "./page/session.js";
 import { TEXT } from "./page/text.js";
 import { Views } from "./page/views.js";
 
-const SERVICES = ["simulator", "features", "map_store", "planner", "drive", "gateway"];
+const SERVICES = ["simulator", "features", "map_store", "planner", "drive", "dispatch", "gateway"];
 const REAL = ["ros", "camera"]; // in whose place no simulator is missed
 const BODY = ["odometry", "imu", "battery", "camera"];
 const DEFAULT_ROBOT = "r1";
@@ -52,6 +53,7 @@ const mapTable = new MapTable(maps);
 const runs = new Runs();
 const estop = new EStop(where, say);
 const byHand = new ByHand(where, say);
+const queue = new Queue(where, () => mission.wanted(), say, () => document.body.dataset.view === "tasks");
 const body = new Body();
 const live = new Live(heard, changed);
 const views = new Views(viewChanged);
@@ -61,6 +63,7 @@ function viewChanged(view) {
   else if (view === "why") history.open();
   else if (view === "maps") maps.refresh().then(() => mapTable.show());
   else if (view === "runs") runs.show();
+  else if (view === "tasks") queue.show();
 }
 
 function showMap(name) {
@@ -158,7 +161,7 @@ function checkAge() {
 function follow(name) {
   byHand.release();
   robot = name;
-  for (const part of [panorama, polar, body, events, mission, history, matches, estop]) part.clear();
+  for (const part of [panorama, polar, body, events, mission, history, matches, estop, queue]) part.clear();
   graph.status = null;
   $("travel").textContent = "";
   live.follow(name);

@@ -18,6 +18,7 @@ from shared.topics import (
     HEADING,
     IMU,
     ODOMETRY,
+    QUEUE,
     RANGES,
     STATUS,
     TRUTH,
@@ -44,6 +45,7 @@ NEWEST: tuple[Topic[Any], ...] = (
     IMU,
     BATTERY,
     CAMERA_STATE,
+    QUEUE,
 )
 """Of these an inbox keeps the newest only: under '*' robots would displace each other."""
 TELLING: tuple[Topic[Any], ...] = (RANGES, ESTOP_STATE)

@@ -20,6 +20,7 @@ from shared.messages.estop import EStopState
 from shared.messages.missions import Event, MissionStatus
 from shared.messages.sensors import Frame, Ranges
 from shared.messages.simulation import Truth
+from shared.messages.tasks import QueueStatus
 
 EVENTS_KEPT = 200
 """As many as the console's timeline shows at once."""
@@ -43,6 +44,7 @@ NEWEST: dict[type[Message], str] = {
     Velocity: "velocity",
     EStopState: "estop",
     Frame: "frame",
+    QueueStatus: "queue",
 }
 """What is kept and told as it stands now: the field of `RobotView`, and its name towards pages."""
 BODY: dict[type[Message], str] = {
@@ -71,6 +73,7 @@ class RobotView:
     imu: Imu | None = None
     battery: Battery | None = None
     camera: CameraState | None = None
+    queue: QueueStatus | None = None
     told_s: dict[str, float] = field(default_factory=dict)
     status: MissionStatus | None = None
     truth: Truth | None = None

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 import httpx
+from pydantic import ValidationError
 
 from shared.queries import QueryError
 from shared.wire import WireError
@@ -15,11 +16,14 @@ class ExperimentError(ValueError):
 
 @contextmanager
 def one_line_errors() -> Iterator[None]:
-    """Turn what services and HTTP report into an ExperimentError."""
+    """Turn what services and HTTP report, and what a message refuses, into an ExperimentError."""
     try:
         yield
     except (QueryError, WireError) as error:
         raise ExperimentError(f"a service did not answer as expected: {error}") from error
+    except ValidationError as error:
+        faults = (f"{'.'.join(map(str, fault['loc']))}: {fault['msg']}" for fault in error.errors())
+        raise ExperimentError("; ".join(faults)) from None
     except httpx.HTTPStatusError as error:
         text = error.response.text[:300]
         raise ExperimentError(f"{error.request.url} answered {error.response.status_code}: {text}") from error

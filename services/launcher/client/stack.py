@@ -21,6 +21,9 @@ ROBOT = "r1"
 JOIN_TIMEOUT_S = 15.0  # liveliness tokens arrive within a second; a loaded machine needs more
 ASK_TIMEOUT_S = 10.0  # as in client/mission.py
 NEEDED = frozenset({"planner", "drive", "features", "map_store"})
+DISPATCH = "dispatch"
+"""Not in a stack of a command's own: the robot is to do what the command says, and no task that waits."""
+
 ROBOTS = frozenset({"simulator", "ros", "camera"})
 """Any of them is a robot, or its eyes."""
 
@@ -138,6 +141,7 @@ def _launcher(choice: StackChoice, told: Callable[[str], None]) -> Launcher:
         ports=choice.ports,
         environment=environment,
         secure=choice.secure,
+        without=[DISPATCH],
         timeout_s=choice.timeout_s,
         told=told,
         ros=choice.ros,

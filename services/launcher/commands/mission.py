@@ -11,10 +11,6 @@ from services.launcher.terminal import options
 app = typer.Typer(name="mission", no_args_is_help=True, help="Missions of any kind that the planner knows.")
 
 Kind = Annotated[str, typer.Argument(help="One of 'topnav mission kinds'.")]
-Given = Annotated[
-    list[str] | None,
-    typer.Option("--set", help="A parameter of the kind, as NAME=VALUE; may be given often."),
-]
 Image = Annotated[Path | None, typer.Option(help="A goal picture, for kinds that take one.")]
 
 
@@ -47,7 +43,7 @@ def show_kinds(
 def start(
     kind: Kind,
     map_name: options.MapName = "flat",
-    given: Given = None,
+    given: options.Given = None,
     image: Image = None,
     seed: options.Seed = 1,
     max_steps: options.MaxSteps = 20_000,
@@ -63,7 +59,7 @@ def start(
     from services.launcher.terminal.progress import mission_progress
     from shared.messages.missions import MissionRequest
 
-    parameters = dict(_parameter(text) for text in given or [])
+    parameters = dict(options.named_value(text) for text in given or [])
     with stack.open_stack(stack.StackChoice(data_dir, endpoint=endpoint, timeout_s=timeout_s)) as opened:
         client = mission.MissionClient(opened.bus, opened.robot)
         goal = image and mission.goal_features(opened.bus, frame_from_file(image, opened.robot))
@@ -90,14 +86,3 @@ def start(
 
 def _properties(schema: dict[str, Any]) -> list[str]:
     return list(schema.get("properties", {}))
-
-
-def _parameter(text: str) -> tuple[str, Any]:
-    """NAME=VALUE; a value is JSON where it can be read as such, else text."""
-    name, separator, value = text.partition("=")
-    if not name or not separator:
-        raise typer.BadParameter(f"--set expects NAME=VALUE, got {text!r}")
-    try:
-        return name, json.loads(value)
-    except ValueError:
-        return name, value

@@ -50,6 +50,7 @@ class Launcher:
         secure: certificates, mTLS and access rules on the bus.
         camera: URL of a real camera, and ros: file of a robot in ROS 2, in place of the simulator.
         only: run these services and what they depend on.
+        without: leave these services out.
         variables: what the Compose file interpolates, and services are told beside what it says; by default
             this process's environment.
         compose_file: which processes there are.
@@ -69,6 +70,7 @@ class Launcher:
         ports: Ports | None = None,
         environment: Mapping[str, str] | None = None,
         only: Collection[str] | None = None,
+        without: Collection[str] = (),
         variables: Mapping[str, str] | None = None,
         compose_file: Path = COMPOSE_FILE,
         timeout_s: float = 300.0,
@@ -90,7 +92,7 @@ class Launcher:
         self._started = ""
         self._liveliness = Liveliness()
         self._variables = dict(variables or {})
-        specs = self._specs(compose_file, variables, only)
+        specs = self._specs(compose_file, variables, only, without)
         self._world = next((spec.environment[WORLD] for spec in specs if WORLD in spec.environment), "")
         self._checks: list[CommandHealth] = []
         policy = policy or RestartPolicy()
@@ -207,12 +209,17 @@ class Launcher:
         require_healthy(self.status, list(self.status()), timeout_s, self.logs, stop=stop, told=self._told)
 
     def _specs(
-        self, compose_file: Path, variables: Mapping[str, str] | None, only: Collection[str] | None
+        self,
+        compose_file: Path,
+        variables: Mapping[str, str] | None,
+        only: Collection[str] | None,
+        without: Collection[str],
     ) -> list[ProcessSpec]:
         given = self.settings.variables(variables)
         self._robots = robot_names(given)
         compose = load_compose(compose_file, given)
-        services = active_services(with_real(compose.services, given), only=only)
+        kept = {name: one for name, one in compose.services.items() if name not in without}
+        services = active_services(with_real(kept, given), only=only)
         self._stages = start_stages(services)
         machine = LocalMachine(sys.executable, self.settings.data_dir, self.settings.certs, self._root)
         return [local_process(name, service, compose.services, machine) for name, service in services.items()]

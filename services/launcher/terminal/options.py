@@ -1,7 +1,8 @@
 """Command-line options that several commands share."""
 
+import json
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -41,7 +42,24 @@ FieldOfView = Annotated[
     ),
 ]
 
+Robot = Annotated[str, typer.Option(help="Name of the robot.")]
+Given = Annotated[
+    list[str] | None,
+    typer.Option("--set", help="A parameter of the kind, as NAME=VALUE; may be given often."),
+]
+
 DATA_DIR = Path("data")
 RUNS_DIR = Path("runs")
 START_TIMEOUT_S = 300.0
 """Chosen: ten times what a large world takes to load on two busy cores."""
+
+
+def named_value(text: str) -> tuple[str, Any]:
+    """NAME=VALUE; a value is JSON where it can be read as such, else text."""
+    name, separator, value = text.partition("=")
+    if not name or not separator:
+        raise typer.BadParameter(f"--set expects NAME=VALUE, got {text!r}")
+    try:
+        return name, json.loads(value)
+    except ValueError:
+        return name, value

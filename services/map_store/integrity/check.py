@@ -14,6 +14,7 @@ from services.map_store.storage.database import Database
 from services.map_store.storage.missions import sound
 from services.map_store.storage.rows import parse_edge, parse_node
 from services.map_store.storage.tables import edges, marks, missions, nodes
+from services.map_store.tasks import records
 
 Finding = tuple[str, str]
 """The damaged thing and the reason."""
@@ -42,6 +43,7 @@ def check(database: Database, name: str | None = None) -> list[Damage]:
             if name is None:
                 found += [Damage("", *finding) for finding in _missions(connection)]
                 found += [Damage("", *finding) for finding in _answers(connection)]
+                found += [Damage("", *finding) for finding in _tasks(connection)]
     except CorruptError as error:
         return [*found, Damage("", "file", str(error))]
     for each in names if name is None else [name]:
@@ -122,6 +124,11 @@ def _missions(connection: Connection) -> Iterator[Finding]:
     for row in connection.execute(select(missions)).all():
         if not sound(row):
             yield f"mission of {row.robot!r}", "its record does not match its checksum"
+
+
+def _tasks(connection: Connection) -> Iterator[Finding]:
+    for name in records.damaged(connection):
+        yield name, "its record does not match its checksum"
 
 
 def _answers(connection: Connection) -> Iterator[Finding]:

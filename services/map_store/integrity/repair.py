@@ -16,6 +16,7 @@ from services.map_store.storage.catalogue import MapRecord
 from services.map_store.storage.graph import AddStoredNode, Graph, Step, apply
 from services.map_store.storage.missions import mend_missions
 from services.map_store.storage.tables import edges, map_blobs, maps, marks, nodes
+from services.map_store.tasks import records
 from shared.mapgraph.marks import nodes_of, only_nodes
 from shared.messages.maps import DeleteNode, PutEdge
 from shared.messages.places import Place, PutPlace, PutRule
@@ -39,6 +40,7 @@ def repair(connection: Connection, name: str, author: str, now_ns: int) -> tuple
     _remove_strays(connection)
     blobs.name_again(connection)
     missions, forgotten = mend_missions(connection), answers.mend(connection)
+    errands = records.mend(connection)
     row = _row_of(connection, name)
     whole = intact(maps, row)
     replayed = replay(connection, row.map_id, row.revision if whole else 0)
@@ -47,6 +49,7 @@ def repair(connection: Connection, name: str, author: str, now_ns: int) -> tuple
     links = blobs.relink(connection, found.map_id, replayed.blobs | _blobs_of(graph))
     done += [f"{missions} records of missions written anew"] if missions else []
     done += [f"{forgotten} answers to requests removed"] if forgotten else []
+    done += [f"{errands} tasks and schedules removed, their records are lost"] if errands else []
     done += [f"{links} links to pictures written anew"] if links else []
     for number, reason in replayed.damaged.items():
         history.give_up(connection, found.map_id, number, now_ns)

@@ -1,6 +1,11 @@
-"""Mission records, one per robot: what a restarted planner goes on with, and which planner is the newest."""
+"""Mission records, one per robot: what a restarted planner goes on with, and which planner is the newest.
+
+With a record the robot's tasks are written that it is about, see `services.map_store.tasks.following`.
+"""
 
 import logging
+import time
+from collections.abc import Callable
 from typing import Any
 
 from sqlalchemy import Connection, Row, delete, insert, select
@@ -10,6 +15,7 @@ from services.map_store.integrity.seals import intact, matches, sealed
 from services.map_store.storage.blobs import checksum
 from services.map_store.storage.database import Database
 from services.map_store.storage.tables import missions
+from services.map_store.tasks.following import follow, give_up_lost
 from shared.messages.maps import MissionRecord
 from shared.topics import MISSION_RECORD
 from shared.transport.keys import check_robot
@@ -22,10 +28,10 @@ MAX_EPOCH = 2**62
 
 
 class MissionStore:
-    """Records by robot in `database`."""
+    """Records by robot in `database`; `now_ns` is a clock, nanoseconds since the Unix epoch."""
 
-    def __init__(self, database: Database) -> None:
-        self._database = database
+    def __init__(self, database: Database, now_ns: Callable[[], int] = time.time_ns) -> None:
+        self._database, self._now_ns = database, now_ns
 
     def claim(self, robot: str) -> MissionRecord:
         """A planner starts: give it the record with the next epoch, which shuts its predecessors out."""
@@ -33,11 +39,16 @@ class MissionStore:
         with self._database.write() as connection:
             stored = self._read(connection, robot)
             record = stored.model_copy(update={"epoch": stored.epoch + 1})
+            give_up_lost(connection, record, self._now_ns())
             _write(connection, record)
         return record
 
     def save(self, record: MissionRecord) -> MissionRecord:
-        """Keep `record`; ConflictError when a planner with a later epoch has taken over."""
+        """Keep `record`, and what it says of a task.
+
+        Raises:
+            ConflictError: a planner with a later epoch has taken over, or the task is over.
+        """
         _check_robot(record.robot)
         if record.epoch > MAX_EPOCH:
             raise InvalidError(f"epoch must be at most {MAX_EPOCH}, got {record.epoch}")
@@ -47,6 +58,7 @@ class MissionStore:
                 raise ConflictError(
                     f"robot {record.robot!r}: epoch {record.epoch} is over, {stored.epoch} has begun; stop"
                 )
+            follow(connection, stored, record, self._now_ns())
             _write(connection, record)
         return record
 

@@ -14,7 +14,7 @@ from sqlalchemy import (
     Text,
 )
 
-VERSION = 4
+VERSION = 5
 """Raised with every change of these tables; `migration` brings older ones up, newer ones are refused."""
 
 
@@ -120,6 +120,29 @@ missions = Table(
     metadata,
     Column("robot", String(64), primary_key=True),
     Column("epoch", BigInteger, nullable=False),
+    Column("content", LargeBinary, nullable=False),
+    Column("sha256", String(64), nullable=False),
+    _seal(),
+)
+
+tasks = Table(
+    "tasks",
+    metadata,
+    Column("robot", String(64), primary_key=True),
+    Column("task_id", String(64), primary_key=True),
+    Column("state", String(16), nullable=False, index=True),
+    Column("started_ns", BigInteger, nullable=False),
+    Column("ended_ns", BigInteger, nullable=False),
+    Column("content", LargeBinary, nullable=False),
+    Column("sha256", String(64), nullable=False),
+    _seal(),
+)
+
+schedules = Table(
+    "schedules",
+    metadata,
+    Column("robot", String(64), primary_key=True),
+    Column("name", String(64), primary_key=True),
     Column("content", LargeBinary, nullable=False),
     Column("sha256", String(64), nullable=False),
     _seal(),

@@ -25,7 +25,7 @@ from tests.e2e.one_stack.conftest import MAP, Explored
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(600), needs_chromium]
 
-VIEWS = ("drive", "map", "why", "maps", "runs")
+VIEWS = ("drive", "map", "why", "maps", "runs", "tasks")
 MISSION_MS = 240_000
 WAIT_S = WAIT_MS / 1000.0
 COLOURS = """() => {

@@ -23,6 +23,7 @@ SERVICES = {
     "map-store": "services.map_store",
     "planner": "services.planner",
     "drive": "services.drive",
+    "dispatch": "services.dispatch",
     "gateway": "services.gateway",
     "ros": "services.ros",
     "recorder": "services.recorder",

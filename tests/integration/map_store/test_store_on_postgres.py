@@ -11,6 +11,7 @@ from tests.unit.services.map_store.api import test_history_api
 from tests.unit.services.map_store.history import test_revisions
 from tests.unit.services.map_store.integrity import test_repair
 from tests.unit.services.map_store.storage import test_answers, test_missions
+from tests.unit.services.map_store.tasks import test_queue, test_timetable
 
 BORROWED = {
     conftest: ("told", "database", "store", "client"),
@@ -19,6 +20,8 @@ BORROWED = {
     test_history_api: (),
     test_marks: ("marked",),
     test_missions: (),
+    test_queue: ("desk",),
+    test_timetable: ("times",),
     test_revisions: ("lived",),
     test_repair: ("chain",),
     test_store: (),

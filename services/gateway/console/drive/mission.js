@@ -44,6 +44,7 @@ export class Mission {
   enable() {
     const state = this.status?.state;
     $("start").disabled = BUSY.includes(state) || !this.kinds.length;
+    for (const id of ["queue-it", "set-schedule"]) $(id).disabled = !this.kinds.length;
     $("pause").disabled = state !== "running";
     $("resume").disabled = state !== "paused";
     $("cancel").disabled = !BUSY.includes(state);
@@ -79,9 +80,14 @@ export class Mission {
   }
 
   start() {
+    return this.ask("missions", this.wanted());
+  }
+
+  /** What the form describes. */
+  wanted() {
     const map = $("new-map").value.trim();
     const seed = Number.parseInt($("seed").value, 10) || 0;
-    return this.ask("missions", { action: this.kind().name, map, seed, parameters: values($("mission-parameters")) });
+    return { action: this.kind().name, map, seed, parameters: values($("mission-parameters")) };
   }
 
   goToNode(id) {

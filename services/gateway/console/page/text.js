@@ -132,4 +132,28 @@ export const TEXT = {
   release: "Let it go",
   releaseWho: "Who looked and says that the robot may move again?",
   releaseHint: "your name; it is kept with the stop",
+  queued: "It waits in the queue: see Tasks.",
+  noTasks: "Nothing waits. Describe a mission and queue it.",
+  noSchedules: "No schedule. Describe a mission, then say when.",
+  queueWhy: (queue) =>
+    queue.alarm || (queue.why === null ? "no dispatch service: nothing begins" : queue.why && queue.tasks.length ? `waits: ${queue.why}` : ""),
+  task: (task) => {
+    const words = Object.values(task.parameters).flat().filter((value) => typeof value !== "object");
+    const from = task.schedule ? `, by schedule ${task.schedule}` : task.for_battery ? ", as the battery is low" : "";
+    return `${task.kind} in ${task.map}${words.length ? `: ${words.join(", ")}` : ""}${from}`;
+  },
+  taskColumns: ["task", "state", "priority", ""],
+  endedColumns: ["ended", "", "when", "why"],
+  priorityOf: (task) => `Priority of ${task.kind} in ${task.map}`,
+  cancelIt: "Cancel it",
+  cancelTask: (task) => `Cancel ${task.kind} in ${task.map}`,
+  cancelRunning: (task) => `Cancel ${task.kind} in ${task.map}, which the robot is carrying out?`,
+  scheduleColumns: ["schedule", "task", "next", ""],
+  schedule: ({ cron, time_zone: zone, task, skipped }) =>
+    `${task.kind} in ${task.map}, ${cron} (${zone})${skipped ? `; skipped ${skipped}` : ""}`,
+  off: "off",
+  turnOff: "Turn off",
+  turnOn: "Turn on",
+  remove: "Remove",
+  removeSchedule: (name) => `Remove the schedule ${name}? Tasks that it made stay.`,
 };

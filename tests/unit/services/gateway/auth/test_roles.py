@@ -27,12 +27,17 @@ AGENT = {
     ("POST", "/api/robots/{robot}/missions/goto"),
     ("POST", "/api/robots/{robot}/missions/{action}"),
     ("POST", "/api/robots/{robot}/goal-check"),
+    ("POST", "/api/robots/{robot}/tasks"),
+    ("DELETE", "/api/robots/{robot}/tasks/{task_id}"),
 }
 OPERATOR = {
     ("POST", "/api/maps"),
     ("DELETE", "/api/maps/{map_name}/places"),
     ("POST", "/api/robots/{robot}/drive"),
     ("DELETE", "/api/robots/{robot}/estop"),
+    ("PATCH", "/api/robots/{robot}/tasks/{task_id}"),
+    ("PUT", "/api/robots/{robot}/schedules/{name}"),
+    ("DELETE", "/api/robots/{robot}/schedules/{name}"),
 }
 VIEWER = {("POST", "/api/session"), ("DELETE", "/api/session")}
 ANYBODY = {("POST", "/api/robots/{robot}/estop")}

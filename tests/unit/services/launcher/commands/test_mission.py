@@ -3,7 +3,7 @@
 import pytest
 import typer
 
-from services.launcher.commands.mission import _parameter
+from services.launcher.terminal.options import named_value
 
 
 @pytest.mark.parametrize(
@@ -18,10 +18,10 @@ from services.launcher.commands.mission import _parameter
     ],
 )
 def test_values_are_json_or_text(text, parameter):
-    assert _parameter(text) == parameter
+    assert named_value(text) == parameter
 
 
 @pytest.mark.parametrize("text", ["frames", "=3", ""])
 def test_what_names_nothing_is_refused(text):
     with pytest.raises(typer.BadParameter, match="NAME=VALUE"):
-        _parameter(text)
+        named_value(text)

@@ -31,7 +31,7 @@ def copy_of(version: int | str, folder: Path) -> Path:
     return copy
 
 
-@pytest.fixture(params=["1_dd495c3", 1, 2, "3_sealed", "3_a2174e2"])
+@pytest.fixture(params=["1_dd495c3", 1, 2, "3_sealed", "3_a2174e2", "4_a6fad33"])
 def file(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
     """A copy of a stored database; the one of this version was sealed by an earlier program."""
     return copy_of(request.param, tmp_path)
@@ -137,7 +137,7 @@ def test_a_later_version_is_refused_without_a_byte_written(file: Path, change: s
         connection.execute(change)
     before = file.read_bytes(), file.stat().st_mtime_ns
     with pytest.raises(
-        UnavailableError, match=r"tables of version 4 expected, got \[5\]; export the maps with"
+        UnavailableError, match=r"tables of version 5 expected, got \[6\]; export the maps with"
     ):
         opened(file)
     assert (file.read_bytes(), file.stat().st_mtime_ns) == before
