@@ -10,6 +10,7 @@ from shared.messages import (
     drive,
     estop,
     features,
+    inspections,
     maps,
     matching,
     missions,
@@ -100,6 +101,16 @@ MAP = Query("topnav/maps/{map}/graph", maps.MapRequest, maps.MapReply, 512 * MB,
 MAP_READ = Query("topnav/maps/{map}/read", maps.MapRequest, maps.MapReply, 512 * MB, anyone=True)
 MISSION_RECORD = Query(
     "topnav/missions/{robot}", maps.MissionRecordRequest, maps.MissionRecord, 8 * MB, anyone=True
+)
+COMPARE = Query(
+    "topnav/{robot}/compare", inspections.CompareRequest, inspections.CompareReply, 8 * MB, anyone=True
+)
+INSPECTION = Query(
+    "topnav/maps/{map}/inspections",
+    inspections.InspectionRequest,
+    inspections.InspectionReply,
+    8 * MB,
+    anyone=True,
 )
 SIMULATION = Query(
     "topnav/{robot}/simulation", simulation.SimulationRequest, simulation.SimulationReply, 64 * MB

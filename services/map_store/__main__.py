@@ -8,6 +8,7 @@ from threading import Event
 from services.map_store.api.app import create_app
 from services.map_store.api.server import serve
 from services.map_store.errors import MapError
+from services.map_store.inspections.store import InspectionStore
 from services.map_store.merging.merges import Merges
 from services.map_store.service import Deltas, matcher, run
 from services.map_store.settings import MapStoreSettings
@@ -39,6 +40,7 @@ def main() -> None:
             sys.exit(1)
         deltas, ready = Deltas(bus), Event()
         store = MapStore(database, time.time_ns, deltas.push)
+        visits = InspectionStore(database)
         merges = Merges(store, matcher(bus, settings.robot, settings.compute_timeout_s))
 
         def announce() -> None:
@@ -48,6 +50,7 @@ def main() -> None:
         app = create_app(
             store,
             merges,
+            visits,
             settings.token.get_secret_value(),
             settings.max_archive_bytes,
             ready.is_set,
@@ -56,7 +59,7 @@ def main() -> None:
         )
         try:
             with serve(app, settings, stop):
-                run(bus, stop, store, MissionStore(database), deltas, announce)
+                run(bus, stop, store, MissionStore(database), visits, deltas, announce)
         finally:
             merges.close()
             database.close()

@@ -8,13 +8,14 @@ from threading import Event
 from typing import TypeVar
 
 from services.map_store.errors import ConflictError, InvalidError, MapError
+from services.map_store.inspections.store import InspectionStore
 from services.map_store.merging.merge import Matcher
 from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
 from shared.bus import Bus, Publisher, Request
 from shared.messages.base import Message
 from shared.messages.maps import MapDelta, MapReply, MapRequest, MissionRecord, MissionRecordRequest
-from shared.topics import MAP, MAP_DELTA, MAP_READ, MATCH, MISSION_RECORD
+from shared.topics import INSPECTION, MAP, MAP_DELTA, MAP_READ, MATCH, MISSION_RECORD
 from shared.wire import encode
 
 Q = TypeVar("Q", bound=Message)
@@ -91,11 +92,17 @@ def answer_mission(missions: MissionStore, robot: str, request: MissionRecordReq
 
 
 def run(
-    bus: Bus, stop: Event, store: MapStore, missions: MissionStore, deltas: Deltas, ready: Callable[[], None]
+    bus: Bus,
+    stop: Event,
+    store: MapStore,
+    missions: MissionStore,
+    visits: InspectionStore,
+    deltas: Deltas,
+    ready: Callable[[], None],
 ) -> None:
     """Answer until `stop`; `ready` is called once questions can be asked."""
     maps, records = bus.requests(MAP, map="*"), bus.requests(MISSION_RECORD, robot="*")
-    readers = bus.requests(MAP_READ, map="*")
+    readers, inspections = bus.requests(MAP_READ, map="*"), bus.requests(INSPECTION, map="*")
     _reset_followers(store, deltas)
     ready()
     while not stop.is_set():
@@ -107,6 +114,8 @@ def run(
             _answer(reading, partial(answer_reader, store))
         while (mission := records.take()) is not None:
             _answer(mission, partial(answer_mission, missions))
+        while (inspection := inspections.take()) is not None:
+            _answer(inspection, visits.answer)
         deltas.publish()
 
 

@@ -42,6 +42,8 @@ def prepare(connection: Connection) -> None:
     elif versions in ([2], [3]):  # version 3 has one more table, made above
         _add_marks(connection)
         _write_about(connection)
+    elif versions == [4]:  # version 5 has one more table, made above
+        _write_about(connection)
 
 
 def require(connection: Connection) -> None:

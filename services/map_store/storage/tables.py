@@ -14,7 +14,7 @@ from sqlalchemy import (
     Text,
 )
 
-VERSION = 4
+VERSION = 5
 """Raised with every change of these tables; `migration` brings older ones up, newer ones are refused."""
 
 
@@ -121,6 +121,21 @@ missions = Table(
     Column("robot", String(64), primary_key=True),
     Column("epoch", BigInteger, nullable=False),
     Column("content", LargeBinary, nullable=False),
+    Column("sha256", String(64), nullable=False),
+    _seal(),
+)
+
+inspections = Table(
+    "inspections",
+    metadata,
+    Column("number", BigInteger().with_variant(Integer, "sqlite"), primary_key=True, autoincrement=False),
+    Column("map_id", ForeignKey("maps.map_id"), nullable=False),
+    Column("place", String(128), nullable=False),  # its key: names that differ in case are one
+    Column("mission", String(64), nullable=False),
+    Column("round", BigInteger, nullable=False),
+    Column("stamp_ns", BigInteger, nullable=False),
+    Column("record", Text, nullable=False),
+    Column("content", LargeBinary, nullable=False),  # the picture
     Column("sha256", String(64), nullable=False),
     _seal(),
 )

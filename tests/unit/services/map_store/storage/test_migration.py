@@ -22,6 +22,7 @@ STORED = Path(__file__).parent / "data"
 """Maps "flat" (five revisions, one of them an undo) and "loft", and a mission of robot r1, by version.
 
 Names end with the commit whose own code wrote the file: dd495c3 is the first that kept maps.
+a6fad33 wrote its version 4 over the version 3 of a2174e2.
 """
 
 
@@ -31,7 +32,7 @@ def copy_of(version: int | str, folder: Path) -> Path:
     return copy
 
 
-@pytest.fixture(params=["1_dd495c3", 1, 2, "3_sealed", "3_a2174e2"])
+@pytest.fixture(params=["1_dd495c3", 1, 2, "3_sealed", "3_a2174e2", "4_a6fad33"])
 def file(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
     """A copy of a stored database; the one of this version was sealed by an earlier program."""
     return copy_of(request.param, tmp_path)
@@ -137,7 +138,7 @@ def test_a_later_version_is_refused_without_a_byte_written(file: Path, change: s
         connection.execute(change)
     before = file.read_bytes(), file.stat().st_mtime_ns
     with pytest.raises(
-        UnavailableError, match=r"tables of version 4 expected, got \[5\]; export the maps with"
+        UnavailableError, match=r"tables of version 5 expected, got \[6\]; export the maps with"
     ):
         opened(file)
     assert (file.read_bytes(), file.stat().st_mtime_ns) == before
