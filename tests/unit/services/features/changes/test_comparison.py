@@ -20,7 +20,7 @@ def seen(at=(0.0, 0.0), yaw_rad=0.0, pillars=room.PILLARS_M):
         return room.render_room(*at, yaw_rad, HEIGHT_PX)
 
 
-def dimmed(picture, gain=(0.45, 0.5, 0.55), noise=2.0):
+def dimmed(picture, gain=(0.3, 0.5, 0.7), noise=2.0):
     rough = np.random.default_rng(1).standard_normal(picture.shape)
     return np.clip(picture * np.array(gain) + noise * rough, 0, 255).astype(np.uint8)
 
