@@ -19,7 +19,7 @@ from shared.messages.sensors import Frame
 QUALITY = 85
 """Of pictures that are kept, JPEG percent; chosen: 150 kB for 1024 x 512 pixels."""
 LEAST_INLIERS = 12
-"""Keypoints that must agree for a turn; chosen: six times what a turn needs; of 188 pairs of one place one had fewer."""
+"""Keypoints that must agree for a turn; chosen; of 189 pairs of spots at one place one had fewer."""
 
 
 def compare_with(pipeline: Pipeline, frame: Frame, features: Features, reference: bytes) -> CompareReply:
