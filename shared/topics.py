@@ -10,6 +10,7 @@ from shared.messages import (
     drive,
     estop,
     features,
+    inspections,
     maps,
     matching,
     missions,
@@ -104,6 +105,16 @@ MISSION_RECORD = Query(
     "topnav/missions/{robot}", maps.MissionRecordRequest, maps.MissionRecord, 8 * MB, anyone=True
 )
 TASKS = Query("topnav/missions/{robot}/tasks", tasks.TaskRequest, tasks.TaskReply, 8 * MB, anyone=True)
+COMPARE = Query(
+    "topnav/{robot}/compare", inspections.CompareRequest, inspections.CompareReply, 8 * MB, anyone=True
+)
+INSPECTION = Query(
+    "topnav/maps/{map}/inspections",
+    inspections.InspectionRequest,
+    inspections.InspectionReply,
+    8 * MB,
+    anyone=True,
+)
 SIMULATION = Query(
     "topnav/{robot}/simulation", simulation.SimulationRequest, simulation.SimulationReply, 64 * MB
 )

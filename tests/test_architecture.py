@@ -63,6 +63,7 @@ EDGE_FILES = {
     "__main__.py",
     "service.py",
     "settings.py",
+    "inspector.py",
     "remote.py",
     "control.py",
 }  # where a service meets the world

@@ -3,12 +3,14 @@
 import typer
 
 from experiments.commands import (
+    changes,
     cycles,
     disturbance,
     disturbance_matches,
     failures,
     heading,
     heading_frames,
+    inspection,
     keypoints,
     latency,
     localisation,
@@ -23,8 +25,10 @@ app = typer.Typer(
     name="study", no_args_is_help=True, help="Experiments on headings, matching, disturbances and scale."
 )
 for study in (
+    changes,
     heading,
     heading_frames,
+    inspection,
     keypoints,
     latency,
     localisation,

@@ -1,4 +1,4 @@
-"""The newest frames' features, and what to do with a frame that comes: new, again or stale. Pure."""
+"""The newest frames with their features, and what to do with one that comes: new, again or stale. Pure."""
 
 import zlib
 from collections import OrderedDict
@@ -28,11 +28,11 @@ class FrameKey:
 
 
 class FrameCache:
-    """Features of the newest frames, by frame number."""
+    """The newest frames and their features, by frame number."""
 
     def __init__(self, capacity: int) -> None:
         self._capacity = capacity
-        self._kept: OrderedDict[int, tuple[FrameKey, Features]] = OrderedDict()
+        self._kept: OrderedDict[int, tuple[FrameKey, Features, Frame]] = OrderedDict()
         self._last: FrameKey | None = None
         self._late: FrameKey | None = None
         self._climbed = 0
@@ -57,11 +57,11 @@ class FrameCache:
         self._climbed, self._late = self._climbed + 1 if climbs else 0, late
         return self._climbed >= RESTARTED_FRAMES
 
-    def put(self, key: FrameKey, features: Features) -> None:
+    def put(self, key: FrameKey, features: Features, frame: Frame) -> None:
         """Keep the newest; frames of before a restart are forgotten, their numbers mean other pictures."""
         if self._last is not None and key.seq <= self._last.seq:
             self._kept.clear()
-        self._kept[key.seq] = (key, features)
+        self._kept[key.seq] = (key, features, frame)
         self._last, self._late, self._climbed = key, None, 0
         while len(self._kept) > self._capacity:
             self._kept.popitem(last=False)
@@ -75,6 +75,11 @@ class FrameCache:
         """Features of the frame with this number, if kept."""
         kept = self._kept.get(seq)
         return kept[1] if kept is not None else None
+
+    def frame(self, seq: int) -> Frame | None:
+        """The frame with this number, if kept."""
+        kept = self._kept.get(seq)
+        return kept[2] if kept is not None else None
 
     def is_ahead(self, seq: int) -> bool:
         """Whether the frame with this number would be newer than all that came."""

@@ -8,9 +8,10 @@ from services.features.frame_cache import FrameCache
 from services.features.map_features.map_cache import CachedMap
 from shared.bus import Bus, Inbox, Publisher, Requests
 from shared.messages.features import Features
+from shared.messages.inspections import CompareReply, CompareRequest
 from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
 from shared.messages.sensors import Frame
-from shared.topics import FEATURES, FRAME, MATCH
+from shared.topics import COMPARE, FEATURES, FRAME, MATCH
 
 
 class Answered:
@@ -37,6 +38,7 @@ class RobotStreams:
     frames: Inbox[Frame]
     features: Publisher[Features]
     matches: Requests[MatchRequest, MatchReply]
+    comparisons: Requests[CompareRequest, CompareReply]
     early: EarlyQuestions
     kept: FrameCache
     answered: Answered
@@ -48,6 +50,7 @@ class RobotStreams:
             frames=bus.subscribe(FRAME, robot=robot),
             features=bus.publisher(FEATURES, robot=robot),
             matches=bus.requests(MATCH, robot=robot),
+            comparisons=bus.requests(COMPARE, robot=robot),
             early=EarlyQuestions(),
             kept=FrameCache(frames_kept),
             answered=Answered(),

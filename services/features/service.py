@@ -6,6 +6,7 @@ from threading import Event
 
 import cv2
 
+from services.features.changes.visits import compare_with
 from services.features.frame_cache import FrameKey
 from services.features.freed_memory import keep_freed_memory
 from services.features.map_features.map_cache import CachedMap, MapCache
@@ -23,6 +24,7 @@ from services.features.settings import FeaturesSettings
 from shared.bus import Bus, Request
 from shared.jpeg import BadPictureError
 from shared.messages.features import ExtractPhotoRequest, ExtractRequest, Features
+from shared.messages.inspections import CompareReply, CompareRequest
 from shared.messages.matching import MatchReply, MatchRequest
 from shared.messages.sensors import Frame
 from shared.topics import EXTRACT, EXTRACT_PHOTO
@@ -60,11 +62,13 @@ class FeatureService:
             self._on_match(robot, early)
         if (match := robot.matches.take()) is not None and not robot.early.keep(match, robot.kept):
             self._on_match(robot, match)
+        if (comparison := robot.comparisons.take()) is not None:
+            self._on_compare(robot, comparison)
         if (picture := self._extracts.take()) is not None:
             self._on_extract(picture)
         if (photo := self._photos.take()) is not None:
             self._on_photo(photo)
-        return any(each is not None for each in (frame, match, picture, photo))
+        return any(each is not None for each in (frame, match, comparison, picture, photo))
 
     def _on_frame(self, robot: RobotStreams, frame: Frame) -> None:
         key = FrameKey.of(frame)
@@ -79,7 +83,7 @@ class FeatureService:
             except BadPictureError as error:
                 self._bus.counters.count("malformed", f"frame {frame.seq}: {error}")
                 return
-            robot.kept.put(key, features)
+            robot.kept.put(key, features, frame)
         robot.features.put(features)
 
     def _extract(self, frame: Frame) -> Features:
@@ -97,6 +101,20 @@ class FeatureService:
             reply = self._match(robot, request.message)
         except RequestError as error:
             request.refuse(str(error), error.code)
+            return
+        request.reply(reply)
+
+    def _on_compare(self, robot: RobotStreams, request: Request[CompareRequest, CompareReply]) -> None:
+        seq = request.message.seq
+        features, frame = robot.kept.get(seq), robot.kept.frame(seq)
+        if features is None or frame is None:
+            request.refuse(_not_kept(robot, seq), FrameNotKeptError.code)
+            return
+        try:
+            reply = compare_with(self._pipeline, frame, features, request.message.reference)
+        except BadPictureError as error:
+            self._bus.counters.count("bad_picture", str(error))
+            request.refuse(str(error))
             return
         request.reply(reply)
 
@@ -141,11 +159,13 @@ def _current(robot: RobotStreams, request: MatchRequest) -> Features:
         return request.features
     features = robot.kept.get(request.seq)
     if features is None:
-        what = "has not come" if robot.kept.is_ahead(request.seq) else "is not kept"
-        raise FrameNotKeptError(
-            f"frame {request.seq} {what} (kept: {robot.kept.span()}): ask about the newest one"
-        )
+        raise FrameNotKeptError(_not_kept(robot, request.seq))
     return features
+
+
+def _not_kept(robot: RobotStreams, seq: int) -> str:
+    what = "has not come" if robot.kept.is_ahead(seq) else "is not kept"
+    return f"frame {seq} {what} (kept: {robot.kept.span()}): ask about the newest one"
 
 
 def run(settings: FeaturesSettings, bus: Bus, stop: Event) -> None:

@@ -8,6 +8,7 @@ from threading import Event
 from services.map_store.api.app import create_app
 from services.map_store.api.server import serve
 from services.map_store.errors import MapError
+from services.map_store.inspections.store import InspectionStore
 from services.map_store.merging.merges import Merges
 from services.map_store.service import Deltas, matcher, run
 from services.map_store.settings import MapStoreSettings
@@ -40,6 +41,7 @@ def main() -> None:
             sys.exit(1)
         deltas, ready = Deltas(bus), Event()
         store = MapStore(database, time.time_ns, deltas.push)
+        visits = InspectionStore(database)
         merges = Merges(store, matcher(bus, settings.robot, settings.compute_timeout_s))
 
         def announce() -> None:
@@ -49,6 +51,7 @@ def main() -> None:
         app = create_app(
             store,
             merges,
+            visits,
             settings.token.get_secret_value(),
             settings.max_archive_bytes,
             ready.is_set,
@@ -58,7 +61,7 @@ def main() -> None:
         try:
             with serve(app, settings, stop):
                 missions, tasks = MissionStore(database), TaskStore(database, time.time_ns)
-                run(bus, stop, store, missions, tasks, deltas, announce)
+                run(bus, stop, store, missions, tasks, visits, deltas, announce)
         finally:
             merges.close()
             database.close()

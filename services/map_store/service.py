@@ -8,6 +8,7 @@ from threading import Event
 from typing import TypeVar
 
 from services.map_store.errors import ConflictError, InvalidError, MapError
+from services.map_store.inspections.store import InspectionStore
 from services.map_store.merging.merge import Matcher
 from services.map_store.storage.missions import MissionStore
 from services.map_store.store import MapStore
@@ -15,7 +16,7 @@ from services.map_store.tasks.queue import TaskStore
 from shared.bus import Bus, Publisher, Request
 from shared.messages.base import Message
 from shared.messages.maps import MapDelta, MapReply, MapRequest, MissionRecord, MissionRecordRequest
-from shared.topics import MAP, MAP_DELTA, MAP_READ, MATCH, MISSION_RECORD, TASKS
+from shared.topics import INSPECTION, MAP, MAP_DELTA, MAP_READ, MATCH, MISSION_RECORD, TASKS
 from shared.wire import encode
 
 Q = TypeVar("Q", bound=Message)
@@ -97,12 +98,14 @@ def run(
     store: MapStore,
     missions: MissionStore,
     tasks: TaskStore,
+    visits: InspectionStore,
     deltas: Deltas,
     ready: Callable[[], None],
 ) -> None:
     """Answer until `stop`; `ready` is called once questions can be asked."""
     maps, records = bus.requests(MAP, map="*"), bus.requests(MISSION_RECORD, robot="*")
     readers, queues = bus.requests(MAP_READ, map="*"), bus.requests(TASKS, robot="*")
+    inspections = bus.requests(INSPECTION, map="*")
     _reset_followers(store, deltas)
     ready()
     while not stop.is_set():
@@ -116,6 +119,8 @@ def run(
             _answer(mission, partial(answer_mission, missions))
         while (task := queues.take()) is not None:
             _answer(task, tasks.answer)
+        while (inspection := inspections.take()) is not None:
+            _answer(inspection, visits.answer)
         deltas.publish()
 
 

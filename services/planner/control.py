@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from services.planner.inspector import RemoteInspector
 from services.planner.mission_kinds import MissionContext, MissionError, MissionKinds
 from services.planner.ports import Decision, Mission, Observation, Progress
 from services.planner.profiles import Profile
@@ -275,8 +276,10 @@ class MissionControl:
     def _make(self, record: MissionRecord, maps: RemoteMap, matcher: RemoteMatcher) -> Mission:
         rng = np.random.default_rng(record.seed)
         whereabouts = self._whereabouts.of(record.map)
+        timeout_s = self._settings.map_timeout_s
+        inspector = RemoteInspector(self._bus, maps, matcher, record.mission_id, timeout_s)
         context = MissionContext(
-            self._profile, maps, matcher, rng, record.goal, whereabouts, record.checkpoint
+            self._profile, maps, matcher, rng, record.goal, whereabouts, inspector, record.checkpoint
         )
         mission = self._kinds[record.action].start(context, _parameters(record))
         self._whereabouts = whereabouts

@@ -18,7 +18,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from services.planner import missions
-from services.planner.ports import MapAccess, Matcher, Mission
+from services.planner.ports import Inspector, MapAccess, Matcher, Mission
 from services.planner.profiles import Profile
 from services.planner.travel.whereabouts import Whereabouts
 from shared.messages.features import Features
@@ -58,6 +58,7 @@ class MissionContext:
         goal: features of the picture that came with the request.
         rng: seeded by the request.
         whereabouts: where the mission before left the robot; None where nobody knows.
+        inspector: looks at places for what changed there; None where nobody can.
         checkpoint: the last one of the same mission, where a planner before had got to; else empty.
     """
 
@@ -67,6 +68,7 @@ class MissionContext:
     rng: np.random.Generator
     goal: Features | None = None
     whereabouts: Whereabouts | None = None
+    inspector: Inspector | None = None
     checkpoint: Mapping[str, Any] = field(default_factory=dict)
 
 

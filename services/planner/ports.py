@@ -9,6 +9,7 @@ from pydantic import JsonValue
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.rules import Limits
 from shared.messages.features import Features
+from shared.messages.inspections import Inspection
 from shared.messages.maps import Operation
 from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
@@ -56,6 +57,19 @@ class Matcher(Protocol):
 
     def locate(self, features: Features, best_k: int) -> Matches:
         """Matches of any picture with the most similar nodes of the map."""
+
+
+class Inspector(Protocol):
+    """Looks at a place for what changed there."""
+
+    def inspect(self, place: str, round_number: int, keep: int) -> Inspection:
+        """Keep the current frame as the picture of a place, compared with the one before.
+
+        Args:
+            place: where the robot stands.
+            round_number: of the mission, from 1.
+            keep: pictures of the place that stay.
+        """
 
 
 class MapAccess(Protocol):

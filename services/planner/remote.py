@@ -113,7 +113,7 @@ class RemoteMatcher:
     """
 
     def __init__(self, bus: Bus, robot: str, maps: RemoteMap, timeout_s: float) -> None:
-        self._bus, self._robot, self._maps, self._timeout_s = bus, robot, maps, timeout_s
+        self._bus, self.robot, self._maps, self._timeout_s = bus, robot, maps, timeout_s
         self.frame_seq = 0
         self.frame_stamp_ns = 0
         self.match_ms = self.verify_ms = 0.0
@@ -150,7 +150,7 @@ class RemoteMatcher:
         )
 
     def _ask(self, request: MatchRequest) -> Matches:
-        reply = self._bus.ask(MATCH, request, self._timeout_s, robot=self._robot)
+        reply = self._bus.ask(MATCH, request, self._timeout_s, robot=self.robot)
         self.match_ms += reply.match_ms
         self.verify_ms += reply.verify_ms
         known = self._maps.graph.nodes  # the service may know of nodes of another robot before we do

@@ -131,5 +131,7 @@ QUESTIONS: dict[Query[Any, Any], Grant] = {
     topics.MAP_READ: _grant([Role.MAP_STORE], [Role.FEATURES]),
     topics.MISSION_RECORD: _grant([Role.MAP_STORE], [Role.PLANNER]),
     topics.TASKS: _grant([Role.MAP_STORE], [Role.DISPATCH, *PEOPLE]),
+    topics.COMPARE: _grant([Role.FEATURES], [Role.PLANNER]),
+    topics.INSPECTION: _grant([Role.MAP_STORE], [Role.PLANNER]),
     topics.SIMULATION: _grant([Role.SIMULATOR], [Role.OPERATOR]),
 }

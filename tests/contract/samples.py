@@ -5,7 +5,19 @@ from pathlib import Path
 
 import numpy as np
 
-from shared.messages import body, camera, drive, estop, maps, matching, places, sensors, simulation, tasks
+from shared.messages import (
+    body,
+    camera,
+    drive,
+    estop,
+    inspections,
+    maps,
+    matching,
+    places,
+    sensors,
+    simulation,
+    tasks,
+)
 from shared.messages import features as looks
 from shared.messages import missions as orders
 from shared.messages.base import Message
@@ -456,6 +468,59 @@ def queued() -> tuple[Message, ...]:
     )
 
 
+def inspection() -> inspections.Inspection:
+    return inspections.Inspection(
+        seq=7,
+        stamp_ns=STAMP_NS,
+        robot="r1",
+        mission_id="m-1",
+        round=2,
+        place="Küche 2",
+        against_ns=STAMP_NS - 5_000_000_000,
+        why="told",
+        inliers=120,
+        yaw_rad=-0.5,
+        disparity_rad=0.03125,
+        regions=(region(),),
+        picture=b"\xff\xd8\xff\xd9",
+    )
+
+
+def region() -> inspections.Region:
+    return inspections.Region(
+        bearing_rad=0.5, elevation_rad=-0.25, width_rad=0.25, height_rad=0.5, score=0.125
+    )
+
+
+def inspected() -> tuple[Message, ...]:
+    """Pictures of places compared and kept."""
+    about = {"seq": 7, "stamp_ns": STAMP_NS}
+    return (
+        inspections.CompareRequest(**about, reference=b"\xff\xd8\xff\xd9"),
+        inspections.CompareReply(
+            **about,
+            picture=b"\xff\xd8\xff\xd9",
+            compared=True,
+            why="told",
+            inliers=120,
+            yaw_rad=-0.5,
+            disparity_rad=0.03125,
+            regions=(region(),),
+            took_ms=400.5,
+        ),
+        inspections.InspectionRequest(
+            **about,
+            action="save",
+            place="Küche 2",
+            mission_id="m-1",
+            round=2,
+            inspection=inspection(),
+            keep=5,
+        ),
+        inspections.InspectionReply(**about, inspection=inspection()),
+    )
+
+
 def simulated() -> tuple[Message, ...]:
     """Simulation only."""
     return (
@@ -475,7 +540,7 @@ def simulated() -> tuple[Message, ...]:
 
 def samples() -> dict[type[Message], Message]:
     """Message type -> a full example."""
-    examples = (*seen(), *driven(), *missions(), *kinds(), *mapped(), *queued(), *simulated())
+    examples = (*seen(), *driven(), *missions(), *kinds(), *mapped(), *queued(), *inspected(), *simulated())
     return {type(example): example for example in examples}
 
 

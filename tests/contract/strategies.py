@@ -16,6 +16,7 @@ from pydantic.fields import FieldInfo
 from shared.messages.arrays import ArraySpec
 from shared.messages.body import Imu
 from shared.messages.features import Features, Photo
+from shared.messages.inspections import Inspection, InspectionRequest
 from shared.messages.maps import Edge
 from shared.messages.matching import NodeMatch
 from shared.messages.places import DeletePlace, DeleteRule, KeepOut, OneWay, OpeningHours, Place, Slow
@@ -159,6 +160,7 @@ def _fit_mark(fields: Fields, _count: int, _seed: int) -> Fields:
     """Names that can be seen, and edges that join two nodes."""
     fitted = {
         "name": _seen(fields.get("name", "")),
+        "place": _seen(fields.get("place", "")),
         "areas": tuple(_seen(area) for area in fields.get("areas", ())),
         "edges": tuple((a // 2, b // 2 + WIDEST // 2) for a, b in fields.get("edges", ())),
     }
@@ -178,5 +180,6 @@ FITS: dict[type[BaseModel], Callable[[Fields, int, int], Fields]] = {
     Photo: _fit_photo,
     Edge: _fit_edge,
     **dict.fromkeys((Place, KeepOut, OneWay, Slow, OpeningHours, DeletePlace, DeleteRule), _fit_mark),
+    **dict.fromkeys((Inspection, InspectionRequest), _fit_mark),
 }
 """What fields of one message owe each other, beyond what each of them must be by itself."""

@@ -1,9 +1,9 @@
 """Maps: passed through to the map store, so that a browser needs one address only."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import APIRouter, Depends, Path, Request
 from fastapi.responses import JSONResponse, Response
 
 from services.gateway.http.bodies import MAX_JSON_BYTES, read_body
@@ -12,6 +12,7 @@ from services.gateway.state import GatewayDep, MapPath, NodePath
 
 API, IMPORT = "/api", "/maps/import"
 MAP, NODE, EDGE = "/maps/{map_name}", "/nodes/{node_id}", "/edges/{a}/{b}"
+ROUND = "/inspections/{round}"
 OPERATIONS = (
     ("GET", "/maps", "list_maps", "All maps."),
     ("POST", "/maps", "create_map", "Make an empty map."),
@@ -43,10 +44,22 @@ OPERATIONS = (
         "cancel_merge",
         "Cancel the merge into a map, if it is not written yet.",
     ),
+    ("GET", f"{MAP}/inspections", "list_inspections", "Rounds of inspections, the newest first."),
+    ("GET", MAP + ROUND, "show_inspection", "One round: its places and what changed."),
+    (
+        "GET",
+        f"{MAP}{ROUND}/report",
+        "show_report",
+        "One round as a page: both pictures of every place, changes marked.",
+    ),
     ("GET", f"{MAP}/export", "export_map", "A map as one archive."),
 )
 STATUS = {"create_map": 201, "import_map": 201, "delete_map": 204, "start_merge": 202}
-MEDIA = {"show_thumbnail": "image/jpeg", "export_map": "application/zip"}
+MEDIA = {
+    "show_thumbnail": "image/jpeg",
+    "show_report": "text/html",
+    "export_map": "application/zip",
+}
 
 
 async def pass_on(request: Request, gateway: GatewayDep) -> Response:
@@ -75,7 +88,18 @@ async def _names_an_edge(a: NodePath, b: NodePath) -> None:
     """What the path says, checked."""
 
 
-NAMED: dict[str, Callable[..., Any]] = {MAP: _names_a_map, NODE: _names_a_node, EDGE: _names_an_edge}
+async def _names_a_round(
+    round_id: Annotated[str, Path(alias="round", pattern=r"^[A-Za-z0-9_-]{1,64}-[0-9]{1,9}$")],
+) -> None:
+    """What the path says, checked."""
+
+
+NAMED: dict[str, Callable[..., Any]] = {
+    MAP: _names_a_map,
+    NODE: _names_a_node,
+    EDGE: _names_an_edge,
+    ROUND: _names_a_round,
+}
 router = APIRouter(tags=["maps"])
 for _method, _path, _name, _description in OPERATIONS:
     router.add_api_route(

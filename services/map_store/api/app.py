@@ -17,6 +17,8 @@ from services.map_store.api import (
 from services.map_store.api.guard import reader_guard, writer_guard
 from services.map_store.api.schemas import Health
 from services.map_store.errors import UnavailableError
+from services.map_store.inspections import routes as inspection_routes
+from services.map_store.inspections.store import InspectionStore
 from services.map_store.merging.merges import Merges
 from services.map_store.store import MapStore
 from shared.web.bodies import BodyLimit, BodyLimits
@@ -35,6 +37,7 @@ DESCRIPTION = "Topological maps: their nodes, edges, pictures and history. Error
 def create_app(
     store: MapStore,
     merges: Merges,
+    visits: InspectionStore,
     token: str = "",
     max_archive_bytes: int = 4_000_000_000,
     ready: Callable[[], bool] = lambda: True,
@@ -46,6 +49,7 @@ def create_app(
     Args:
         store: the maps.
         merges: those under way, and how the last ones ended.
+        visits: what inspections saw.
         token: bearer token that writes need; empty = none.
         max_archive_bytes: largest archive to import.
         ready: whether the bus side answers too.
@@ -69,6 +73,7 @@ def create_app(
         care_routes.build(store, write),
         archive_routes.build(store, write, max_archive_bytes),
         merge_routes.build(store, merges, write),
+        inspection_routes.build(visits),
     ):
         app.include_router(router, dependencies=read)
     app.include_router(_health(store, ready))

@@ -7,6 +7,7 @@ from sqlalchemy import Connection, select
 
 from services.map_store.errors import CorruptError
 from services.map_store.history.replay import Replay, replay
+from services.map_store.inspections import store as visits
 from services.map_store.integrity.seals import intact
 from services.map_store.storage import answers, blobs, catalogue
 from services.map_store.storage.catalogue import MapRecord
@@ -44,6 +45,7 @@ def check(database: Database, name: str | None = None) -> list[Damage]:
                 found += [Damage("", *finding) for finding in _missions(connection)]
                 found += [Damage("", *finding) for finding in _answers(connection)]
                 found += [Damage("", *finding) for finding in _tasks(connection)]
+                found += [Damage("", *finding) for finding in _inspections(connection)]
     except CorruptError as error:
         return [*found, Damage("", "file", str(error))]
     for each in names if name is None else [name]:
@@ -134,3 +136,8 @@ def _tasks(connection: Connection) -> Iterator[Finding]:
 def _answers(connection: Connection) -> Iterator[Finding]:
     for number in answers.damaged(connection):
         yield f"answer {number}", "its record does not match its checksum"
+
+
+def _inspections(connection: Connection) -> Iterator[Finding]:
+    for number in visits.damaged(connection):
+        yield f"inspection {number}", "it does not match its checksums"

@@ -8,6 +8,7 @@ from sqlalchemy import Connection, Row, delete, select
 from services.map_store.history import revisions as history
 from services.map_store.history.replay import Replay, replay
 from services.map_store.history.revisions import Revision
+from services.map_store.inspections import store as visits
 from services.map_store.integrity.check import lost_blobs
 from services.map_store.integrity.row_repair import intact_graph, mend_rows
 from services.map_store.integrity.seals import intact
@@ -41,6 +42,7 @@ def repair(connection: Connection, name: str, author: str, now_ns: int) -> tuple
     blobs.name_again(connection)
     missions, forgotten = mend_missions(connection), answers.mend(connection)
     errands = records.mend(connection)
+    unseen = visits.mend(connection)
     row = _row_of(connection, name)
     whole = intact(maps, row)
     replayed = replay(connection, row.map_id, row.revision if whole else 0)
@@ -50,6 +52,7 @@ def repair(connection: Connection, name: str, author: str, now_ns: int) -> tuple
     done += [f"{missions} records of missions written anew"] if missions else []
     done += [f"{forgotten} answers to requests removed"] if forgotten else []
     done += [f"{errands} tasks and schedules removed, their records are lost"] if errands else []
+    done += [f"{unseen} inspections removed"] if unseen else []
     done += [f"{links} links to pictures written anew"] if links else []
     for number, reason in replayed.damaged.items():
         history.give_up(connection, found.map_id, number, now_ns)

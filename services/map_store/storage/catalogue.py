@@ -10,7 +10,7 @@ from sqlalchemy import Connection, Row, delete, insert, select, update
 from services.map_store.errors import ConflictError, CorruptError, InvalidError, MissingError
 from services.map_store.integrity.seals import intact, sealed
 from services.map_store.storage import blobs
-from services.map_store.storage.tables import edges, maps, marks, nodes, revisions
+from services.map_store.storage.tables import edges, inspections, maps, marks, nodes, revisions
 from shared.messages.places import Marks
 from shared.transport.keys import NAME
 
@@ -124,7 +124,7 @@ def rename(connection: Connection, name: str, new_name: str) -> MapRecord:
 def remove(connection: Connection, name: str) -> int:
     """Delete a map with everything it owns; returns its last revision."""
     found = find(connection, name)
-    for table in (marks, edges, nodes, revisions):
+    for table in (inspections, marks, edges, nodes, revisions):
         connection.execute(delete(table).where(table.c.map_id == found.map_id))
     blobs.drop(connection, found.map_id)
     connection.execute(delete(maps).where(maps.c.map_id == found.map_id))

@@ -42,7 +42,7 @@ def prepare(connection: Connection) -> None:
     elif versions in ([2], [3]):  # version 3 has one more table, made above
         _add_marks(connection)
         _write_about(connection)
-    elif versions == [4]:  # version 5 has the tables of tasks and schedules, made above
+    elif versions == [4]:  # version 5 has tables of tasks, schedules and inspections, made above
         _write_about(connection)
 
 

@@ -147,3 +147,18 @@ schedules = Table(
     Column("sha256", String(64), nullable=False),
     _seal(),
 )
+
+inspections = Table(
+    "inspections",
+    metadata,
+    Column("number", BigInteger().with_variant(Integer, "sqlite"), primary_key=True, autoincrement=False),
+    Column("map_id", ForeignKey("maps.map_id"), nullable=False),
+    Column("place", String(128), nullable=False),  # its key: names that differ in case are one
+    Column("mission", String(64), nullable=False),
+    Column("round", BigInteger, nullable=False),
+    Column("stamp_ns", BigInteger, nullable=False),
+    Column("record", Text, nullable=False),
+    Column("content", LargeBinary, nullable=False),  # the picture
+    Column("sha256", String(64), nullable=False),
+    _seal(),
+)

@@ -70,6 +70,7 @@ class Patrol:
         parameters: which places, how often.
         travel_to: a mission that drives to a place; MissionError where there is none of that name any more.
         begun: where an earlier planner left off.
+        look: what is done at the end of each stay, with the place and the round from 1; what it tells.
     """
 
     def __init__(
@@ -77,8 +78,9 @@ class Patrol:
         parameters: PatrolParameters,
         travel_to: Callable[[str], Mission],
         begun: Checkpoint | None = None,
+        look: Callable[[str, int], Note] | None = None,
     ) -> None:
-        self._parameters, self._travel_to = parameters, travel_to
+        self._parameters, self._travel_to, self._look = parameters, travel_to, look
         self._at = Checkpoint() if begun is None else begun
         self._leg: Mission | None = None
         self._stay: _Stay | None = None
@@ -87,9 +89,8 @@ class Patrol:
     def progress(self) -> Progress:
         """Where it stands."""
         leg = Progress() if self._leg is None else self._leg.progress
-        per_round = len(self._parameters.places)
         figures: dict[str, float | int | str | bool | None] = {
-            "round": self._at.visit // per_round + 1,
+            "round": self._round,
             "place": self._place,
             "visited": self._at.visit - self._at.missed_in_all,
             "missed": self._at.missed_in_all,
@@ -101,8 +102,8 @@ class Patrol:
         if self._stay is not None:
             if observation.features.stamp_ns < self._stay.until_ns:
                 return Decision("hold", why=f"staying at {self._stay.place}")
-            self._stay = None
-            self._next()
+            if (told := self._leave()) is not None:
+                return told
         if self._is_over():
             return self._end()
         if self._leg is None:
@@ -122,6 +123,10 @@ class Patrol:
         places = self._parameters.places
         return places[self._at.visit % len(places)]
 
+    @property
+    def _round(self) -> int:
+        return self._at.visit // len(self._parameters.places) + 1
+
     def _is_over(self) -> bool:
         rounds = self._parameters.rounds
         return rounds > 0 and self._at.visit >= rounds * len(self._parameters.places)
@@ -131,11 +136,19 @@ class Patrol:
         stay_ns = round(1e9 * self._parameters.dwell_s)
         note = Note("visited", f"{place}: {decision.why}", {"place": place, "visit": visit})
         self._leg = None
-        if stay_ns:
+        if stay_ns or self._look is not None:
             self._stay = _Stay(observation.features.stamp_ns + stay_ns, place)
         else:
             self._next()
         return self._hold(decision.why, (*decision.notes, note))
+
+    def _leave(self) -> Decision | None:
+        """The end of a stay: look round first; the stay goes on where that cannot be done now."""
+        assert self._stay is not None
+        note = self._look(self._stay.place, self._round) if self._look is not None else None
+        self._stay = None
+        self._next()
+        return None if note is None else self._hold(note.reason, (note,))
 
     def _miss(self, failure: FailureKind, why: str, notes: tuple[Note, ...] = ()) -> Decision:
         missed = Missed(visit=self._at.visit, place=self._place, failure=failure)

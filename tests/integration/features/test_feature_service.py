@@ -11,10 +11,11 @@ from services.features import early_questions
 from services.features.map_features.map_reader import PIECE
 from shared.bus import Bus, wait_until
 from shared.messages.features import ExtractRequest, Features
+from shared.messages.inspections import CompareReply, CompareRequest
 from shared.messages.matching import MatchReply, MatchRequest
 from shared.messages.sensors import Frame
 from shared.queries import RefusedError
-from shared.topics import EXTRACT, FEATURES, FRAME, MATCH
+from shared.topics import COMPARE, EXTRACT, FEATURES, FRAME, MATCH
 from tests.integration.features.conftest import ANSWER_S
 from tests.unit.services.features.room import render_room
 
@@ -69,6 +70,26 @@ def test_a_frame_becomes_features_and_the_same_frame_again_the_same_features(bus
     assert len(first.lonlat_rad) > 100
     assert cv2.imdecode(np.frombuffer(first.thumbnail, np.uint8), cv2.IMREAD_COLOR).shape == (160, 320, 3)
     np.testing.assert_array_equal(first.descriptors, again.descriptors)
+
+
+def compare(bus: Bus, seq: int, reference: bytes) -> CompareReply:
+    return bus.ask(COMPARE, CompareRequest(seq=seq, reference=reference), ANSWER_S, robot="r1")
+
+
+@pytest.mark.usefixtures("service")
+def test_a_frame_is_compared_with_an_earlier_picture_as_long_as_it_is_kept(bus: Bus) -> None:
+    frame, earlier = frame_at(0.0, 0.0, seq=4, stamp_ns=77), frame_at(0.05, 0.0).data
+    send_until_features(bus, frame)
+    first = compare(bus, 4, b"")
+    assert (first.picture, first.compared, first.stamp_ns) == (frame.data, False, 77)
+    again = compare(bus, 4, earlier)
+    assert (again.compared, again.regions) == (True, ())
+    assert abs(again.yaw_rad) < np.deg2rad(1.0)
+    with pytest.raises(RefusedError, match="frame 3 is not kept") as refused:
+        compare(bus, 3, earlier)
+    assert refused.value.code == "passing"
+    with pytest.raises(RefusedError, match="JPEG"):
+        compare(bus, 4, b"no picture")
 
 
 @pytest.mark.usefixtures("service")

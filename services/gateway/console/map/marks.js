@@ -1,4 +1,4 @@
-// Places and rules of the shown map: listed, searched, driven to, and set from nodes that were picked.
+// Places, rules and inspections of the shown map: listed, searched, driven to, and set from nodes that were picked.
 
 import { call, get } from "../page/api.js";
 import { asked, confirmed } from "../page/ask.js";
@@ -52,6 +52,21 @@ export class Marks {
     const rules = this.graph.rules.map((rule) => [rule.name, TEXT.rule(rule),
       this.remover("rules", rule.name, TEXT.liftRule(rule.name), TEXT.lift)]);
     $("rules").replaceChildren(...(rules.length ? [table(TEXT.ruleColumns, rules)] : []));
+    await this.inspections(map);
+  }
+
+  async inspections(map) {
+    let rounds = [];
+    try {
+      if (map) rounds = await get(`/api/maps/${map}/inspections`);
+    } catch (problem) {
+      this.say(problem.message);
+    }
+    if (map !== this.graph.map) return;
+    const rows = rounds.map((round) => [
+      html("a", { href: `/api/maps/${map}/inspections/${round.round}/report`, target: "_blank" }, round.round),
+      String(round.visits.length), String(round.changes)]);
+    $("inspections").replaceChildren(...(rows.length ? [table(TEXT.inspectionColumns, rows)] : []));
   }
 
   remover(what, name, question, yes) {

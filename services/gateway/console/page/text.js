@@ -110,6 +110,7 @@ export const TEXT = {
   mapPattern: "[a-z0-9_\\-]{1,64}",
   historyOf: (name) => (name ? `History of ${name}` : "History"),
   mapColumns: ["map", "nodes", "edges", "revision", "changed", ""],
+  inspectionColumns: ["inspection", "places", "changes"],
   revisionColumns: ["", "revision", "by", "when", "what"],
   runColumns: ["ended", "run", "map", "outcome", "figures"],
   goalColumns: ["node", "agree", "trust", "direction"],

@@ -18,17 +18,26 @@ def features(seq: int) -> Features:
     )
 
 
+def frame(seq: int) -> Frame:
+    return Frame(seq=seq, robot="r1", encoding="bgr8", width_px=2, height_px=1, data=bytes(6))
+
+
 @pytest.fixture
 def cache() -> FrameCache:
     kept = FrameCache(capacity=3)
     for seq in range(5, 10):
-        kept.put(FrameKey(seq, 100 * seq, 0), features(seq))
+        kept.put(FrameKey(seq, 100 * seq, 0), features(seq), frame(seq))
     return kept
 
 
 def test_only_the_newest_are_kept(cache):
     assert [seq for seq in range(12) if cache.get(seq) is not None] == [7, 8, 9]
     assert cache.span() == "7 to 9"
+
+
+def test_a_frame_is_kept_as_long_as_its_features(cache):
+    assert [seq for seq in range(12) if cache.frame(seq) == frame(seq)] == [7, 8, 9]
+    assert cache.frame(6) is None
 
 
 def test_only_a_frame_newer_than_all_is_ahead(cache):
@@ -61,7 +70,7 @@ def test_judgement(cache, key, lockstep, verdict):
 
 
 def test_numbers_of_before_a_restart_are_forgotten(cache):
-    cache.put(FrameKey(0, 950, 0), features(0))
+    cache.put(FrameKey(0, 950, 0), features(0), frame(0))
     assert cache.get(9) is None
     assert cache.get(0) is not None
 

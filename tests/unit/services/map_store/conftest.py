@@ -11,6 +11,7 @@ from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
 from services.map_store.api.app import create_app
+from services.map_store.inspections.store import InspectionStore
 from services.map_store.merging.merges import Merges
 from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
@@ -76,7 +77,7 @@ def app_of(store: MapStore, **options: Any) -> FastAPI:
     def nobody(_wish: MatchRequest) -> MatchReply:
         raise AbsentError("nobody answers")
 
-    return create_app(store, Merges(store, nobody), **options)
+    return create_app(store, Merges(store, nobody), InspectionStore(store.database), **options)
 
 
 @pytest.fixture

@@ -22,6 +22,7 @@ STORED = Path(__file__).parent / "data"
 """Maps "flat" (five revisions, one of them an undo) and "loft", and a mission of robot r1, by version.
 
 Names end with the commit whose own code wrote the file: dd495c3 is the first that kept maps.
+a6fad33 wrote its version 4 over the version 3 of a2174e2.
 """
 
 

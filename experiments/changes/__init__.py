@@ -1,0 +1,1 @@
+"""What changed between two visits: `topnav study changes`, and rounds of the mission inspect."""

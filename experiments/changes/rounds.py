@@ -1,0 +1,183 @@
+"""Driven rounds of the mission inspect, furniture moved between them, held against what really changed."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import httpx
+import numpy as np
+
+from experiments.changes.alterations import Alteration, draw_alteration
+from experiments.changes.judging import Truth
+from experiments.changes.sights import FAR_M, Measured, labels_of
+from experiments.rendered.frames import simulated
+from services.launcher.client.failure import ExperimentError
+from services.launcher.evaluation.rounds import Game
+from services.launcher.terminal.output import rounded
+from shared.messages.inspections import Region
+from shared.messages.missions import MissionRequest
+from shared.messages.simulation import Pose
+from simulator.simulation import Simulation
+from simulator.world.changes import ChangeError
+from simulator.world.world_file import WorldFile
+
+CLEAR_M = 0.6
+"""Between what is moved and a place: the robot can still get there."""
+TRIES = 50
+MAX_STEPS = 20_000
+
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What an inspection of a place said."""
+
+    place: str
+    pose: Pose
+    compared: bool
+    regions: tuple[Region, ...]
+
+
+class Rounds:
+    """Rounds one after the other; every other one undoes what was altered before the last.
+
+    Args:
+        game: a stack that knows the map.
+        store: a client of its map store.
+        map_name: of the map.
+        world: as the map saw it.
+        places: true poses of the nodes with a name, by name.
+        rng: draws what is altered.
+    """
+
+    def __init__(
+        self,
+        game: Game,
+        store: httpx.Client,
+        map_name: str,
+        world: WorldFile,
+        places: Mapping[str, Pose],
+        rng: np.random.Generator,
+    ) -> None:
+        self._game, self._store, self._map, self._places, self._rng = game, store, map_name, places, rng
+        self._world, self._local = world, simulated(world)
+        self._altered: list[Alteration] = []
+
+    def play(self, rounds: int, changes: int, seed: int) -> Iterator[Row]:
+        """A first round, which only takes pictures, then so many with so many changes before each."""
+        yield {"round": 0, **self._figures(self._drive(seed), [], {})}
+        for number in range(1, rounds + 1):
+            drawn = self._altered or self._draw(changes)
+            back = bool(self._altered)
+            self._alter(self._game.experimenter, drawn, back)
+            seen = self._drive(seed + number)
+            before = self._pictures(seen)
+            self._alter(self._local, drawn, back)
+            after = self._pictures(seen)
+            truths = {s.place: self._truth(s, before, after, drawn) for s in seen}
+            self._altered = [] if back else drawn
+            yield {"round": number, **self._figures(seen, drawn, truths)}
+
+    def _draw(self, count: int) -> list[Alteration]:
+        """Alterations of pieces near a place that shut no place off; the simulator takes each of them."""
+        drawn: list[Alteration] = []
+        for _ in range(TRIES):
+            one = draw_alteration(self._world, self._rng, {each.name for each in drawn})
+            spots = [(pose.x_m, pose.y_m) for pose in self._places.values()]
+            away = [math.dist(spot, at) for spot in one.spots for at in spots]
+            near = min(away) < FAR_M / 2
+            shut = one.after is not None and any(
+                math.dist(one.after, at) < one.reach_m + CLEAR_M for at in spots
+            )
+            if near and not shut and self._is_possible(one):
+                drawn.append(one)
+            if len(drawn) == count:
+                return drawn
+        raise ExperimentError(f"{self._world.name} has no {count} pieces to move near its places")
+
+    def _is_possible(self, one: Alteration) -> bool:
+        try:
+            self._alter(self._local, [one], back=False)
+        except ChangeError:
+            return False
+        self._alter(self._local, [one], back=True)
+        return True
+
+    @staticmethod
+    def _alter(world: Any, drawn: Sequence[Alteration], back: bool) -> None:
+        """In the stack, or in the simulation here; the latter takes poses as tuples."""
+        for each in drawn:
+            if back:
+                world.set_item(each.name, True)
+            elif each.pose is None:
+                world.set_item(each.name, False)
+            else:
+                pose = each.pose
+                as_tuple = (pose.x_m, pose.y_m, pose.yaw_rad)
+                world.set_item(each.name, None, as_tuple if isinstance(world, Simulation) else pose)
+
+    def _drive(self, seed: int) -> list[Seen]:
+        request = MissionRequest(
+            action="inspect",
+            map=self._map,
+            parameters={"places": list(self._places)},
+            seed=seed,
+            max_steps=MAX_STEPS,
+        )
+        run = self._game.client.run(request)
+        answer = self._store.get(f"/maps/{self._map}/inspections/{run.status.mission_id}-1")
+        answer.raise_for_status()
+        trail, seen = self._game.client.trail, []
+        for visit in answer.json()["visits"]:
+            pose = trail.pose_at(visit["stamp_ns"])
+            if pose is None:
+                raise ExperimentError(f"no true pose is known for the picture of {visit['place']}")
+            regions = tuple(Region.model_validate(each) for each in visit["changes"])
+            seen.append(Seen(visit["place"], pose, visit["against_ns"] is not None, regions))
+        return seen
+
+    def _pictures(self, seen: Sequence[Seen]) -> dict[str, Measured]:
+        poses = {each.place: each.pose for each in seen}
+        return {name: self._local.measured_at(p.x_m, p.y_m, p.yaw_rad) for name, p in poses.items()}
+
+    @staticmethod
+    def _truth(
+        seen: Seen, before: Mapping[str, Measured], after: Mapping[str, Measured], drawn: Sequence[Alteration]
+    ) -> Truth:
+        labels = labels_of(seen.pose, before[seen.place], after[seen.place], drawn)
+        for number, each in enumerate(drawn, start=1):
+            at = (seen.pose.x_m, seen.pose.y_m)
+            if min(math.dist(at, spot) for spot in each.spots) >= FAR_M:
+                labels = np.where(labels == number, np.uint8(255), labels)
+        return Truth(labels, len(drawn))
+
+    def _figures(self, seen: Sequence[Seen], drawn: Sequence[Alteration], truths: Mapping[str, Truth]) -> Row:
+        """A change counts once, whatever number of places see it."""
+        found: dict[int, bool] = {}
+        false = 0
+        for each in seen:
+            if each.place in truths:
+                verdict = truths[each.place].judge(each.regions)
+                false += len(verdict.false)
+                for number, hit in verdict.by_number.items():
+                    found[number] = found.get(number, False) or hit
+            else:
+                false += len(each.regions)
+        offsets = [self._offset_m(each) for each in seen]
+        return {
+            "visits": len(seen),
+            "missed": len(self._places) - len(seen),
+            "compared": sum(each.compared for each in seen),
+            "offset_m_median": rounded(np.median(offsets), 3) if offsets else None,
+            "offset_m_most": rounded(max(offsets), 3) if offsets else None,
+            "altered": len(drawn),
+            "in_sight": len(found),
+            "reported": sum(found.values()),
+            "false": false,
+        }
+
+    def _offset_m(self, seen: Seen) -> float:
+        place = self._places[seen.place]
+        return math.hypot(seen.pose.x_m - place.x_m, seen.pose.y_m - place.y_m)

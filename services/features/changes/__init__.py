@@ -1,0 +1,1 @@
+"""What changed at a place since a picture was taken there."""

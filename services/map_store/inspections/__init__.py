@@ -1,0 +1,1 @@
+"""Pictures of places and what changed in them: kept by visit, told as rounds."""
