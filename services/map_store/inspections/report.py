@@ -90,9 +90,7 @@ def _box(number: int, region: Region) -> str:
     for x in (left - WIDTH, left, left + WIDTH):
         if x + wide > 0.0 and x < WIDTH:
             drawn.append(f'<rect x="{x:.0f}" y="{top:.0f}" width="{wide:.0f}" height="{high:.0f}" {MARK}/>')
-            drawn.append(
-                f'<text x="{x + 6:.0f}" y="{top + 28:.0f}" font-size="28" fill="#ff2d20">{number}</text>'
-            )
+            drawn.append(f'<text x="{x + 6:.0f}" y="{top + 28:.0f}" {NUMBER}>{number}</text>')
     return "".join(drawn)
 
 

@@ -212,6 +212,7 @@ def _stored(path: str, nodes: int, body: bytes) -> Response:
         "maps/flat": {"name": "flat", "revision": 9, "sent": body.decode()},
         "maps/flat/places": [],
         "maps/flat/rules": [],
+        "maps/flat/inspections": [],
         "maps/flat/compare": {"map": "flat", "from": 5, "to": 9, "nodes_added": [3]},
         "maps/flat/undo": {"map": "flat", "revision": 10, "undone": 9},
         "maps/flat/nodes": [{"node_id": node, "thumbnail": True} for node in range(nodes)],
