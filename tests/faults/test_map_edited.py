@@ -21,7 +21,7 @@ pytestmark = [
     pytest.mark.usefixtures("patient_sessions"),
 ]
 
-STEPS = 120
+STEPS = 240
 LONGEST = 300
 
 
