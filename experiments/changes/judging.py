@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from experiments.changes.sights import Labels
+from services.features.changes.comparison import BAND_RAD
 from shared.geometry.sphere import EquirectGrid
 from shared.messages.inspections import Region
 
@@ -16,7 +17,6 @@ MARGIN_RAD = math.radians(5.0)
 """Round what changed: from where the other picture was taken it stood that much elsewhere."""
 IN_SIGHT_SR = 0.005
 """Of a change that can be asked for; chosen: 4 by 4 degrees, a basket 3 m away."""
-BAND_RAD = math.radians(45.0)
 
 Mask = npt.NDArray[np.bool_]
 

@@ -11,8 +11,7 @@ from experiments.changes.sights import Sight
 from experiments.rendered.frames import frame_of
 from services.features.changes.comparison import Sensitivity, differences
 from services.features.changes.regions import regions
-from services.features.changes.visits import LEAST_INLIERS
-from services.features.matching.verification import Candidate, feature_set, verify
+from services.features.changes.visits import LEAST_INLIERS, match_of
 from services.features.pipeline.pipeline import Pipeline
 from simulator.simulation import Image
 
@@ -77,9 +76,7 @@ def _counts(verdict: Verdict) -> Row:
 
 def _aligned(reference: Image, current: Image, pipeline: Pipeline) -> tuple[float, float] | None:
     """Turn and disparity as the feature service finds them; None where it would not compare."""
-    now, before = (feature_set(pipeline.features_of(frame_of(each))) for each in (current, reference))
-    (pairs,) = pipeline.matcher.match(now, [before])
-    match = verify(now, Candidate(0, before), pairs, 0, pipeline.verification, False)
+    match = match_of(pipeline, pipeline.features_of(frame_of(current)), frame_of(reference))
     if match.yaw_rad is None or match.inliers < LEAST_INLIERS:
         return None
     return -match.yaw_rad, match.disparity_rad or 0.0

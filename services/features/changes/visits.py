@@ -40,7 +40,7 @@ def compare_with(pipeline: Pipeline, frame: Frame, features: Features, reference
     if not reference:
         return reply.model_copy(update={"why": "no earlier picture"})
     earlier = _frame_of(reference)
-    match = _match(pipeline, features, earlier)
+    match = match_of(pipeline, features, earlier)
     facts = {"inliers": match.inliers, "disparity_rad": match.disparity_rad}
     if match.yaw_rad is None or match.inliers < LEAST_INLIERS:
         why = f"{match.inliers} keypoints agree with the earlier picture, at least {LEAST_INLIERS} expected"
@@ -52,7 +52,8 @@ def compare_with(pipeline: Pipeline, frame: Frame, features: Features, reference
     return reply.model_copy(update={**facts, **told})
 
 
-def _match(pipeline: Pipeline, features: Features, earlier: Frame) -> NodeMatch:
+def match_of(pipeline: Pipeline, features: Features, earlier: Frame) -> NodeMatch:
+    """How the camera turned and moved between an earlier picture and a frame with these features."""
     now, before = feature_set(features), feature_set(pipeline.features_of(earlier))
     (pairs,) = pipeline.matcher.match(now, [before])
     return verify(now, Candidate(0, before), pairs, features.seq, pipeline.verification, False)

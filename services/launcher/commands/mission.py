@@ -10,7 +10,6 @@ from services.launcher.terminal import options
 
 app = typer.Typer(name="mission", no_args_is_help=True, help="Missions of any kind that the planner knows.")
 
-Kind = Annotated[str, typer.Argument(help="One of 'topnav mission kinds'.")]
 Image = Annotated[Path | None, typer.Option(help="A goal picture, for kinds that take one.")]
 
 
@@ -41,7 +40,7 @@ def show_kinds(
 
 @app.command("start")
 def start(
-    kind: Kind,
+    kind: options.Kind,
     map_name: options.MapName = "flat",
     given: options.Given = None,
     image: Image = None,

@@ -13,7 +13,6 @@ Name = Annotated[str, typer.Argument(help="Of the schedule: a to z, 0 to 9, _ an
 Cron = Annotated[
     str, typer.Argument(help="Minute, hour, day of the month, month, day of the week: '30 7 * * MON-FRI'.")
 ]
-Kind = Annotated[str, typer.Argument(help="One of 'topnav mission kinds'.")]
 Zone = Annotated[str, typer.Option("--zone", help="Time zone of the clocks, such as Europe/Zurich.")]
 Off = Annotated[bool, typer.Option("--off", help="Keep it, but let it make no task.")]
 Priority = Annotated[int, typer.Option(min=0, max=9, help="Of its tasks; higher first.")]
@@ -23,7 +22,7 @@ Priority = Annotated[int, typer.Option(min=0, max=9, help="Of its tasks; higher 
 def set_schedule(
     name: Name,
     cron: Cron,
-    kind: Kind,
+    kind: options.Kind,
     map_name: options.MapName = "flat",
     given: options.Given = None,
     zone: Zone = "UTC",

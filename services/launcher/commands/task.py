@@ -11,7 +11,6 @@ from services.launcher.terminal import options
 
 app = typer.Typer(name="task", no_args_is_help=True, help="Tasks that wait for a robot that runs.")
 
-Kind = Annotated[str, typer.Argument(help="One of 'topnav mission kinds'.")]
 TaskId = Annotated[str, typer.Argument(help="As 'topnav task list' shows it.")]
 NewId = Annotated[str, typer.Option("--id", help="Of your choice: added again, it is not added twice.")]
 Ended = Annotated[int, typer.Option(min=0, max=200, help="Show so many that ended as well.")]
@@ -21,7 +20,7 @@ NewPriority = Annotated[int, typer.Argument(min=0, max=9, help="Higher first.")]
 
 @app.command("add")
 def add(
-    kind: Kind,
+    kind: options.Kind,
     map_name: options.MapName = "flat",
     given: options.Given = None,
     priority: Priority = 4,

@@ -43,6 +43,7 @@ FieldOfView = Annotated[
 ]
 
 Robot = Annotated[str, typer.Option(help="Name of the robot.")]
+Kind = Annotated[str, typer.Argument(help="One of 'topnav mission kinds'.")]
 Given = Annotated[
     list[str] | None,
     typer.Option("--set", help="A parameter of the kind, as NAME=VALUE; may be given often."),
