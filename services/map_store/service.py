@@ -74,7 +74,13 @@ def answer_map(store: MapStore, name: str, request: MapRequest) -> MapReply:
     nodes = tuple(stored.node for stored in graph.nodes.values())
     edges, marks = tuple(graph.edges.values()), graph.marks
     return MapReply(
-        map=name, revision=revision, nodes=nodes, edges=edges, places=marks.places, rules=marks.rules
+        map=name,
+        revision=revision,
+        nodes=nodes,
+        edges=edges,
+        places=marks.places,
+        rules=marks.rules,
+        routes=marks.routes,
     )
 
 

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 from sqlalchemy import Connection
 
-from services.map_store.errors import ConflictError, InvalidError
+from services.map_store.errors import ConflictError, InvalidError, MissingError
 from services.map_store.history import revisions as history
 from services.map_store.history.comparison import Comparison
 from services.map_store.history.revisions import Revision
@@ -21,7 +21,9 @@ from services.map_store.storage.graphs import Graphs
 from services.map_store.storage.missions import follow_rename
 from services.map_store.storage.operations import prepare
 from services.map_store.tasks import records
+from shared.mapgraph.marks import gaps
 from shared.messages.maps import MapDelta, Operation
+from shared.messages.places import PutRoute
 
 
 class MapStore:
@@ -125,6 +127,7 @@ class MapStore:
             _check_base(name, found.revision, base_revision)
             blobs.put(connection, found.map_id, prepared.contents)
             entry, graph = self._commit(connection, found, prepared.steps, author)
+            _check_routes(name, prepared.steps, graph)
             answers.keep(connection, name, request_id, entry.revision)
             deltas.append(
                 MapDelta(
@@ -219,6 +222,14 @@ class MapStore:
                 yield connection, deltas
             for delta in deltas:
                 self._changed(delta)
+
+
+def _check_routes(name: str, steps: Sequence[Step], graph: Graph) -> None:
+    """A route that is put anew has no gap; undo, imports and merges keep one as it was."""
+    for step in steps:
+        if isinstance(step, PutRoute) and (missing := gaps(step.route, graph.edges)):
+            a, b = missing[0]
+            raise MissingError(f"map {name!r}, route {step.route.name!r}: edge {a}-{b} does not exist")
 
 
 def _check_base(name: str, revision: int, base_revision: int | None) -> None:

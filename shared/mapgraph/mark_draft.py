@@ -1,14 +1,28 @@
-"""Places and rules being changed in place, as part of a `Draft`. Pure."""
+"""Places, rules and routes being changed in place, as part of a `Draft`. Pure."""
 
 from collections.abc import Callable, Container
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, TypeVar
 
-from shared.mapgraph.marks import MENTIONS_MAX, nodes_of, nothing_called, only_nodes, users_of
+from shared.mapgraph.marks import MENTIONS_MAX, mentions, nodes_of, nothing_called, only_nodes, users_of
 from shared.messages.maps import MarkOperation
-from shared.messages.places import DeletePlace, DeleteRule, KeepOut, Place, PutPlace, PutRule, Rule, key_of
+from shared.messages.places import (
+    DeletePlace,
+    DeleteRoute,
+    DeleteRule,
+    KeepOut,
+    Place,
+    PutPlace,
+    PutRoute,
+    PutRule,
+    Route,
+    Rule,
+    key_of,
+)
+
+M = TypeVar("M", Place, Rule, Route)
 
 MARKS_MAX = 1_000
-"""Places of a map, and rules; chosen: more than a person can tell apart."""
+"""Places of a map, rules, and routes; chosen: more than a person can tell apart."""
 
 
 class GraphError(ValueError):
@@ -16,7 +30,7 @@ class GraphError(ValueError):
 
 
 class UnknownError(GraphError):
-    """It names a node, an edge, a place or a rule that is not there."""
+    """It names a node, an edge, a place, a rule or a route that is not there."""
 
 
 class TakenError(GraphError):
@@ -32,23 +46,30 @@ class FullError(GraphError):
 
 
 class MarkWrite(NamedTuple):
-    """A place or a rule before and after; None where there is none."""
+    """A place, a rule or a route before and after; None where there is none."""
 
     key: str
-    before: Place | Rule | None
-    after: Place | Rule | None
+    before: Place | Rule | Route | None
+    after: Place | Rule | Route | None
 
     @property
-    def kind(self) -> Literal["place", "rule"]:
-        """Which of the two."""
-        return "place" if isinstance(self.before or self.after, Place) else "rule"
+    def kind(self) -> Literal["place", "rule", "route"]:
+        """Which of the three."""
+        return kind_of(self.before or self.after)
+
+
+def kind_of(mark: Place | Rule | Route | None) -> Literal["place", "rule", "route"]:
+    """Which of the three a mark is."""
+    if isinstance(mark, Place):
+        return "place"
+    return "route" if isinstance(mark, Route) else "rule"
 
 
 class MarkDraft:
-    """Places and rules, by the keys of their names.
+    """Places, rules and routes, by the keys of their names.
 
     Args:
-        places, rules: changed in place.
+        places, rules, routes: changed in place.
         nodes: numbers of the nodes there are.
         wrote: is told every write.
     """
@@ -57,10 +78,11 @@ class MarkDraft:
         self,
         places: dict[str, Place],
         rules: dict[str, Rule],
+        routes: dict[str, Route],
         nodes: Container[int],
         wrote: Callable[[MarkWrite], None],
     ) -> None:
-        self.places, self.rules = places, rules
+        self.places, self.rules, self.routes = places, rules, routes
         self._nodes, self._wrote = nodes, wrote
 
     def apply(self, operation: MarkOperation) -> None:
@@ -72,16 +94,19 @@ class MarkDraft:
             case PutRule(rule=rule):
                 self._check(rule)
                 self._write(MarkWrite(key_of(rule.name), self.rules.get(key_of(rule.name)), rule))
+            case PutRoute(route=route):
+                self._check(route)
+                self._write(MarkWrite(key_of(route.name), self.routes.get(key_of(route.name)), route))
             case DeletePlace(name=name):
                 self._delete_place(name)
             case DeleteRule(name=name):
-                if key_of(name) not in self.rules:
-                    raise UnknownError(nothing_called(name, list(self.rules.values()), "rule"))
-                self._write(MarkWrite(key_of(name), self.rules[key_of(name)], None))
+                self._delete(name, self.rules, "rule")
+            case DeleteRoute(name=name):
+                self._delete(name, self.routes, "route")
 
     def forget_node(self, node_id: int) -> None:
-        """A node goes: no place and no rule lists it any longer."""
-        for mark in [*self.places.values(), *self.rules.values()]:
+        """A node goes: no place, no rule and no route lists it any longer."""
+        for mark in self._all():
             if node_id in nodes_of(mark):
                 left = only_nodes(mark, nodes_of(mark) - {node_id})
                 self._write(MarkWrite(key_of(mark.name), mark, left))
@@ -94,7 +119,15 @@ class MarkDraft:
             raise InUseError(f"place {name!r} is what rule {users[0]!r} is about; lift that first")
         self._write(MarkWrite(key, self.places[key], None))
 
-    def _check(self, mark: Place | Rule) -> None:
+    def _delete(self, name: str, kept: dict[str, M], what: str) -> None:
+        if key_of(name) not in kept:
+            raise UnknownError(nothing_called(name, list(kept.values()), what))
+        self._write(MarkWrite(key_of(name), kept[key_of(name)], None))
+
+    def _all(self) -> list[Place | Rule | Route]:
+        return [*self.places.values(), *self.rules.values(), *self.routes.values()]
+
+    def _check(self, mark: Place | Rule | Route) -> None:
         """Whether all that it is about is there, and there is room for it."""
         for node_id in sorted(nodes_of(mark)):
             if node_id not in self._nodes:
@@ -103,17 +136,23 @@ class MarkDraft:
             for area in mark.areas:
                 if key_of(area) not in self.places:
                     raise UnknownError(f"{mark.name!r}: {nothing_called(area, list(self.places.values()))}")
-        same: dict[str, Place] | dict[str, Rule] = self.places if isinstance(mark, Place) else self.rules
+        same = self._kept(kind_of(mark))
         if key_of(mark.name) not in same and len(same) >= MARKS_MAX:
-            raise FullError(f"a map holds at most {MARKS_MAX} places and as many rules; delete some first")
-        others = [
-            m for m in (*self.places.values(), *self.rules.values()) if m is not same.get(key_of(mark.name))
-        ]
-        if sum(len(nodes_of(other)) for other in (*others, mark)) > MENTIONS_MAX:
-            raise FullError(f"places and rules of a map list at most {MENTIONS_MAX} nodes; list fewer")
+            raise FullError(
+                f"a map holds at most {MARKS_MAX} places, as many rules and as many routes; delete some first"
+            )
+        others = [other for other in self._all() if other is not same.get(key_of(mark.name))]
+        if sum(mentions(other) for other in (*others, mark)) > MENTIONS_MAX:
+            raise FullError(
+                f"places, rules and routes of a map list at most {MENTIONS_MAX} nodes; list fewer"
+            )
+
+    def _kept(self, kind: Literal["place", "rule", "route"]) -> dict[str, Place | Rule | Route]:
+        kept: dict[str, object] = {"place": self.places, "rule": self.rules, "route": self.routes}
+        return kept[kind]  # type: ignore[return-value]
 
     def _write(self, write: MarkWrite) -> None:
-        kept: dict[str, Place | Rule] = self.places if write.kind == "place" else self.rules  # type: ignore[assignment]
+        kept = self._kept(write.kind)
         if write.after is None:
             del kept[write.key]
         else:

@@ -1,13 +1,15 @@
-"""Places and rules of a map as they change: found by name, checked, and freed of nodes that go. Pure."""
+"""Marks of a map as they change: found by name, checked, and freed of nodes that go. Pure."""
 
 import unicodedata
 from collections.abc import Callable, Collection, Container, Iterable, Mapping
 from difflib import get_close_matches
+from itertools import groupby, pairwise
 from typing import TypeVar
 
-from shared.messages.places import NAME_MAX, EdgeRule, KeepOut, Mark, Marks, Place, Rule, key_of
+from shared.messages.places import NAME_MAX, EdgeRule, KeepOut, Mark, Marks, Place, Route, Rule, key_of
 
 M = TypeVar("M", bound=Mark)
+T = TypeVar("T")
 
 NEAREST = 3
 """Names that an error offers; chosen: what one reads at a glance."""
@@ -15,11 +17,11 @@ ALIKE = 0.5
 """Least likeness of a name that is offered; chosen: of "kithen" and "kitchen" it is 0.92, of "hall" and
 "hall 2" 0.8."""
 MENTIONS_MAX = 100_000
-"""Nodes that all places and rules of a map may list together: 1 MB, written anew with each change of one."""
+"""Nodes that all marks of a map may list together: 1 MB, written anew with each change of one."""
 
 
 def by_key(marks: Iterable[M]) -> dict[str, M]:
-    """Places or rules by what their names mean."""
+    """Places, rules or routes by what their names mean."""
     return {key_of(mark.name): mark for mark in marks}
 
 
@@ -50,7 +52,7 @@ def nothing_called(name: str, marks: Collection[M], what: str = "place") -> str:
     Args:
         name: as it was asked for.
         marks: those there are.
-        what: "place" or "rule".
+        what: "place", "rule" or "route".
     """
     if not marks:
         return f"the map has no {what} {name!r}, and no {what}s at all"
@@ -69,12 +71,36 @@ def place_called(name: str, places: Mapping[str, Place]) -> Place | str:
     return places.get(key) or nothing_called(name, list(places.values()))
 
 
+def route_called(name: str, routes: Mapping[str, Route]) -> Route | str:
+    """The route of that name, or a text that says that there is none and which are nearest."""
+    try:
+        key = key_of(name)
+    except ValueError as error:
+        return str(error)
+    return routes.get(key) or nothing_called(name, list(routes.values()), "route")
+
+
+def gaps(route: Route, joined: Container[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Where one node of a route and the next are not joined.
+
+    Args:
+        route: any.
+        joined: the edges of the map, each as its two nodes, the lower one first.
+    """
+    return [(a, b) for a, b in pairwise(route.nodes) if (min(a, b), max(a, b)) not in joined]
+
+
 def nodes_of(mark: Mark) -> set[int]:
     """All nodes that it lists, those of areas apart."""
     if isinstance(mark, EdgeRule):
         return {node for way in mark.edges for node in way}
-    assert isinstance(mark, Place | KeepOut)
+    assert isinstance(mark, Place | KeepOut | Route)
     return set(mark.nodes)
+
+
+def mentions(mark: Mark) -> int:
+    """How many nodes it lists: a route lists one as often as it comes to it."""
+    return len(mark.nodes) if isinstance(mark, Route) else len(nodes_of(mark))
 
 
 def only_nodes(mark: M, kept: Container[int]) -> M:
@@ -86,7 +112,7 @@ def renumbered(mark: M, ids: Mapping[int, int], name: str, areas: Mapping[str, s
     """The same in another map.
 
     Args:
-        mark: a place or a rule.
+        mark: a place, a rule or a route.
         ids: number there by number here; nodes without one are left out.
         name: what it is called there.
         areas: names of places there by key here.
@@ -121,8 +147,11 @@ def _listing(mark: Mark, number: Callable[[int], int | None]) -> dict[str, objec
     if isinstance(mark, EdgeRule):
         ways = [(number(a), number(b)) for a, b in mark.edges]
         return {"edges": tuple(way for way in ways if None not in way)}
-    assert isinstance(mark, Place | KeepOut)
-    return {"nodes": tuple(new for n in mark.nodes if (new := number(n)) is not None)}
+    assert isinstance(mark, Place | KeepOut | Route)
+    nodes = [new for n in mark.nodes if (new := number(n)) is not None]
+    if isinstance(mark, Route):  # there and back without the far end: the same node twice is one visit
+        nodes = [node for node, _ in groupby(nodes)]
+    return {"nodes": tuple(nodes)}
 
 
 def users_of(place: str, rules: Iterable[Rule]) -> list[str]:
@@ -130,8 +159,14 @@ def users_of(place: str, rules: Iterable[Rule]) -> list[str]:
     return [rule.name for rule in rules if isinstance(rule, KeepOut) and place in map(key_of, rule.areas)]
 
 
-def marks_of(places: Mapping[str, Place], rules: Mapping[str, Rule]) -> Marks:
+def marks_of(
+    places: Mapping[str, Place], rules: Mapping[str, Rule], routes: Mapping[str, Route] | None = None
+) -> Marks:
     """All of them, in the order of their keys."""
     return Marks(
-        places=tuple(places[key] for key in sorted(places)), rules=tuple(rules[key] for key in sorted(rules))
+        places=_in_order(places), rules=_in_order(rules), routes=() if routes is None else _in_order(routes)
     )
+
+
+def _in_order(marks: Mapping[str, T]) -> tuple[T, ...]:
+    return tuple(marks[key] for key in sorted(marks))

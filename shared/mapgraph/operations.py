@@ -12,7 +12,7 @@ from shared.mapgraph.mark_draft import MarkDraft, MarkWrite
 from shared.mapgraph.mark_draft import TakenError as TakenError
 from shared.mapgraph.mark_draft import UnknownError as UnknownError
 from shared.messages.maps import DeleteEdge, DeleteNode, Edge, MarkOperation, PutEdge
-from shared.messages.places import Place, Rule
+from shared.messages.places import Place, Route, Rule
 from shared.wire import MAX_CONTAINER
 
 N = TypeVar("N")
@@ -42,7 +42,7 @@ class Draft(Generic[N]):
 
     Attributes:
         nodes, edges: as they are by now, by number and by pair of numbers.
-        marks: places and rules likewise, by the keys of their names.
+        marks: places, rules and routes likewise, by the keys of their names.
         writes: what was done; backwards, with before and after exchanged, it leads back.
     """
 
@@ -52,11 +52,16 @@ class Draft(Generic[N]):
         edges: dict[EdgeKey, Edge],
         places: dict[str, Place] | None = None,
         rules: dict[str, Rule] | None = None,
+        routes: dict[str, Route] | None = None,
     ) -> None:
         self.nodes, self.edges = nodes, edges
         self.writes: list[NodeWrite[N] | EdgeWrite | MarkWrite] = []
         self.marks = MarkDraft(
-            {} if places is None else places, {} if rules is None else rules, nodes, self.writes.append
+            {} if places is None else places,
+            {} if rules is None else rules,
+            {} if routes is None else routes,
+            nodes,
+            self.writes.append,
         )
         self._neighbours: dict[int, set[int]] | None = None
 

@@ -3,7 +3,9 @@
 from collections.abc import Mapping, Sequence
 
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.marks import only_nodes
 from shared.messages.maps import AddNode, DeleteEdge, DeleteNode, Edge, Node, Operation, PutEdge, UpdateNode
+from shared.messages.places import PutRoute
 
 COUNTERS = ("traversals", "failures")
 
@@ -42,6 +44,8 @@ def _again(operation: Operation, before: MapGraph, now: MapGraph, ids: Mapping[i
             return operation if (a, b) in now.edges else None
         case DeleteNode(node_id=node_id):
             return operation if node_id in now.nodes else None
+        case PutRoute(route=route):
+            return PutRoute(route=only_nodes(route, now.nodes))
         case _:  # places and rules, which no robot writes
             return operation
 

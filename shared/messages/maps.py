@@ -8,7 +8,17 @@ from pydantic import Field, model_validator
 from shared.messages.base import SECTORS, Bearing, Message, Name, Part
 from shared.messages.features import Features
 from shared.messages.missions import FailureKind, KindName, Parameters, PausedBy
-from shared.messages.places import DeletePlace, DeleteRule, Place, PutPlace, PutRule, Rule
+from shared.messages.places import (
+    DeletePlace,
+    DeleteRoute,
+    DeleteRule,
+    Place,
+    PutPlace,
+    PutRoute,
+    PutRule,
+    Route,
+    Rule,
+)
 
 Ways = Annotated[
     tuple[Annotated[float, Field(ge=0.0)], ...],
@@ -118,7 +128,7 @@ class DeleteEdge(Part):
     b: int = Field(ge=0)
 
 
-MarkOperation = PutPlace | DeletePlace | PutRule | DeleteRule
+MarkOperation = PutPlace | DeletePlace | PutRule | DeleteRule | PutRoute | DeleteRoute
 Operation = Annotated[
     AddNode | UpdateNode | DeleteNode | PutEdge | DeleteEdge | MarkOperation, Field(discriminator="op")
 ]
@@ -153,7 +163,7 @@ class NodeFeatures(Part):
 
 
 class MapReply(Message):
-    """The map after the request; nodes, edges, places and rules only for read."""
+    """The map after the request; nodes, edges, places, rules and routes only for read."""
 
     SCHEMA: ClassVar[str] = "map_reply.v1"
     MAX_ITEMS: ClassVar[int] = MAP_ITEMS
@@ -164,6 +174,7 @@ class MapReply(Message):
     edges: tuple[Edge, ...] = Field(default=(), fail_fast=True)
     places: tuple[Place, ...] = Field(default=(), fail_fast=True)
     rules: tuple[Rule, ...] = Field(default=(), fail_fast=True)
+    routes: tuple[Route, ...] = Field(default=(), fail_fast=True)
     features: tuple[NodeFeatures, ...] = Field(default=(), fail_fast=True)
 
 

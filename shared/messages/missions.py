@@ -23,7 +23,7 @@ FailureKind = Literal[
 ]
 
 
-CONTROLS = ("pause", "resume", "cancel", "status")
+CONTROLS = ("pause", "resume", "cancel", "finish", "status")
 """Actions that are no kind of mission."""
 
 KindName = Annotated[str, Field(pattern=r"^[a-z0-9_-]{0,64}$")]
@@ -50,7 +50,7 @@ PausedBy = Literal["", "person", "by_hand", "emergency_stop"]
 
 
 class MissionRequest(Message):
-    """Start, pause, resume, cancel or ask.
+    """Start, pause, resume, cancel, finish or ask.
 
     Attributes:
         action: one of CONTROLS, or the kind of mission to start.
@@ -126,6 +126,7 @@ class MissionKindInfo(Part):
         parameters: JSON Schema of its parameters.
         shown: figures that its record shows, by their names in the status.
         takes_picture: whether a goal picture may come with the request.
+        by_hand: whether it goes along with a person who drives, and ends when told to finish.
     """
 
     name: Name
@@ -133,6 +134,7 @@ class MissionKindInfo(Part):
     parameters: Parameters = Field(default_factory=dict)
     shown: tuple[Annotated[str, Field(max_length=64)], ...] = Field(default=(), max_length=32)
     takes_picture: bool = False
+    by_hand: bool = False
 
 
 class MissionKindsRequest(Message):

@@ -1,4 +1,4 @@
-"""Names that people give to places of a map, and rules that they set there. Part of the map."""
+"""Marks that people make on a map: names of places, rules, routes that they teach. Part of the map."""
 
 import unicodedata
 from typing import Annotated, Literal
@@ -78,6 +78,17 @@ class Place(Mark):
     nodes: NodeIds = ()
 
 
+class Route(Mark):
+    """Nodes to be driven to one after the other, as they were taught; one may come more than once.
+
+    Attributes:
+        nodes: in the order of driving. Nodes that are deleted leave; where those before and after are not
+            joined, the route has a gap until it is put anew.
+    """
+
+    nodes: NodeIds = ()
+
+
 class KeepOut(Mark):
     """Nodes that no robot may go to or through.
 
@@ -150,6 +161,20 @@ class DeletePlace(Part):
     name: PlaceName
 
 
+class PutRoute(Part):
+    """Keep a route, or replace the one of the same name."""
+
+    op: Literal["put_route"] = "put_route"
+    route: Route
+
+
+class DeleteRoute(Part):
+    """Forget a route; its nodes stay."""
+
+    op: Literal["delete_route"] = "delete_route"
+    name: PlaceName
+
+
 class PutRule(Part):
     """Add a rule or replace the one of the same name."""
 
@@ -169,10 +194,11 @@ class Marks(Part):
 
     places: tuple[Place, ...] = Field(default=(), fail_fast=True)
     rules: tuple[Rule, ...] = Field(default=(), fail_fast=True)
+    routes: tuple[Route, ...] = Field(default=(), fail_fast=True)
 
     @model_validator(mode="after")
     def _named_once(self) -> "Marks":
-        for kind in (self.places, self.rules):
+        for kind in (self.places, self.rules, self.routes):
             if len({key_of(mark.name) for mark in kind}) != len(kind):
                 raise ValueError("a name stands there twice")
         return self

@@ -111,6 +111,7 @@ def marks() -> places.Marks:
             places.Slow(name="ramp", edges=edge, speed_share=0.25),
             places.OpeningHours(name="door", edges=edge, hours=(night,), time_zone="Europe/Berlin"),
         ),
+        routes=(places.Route(name="round", nodes=(1, 2, 1)),),
     )
 
 
@@ -125,6 +126,8 @@ def operations() -> tuple[maps.Operation, ...]:
         *(places.PutRule(rule=rule) for rule in marks().rules),
         places.DeletePlace(name="dock"),
         places.DeleteRule(name="lane"),
+        *(places.PutRoute(route=route) for route in marks().routes),
+        places.DeleteRoute(name="round"),
     )
 
 
@@ -333,6 +336,7 @@ def kinds() -> tuple[Message, ...]:
                     parameters={"type": "object", "properties": {"rounds": {"type": "integer"}}},
                     shown=("rounds",),
                     takes_picture=True,
+                    by_hand=True,
                 ),
             ),
         ),
@@ -368,6 +372,7 @@ def mapped() -> tuple[Message, ...]:
             edges=(edge(),),
             places=marks().places,
             rules=marks().rules,
+            routes=marks().routes,
             features=(maps.NodeFeatures(node_id=1, features=features()),),
         ),
         maps.MapDelta(

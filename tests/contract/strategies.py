@@ -19,7 +19,17 @@ from shared.messages.features import Features, Photo
 from shared.messages.inspections import Inspection, InspectionRequest
 from shared.messages.maps import Edge
 from shared.messages.matching import NodeMatch
-from shared.messages.places import DeletePlace, DeleteRule, KeepOut, OneWay, OpeningHours, Place, Slow
+from shared.messages.places import (
+    DeletePlace,
+    DeleteRoute,
+    DeleteRule,
+    KeepOut,
+    OneWay,
+    OpeningHours,
+    Place,
+    Route,
+    Slow,
+)
 from shared.messages.sensors import Frame
 
 Fields = dict[str, Any]
@@ -179,7 +189,7 @@ FITS: dict[type[BaseModel], Callable[[Fields, int, int], Fields]] = {
     Frame: _fit_frame,
     Photo: _fit_photo,
     Edge: _fit_edge,
-    **dict.fromkeys((Place, KeepOut, OneWay, Slow, OpeningHours, DeletePlace, DeleteRule), _fit_mark),
+    **dict.fromkeys((Place, KeepOut, OneWay, Slow, OpeningHours, Route, DeletePlace, DeleteRule, DeleteRoute), _fit_mark),
     **dict.fromkeys((Inspection, InspectionRequest), _fit_mark),
 }
 """What fields of one message owe each other, beyond what each of them must be by itself."""

@@ -29,6 +29,8 @@ OPERATOR = frozenset(
         ("DELETE", "/api/robots/{robot}/estop"),
         ("POST", "/api/maps"),
         ("DELETE", "/api/maps/{map_name}/places"),
+        ("PUT", "/api/maps/{map_name}/routes"),
+        ("DELETE", "/api/maps/{map_name}/routes"),
         ("POST", "/api/robots/{robot}/drive"),
         ("PATCH", "/api/robots/{robot}/tasks/{task_id}"),
         ("PUT", "/api/robots/{robot}/schedules/{name}"),

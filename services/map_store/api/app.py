@@ -13,6 +13,7 @@ from services.map_store.api import (
     mark_routes,
     merge_routes,
     problems,
+    taught_routes,
 )
 from services.map_store.api.guard import reader_guard, writer_guard
 from services.map_store.api.schemas import Health
@@ -70,6 +71,7 @@ def create_app(
         history_routes.build(store, write),
         graph_routes.build(store, write),
         mark_routes.build(store, write),
+        taught_routes.build(store, write),
         care_routes.build(store, write),
         archive_routes.build(store, write, max_archive_bytes),
         merge_routes.build(store, merges, write),

@@ -99,6 +99,9 @@ class ComparisonView(BaseModel):
     rules_added: list[str]
     rules_removed: list[str]
     rules_changed: list[str]
+    routes_added: list[str]
+    routes_removed: list[str]
+    routes_changed: list[str]
 
 
 class Health(BaseModel):

@@ -50,6 +50,9 @@ class Comparison:
     rules_added: tuple[str, ...] = ()
     rules_removed: tuple[str, ...] = ()
     rules_changed: tuple[str, ...] = ()
+    routes_added: tuple[str, ...] = ()
+    routes_removed: tuple[str, ...] = ()
+    routes_changed: tuple[str, ...] = ()
 
 
 def rewind(graph: Graph, inverses: Iterable[Iterable[Step]]) -> Graph:
@@ -81,6 +84,7 @@ def compare(before: Graph, after: Graph) -> Comparison:
         edges_changed=tuple(_edge_change(before.edges[key], after.edges[key]) for key in edges_changed),
         **_mark_changes("places", before.places, after.places),
         **_mark_changes("rules", before.rules, after.rules),
+        **_mark_changes("routes", before.routes, after.routes),
     )
 
 

@@ -27,6 +27,8 @@ SENTENCES = (
     ("delete_place", "place", "forgotten"),
     ("put_rule", "rule", "put"),
     ("delete_rule", "rule", "lifted"),
+    ("put_route", "route", "put"),
+    ("delete_route", "route", "forgotten"),
 )
 
 
@@ -90,7 +92,9 @@ def _name(step: RawStep) -> str:
             return repr(step["place"]["name"])
         case "put_rule":
             return repr(step["rule"]["name"])
-        case "delete_place" | "delete_rule":
+        case "put_route":
+            return repr(step["route"]["name"])
+        case "delete_place" | "delete_rule" | "delete_route":
             return repr(step["name"])
     edge = step.get("edge", step)
     return f"{edge['a']}-{edge['b']}"

@@ -14,13 +14,12 @@ from services.map_store.integrity.row_repair import intact_graph, mend_rows
 from services.map_store.integrity.seals import intact
 from services.map_store.storage import answers, blobs, catalogue
 from services.map_store.storage.catalogue import MapRecord
-from services.map_store.storage.graph import AddStoredNode, Graph, Step, apply
+from services.map_store.storage.graph import AddStoredNode, Graph, Step, apply, put
 from services.map_store.storage.missions import mend_missions
 from services.map_store.storage.tables import edges, map_blobs, maps, marks, nodes
 from services.map_store.tasks import records
 from shared.mapgraph.marks import nodes_of, only_nodes
 from shared.messages.maps import DeleteNode, PutEdge
-from shared.messages.places import Place, PutPlace, PutRule
 
 
 @dataclass(frozen=True)
@@ -122,10 +121,9 @@ def _give_up_blobs(
         if bare.keys() & key and not gone.keys() & key:
             steps.append(PutEdge(edge=edge))
     kept = graph.nodes.keys() - gone.keys()
-    for mark in (*graph.places.values(), *graph.rules.values()):
+    for mark in (*graph.places.values(), *graph.rules.values(), *graph.routes.values()):
         if bare.keys() & nodes_of(mark):  # they left it when they were deleted
-            left = only_nodes(mark, kept)
-            steps.append(PutPlace(place=left) if isinstance(left, Place) else PutRule(rule=left))
+            steps.append(put(only_nodes(mark, kept)))
     done = [f"node {node_id}: removed, its features are lost" for node_id in gone]
     done += [f"node {node_id}: its thumbnail is lost" for node_id in bare]
     history_only = len(new - used)

@@ -19,7 +19,7 @@ from shared.mapgraph.merging.sight_graph import SightGraph
 from shared.messages.features import Features
 from shared.messages.maps import PutEdge
 from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
-from shared.messages.places import PutPlace, PutRule
+from shared.messages.places import PutPlace, PutRoute, PutRule
 from shared.queries import QueryError, RefusedError
 from shared.wire import WireError
 
@@ -138,7 +138,7 @@ class Merge:
         return (*steps, *self._marks(ids))
 
     def _marks(self, ids: Mapping[int, int]) -> Iterator[Step]:
-        """The other map's places and rules; a name that is taken gets that map's behind it."""
+        """The other map's places, rules and routes; a name that is taken gets that map's behind it."""
         base, other = self._base.stored, self._other.stored
         names = free_names(other.places, base.places, self._other.name)
         for key, place in other.places.items():
@@ -146,3 +146,6 @@ class Merge:
         called = free_names(other.rules, base.rules, self._other.name)
         for key, rule in other.rules.items():
             yield PutRule(rule=renumbered(rule, ids, called[key], names))
+        known = free_names(other.routes, base.routes, self._other.name)
+        for key, route in other.routes.items():
+            yield PutRoute(route=renumbered(route, ids, known[key], names))

@@ -17,7 +17,7 @@ from shared.mapgraph.mark_draft import MARKS_MAX
 from shared.messages.base import Name, Part
 from shared.messages.features import MAX_THUMBNAIL_BYTES
 from shared.messages.maps import Edge, PutEdge
-from shared.messages.places import Place, PutPlace, PutRule, Rule, key_of
+from shared.messages.places import Place, PutPlace, PutRoute, PutRule, Route, Rule, key_of
 from shared.topics import FEATURES
 from shared.wire import MAX_CONTAINER
 
@@ -49,6 +49,7 @@ class Index(Part):
     edges: tuple[Edge, ...] = Field(max_length=MAX_CONTAINER)
     named_places: tuple[Place, ...] = Field(default=(), max_length=MARKS_MAX)
     rules: tuple[Rule, ...] = Field(default=(), max_length=MARKS_MAX)
+    routes: tuple[Route, ...] = Field(default=(), max_length=MARKS_MAX)
 
 
 def write_archive(
@@ -65,6 +66,7 @@ def write_archive(
         edges=edges,
         named_places=marks.places,
         rules=marks.rules,
+        routes=marks.routes,
     )
     owners: dict[str, tuple[StoredNode, Kind]] = {stored.features: (stored, "features") for stored in nodes}
     owners |= {stored.thumbnail: (stored, "thumbnail") for stored in nodes if stored.thumbnail}
@@ -153,7 +155,8 @@ class Archive:
         steps += [PutEdge(edge=edge) for edge in self.index.edges]
         steps += [PutPlace(place=place) for place in self.index.named_places]
         steps += [PutRule(rule=rule) for rule in self.index.rules]
-        for what in (self.index.named_places, self.index.rules):
+        steps += [PutRoute(route=route) for route in self.index.routes]
+        for what in (self.index.named_places, self.index.rules, self.index.routes):
             if len({key_of(mark.name) for mark in what}) != len(what):
                 raise InvalidError(f"{INDEX}: a name stands there twice")
         if len({(edge.a, edge.b) for edge in self.index.edges}) != len(self.index.edges):

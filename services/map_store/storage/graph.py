@@ -26,7 +26,18 @@ from shared.mapgraph.operations import (
 )
 from shared.messages.base import Part
 from shared.messages.maps import DeleteEdge, DeleteNode, Edge, MarkOperation, Node, PutEdge, UpdateNode
-from shared.messages.places import DeletePlace, DeleteRule, Marks, Place, PutPlace, PutRule, Rule
+from shared.messages.places import (
+    DeletePlace,
+    DeleteRoute,
+    DeleteRule,
+    Marks,
+    Place,
+    PutPlace,
+    PutRoute,
+    PutRule,
+    Route,
+    Rule,
+)
 
 MAX_NODE_ID = 2**63 - 1
 """What a database integer holds."""
@@ -76,17 +87,18 @@ def added_by(steps: Iterable[Step]) -> list[StoredNode]:
 
 @dataclass(frozen=True)
 class Graph:
-    """One revision of a map; places and rules by the keys of their names."""
+    """One revision of a map; places, rules and routes by the keys of their names."""
 
     nodes: Mapping[int, StoredNode] = field(default_factory=lambda: MappingProxyType({}))
     edges: Mapping[EdgeKey, Edge] = field(default_factory=lambda: MappingProxyType({}))
     places: Mapping[str, Place] = field(default_factory=lambda: MappingProxyType({}))
     rules: Mapping[str, Rule] = field(default_factory=lambda: MappingProxyType({}))
+    routes: Mapping[str, Route] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
     def marks(self) -> Marks:
-        """Places and rules."""
-        return marks_of(self.places, self.rules)
+        """Places, rules and routes."""
+        return marks_of(self.places, self.rules, self.routes)
 
 
 @dataclass(frozen=True)
@@ -97,7 +109,7 @@ class Change:
         before, graph: the graph before and after them.
         inverse: steps that lead back.
         nodes, edges: those written or deleted on the way, the edges of deleted nodes included.
-        marks: whether a place or a rule was.
+        marks: whether a place, a rule or a route was.
     """
 
     before: Graph
@@ -114,7 +126,9 @@ def apply(graph: Graph, steps: Iterable[Step]) -> Change:
     Raises:
         MissingError, ConflictError, InvalidError: with the number of the step and the thing it names.
     """
-    draft = Draft(dict(graph.nodes), dict(graph.edges), dict(graph.places), dict(graph.rules))
+    draft = Draft(
+        dict(graph.nodes), dict(graph.edges), dict(graph.places), dict(graph.rules), dict(graph.routes)
+    )
     for number, step in enumerate(steps):
         try:
             _apply(draft, step)
@@ -128,6 +142,7 @@ def apply(graph: Graph, steps: Iterable[Step]) -> Change:
             MappingProxyType(draft.edges),
             MappingProxyType(draft.marks.places),
             MappingProxyType(draft.marks.rules),
+            MappingProxyType(draft.marks.routes),
         ),
         inverse=tuple(_back(write) for write in reversed(draft.writes)),
         nodes=frozenset(write.node_id for write in draft.writes if isinstance(write, NodeWrite)),
@@ -163,8 +178,21 @@ def _back(write: NodeWrite[StoredNode] | EdgeWrite | MarkWrite) -> Step:
 
 
 def _mark_back(write: MarkWrite) -> Step:
-    before, after = write.before, write.after
-    if before is not None:
-        return PutPlace(place=before) if isinstance(before, Place) else PutRule(rule=before)
-    assert after is not None
-    return DeletePlace(name=after.name) if isinstance(after, Place) else DeleteRule(name=after.name)
+    if write.before is not None:
+        return put(write.before)
+    assert write.after is not None
+    name = write.after.name
+    match write.kind:
+        case "place":
+            return DeletePlace(name=name)
+        case "route":
+            return DeleteRoute(name=name)
+        case "rule":
+            return DeleteRule(name=name)
+
+
+def put(mark: Place | Rule | Route) -> PutPlace | PutRule | PutRoute:
+    """The step that writes a mark."""
+    if isinstance(mark, Place):
+        return PutPlace(place=mark)
+    return PutRoute(route=mark) if isinstance(mark, Route) else PutRule(rule=mark)

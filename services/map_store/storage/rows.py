@@ -28,6 +28,7 @@ def read_graph(connection: Connection, found: MapRecord) -> Graph:
         {(row.a, row.b): parse_edge(row) for row in connection.execute(joined).all()},
         by_key(written.places),
         by_key(written.rules),
+        by_key(written.routes),
     )
     missing = found.node_count - len(graph.nodes), found.edge_count - len(graph.edges)
     if missing != (0, 0):
