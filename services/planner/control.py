@@ -9,7 +9,7 @@ import numpy as np
 
 from services.planner.inspector import RemoteInspector
 from services.planner.mission_kinds import MissionContext, MissionError, MissionKinds
-from services.planner.ports import Decision, Mission, Observation, Progress
+from services.planner.ports import Accompanying, Decision, Mission, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.remote import RemoteMap, RemoteMatcher
 from services.planner.settings import PlannerSettings
@@ -58,6 +58,11 @@ class MissionControl:
     def epoch(self) -> int:
         """This planner's lease number."""
         return self._record.epoch
+
+    @property
+    def goes_along(self) -> bool:
+        """Whether the mission goes along with a person who drives, instead of waiting for its turn."""
+        return isinstance(self._mission, Accompanying)
 
     @property
     def step_costs_ms(self) -> dict[str, float]:
@@ -289,15 +294,26 @@ class MissionControl:
         if action == "pause" and by == "person" and self._waits_for_stop():
             self._save_pause(by)  # it stays paused when the stop is cleared
             return
-        allowed = {"pause": ("running",), "resume": ("paused",), "cancel": ("running", "paused")}[action]
+        under_way = ("running", "paused")
+        allowed = {"pause": ("running",), "resume": ("paused",)}.get(action, under_way)
         if self.state not in allowed:
             why = f"{action} needs a mission that is {' or '.join(allowed)}, it is {self.state}"
             raise MissionError(why, "conflict")
         if action == "cancel":
             self._finish("cancelled", "cancelled", "cancelled by request")
             return
+        if action == "finish":
+            self._end_well()
+            return
         self.state = "paused" if action == "pause" else "running"
         self._save_pause(by if action == "pause" else "")
+
+    def _end_well(self) -> None:
+        """A person says that a mission which goes along has done its work."""
+        if not isinstance(self._mission, Accompanying):
+            why = f"{self._record.action} ends by itself; cancel it, or wait for its end"
+            raise MissionError(why, "conflict")
+        self._finish("succeeded", "", self._mission.finish())
 
     def _waits_for_stop(self) -> bool:
         return self.state == "paused" and self._paused_by == "emergency_stop"

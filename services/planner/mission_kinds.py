@@ -84,6 +84,8 @@ class MissionKind(Generic[P]):
         shown: figures of the status that its record shows, by their names there.
         makes_map: whether a map that is missing is made.
         takes_picture: whether a goal picture may come with the request.
+        by_hand: whether it goes along with a person who drives, and ends when told to `finish`; such a
+            mission is `Accompanying`.
     """
 
     name: str
@@ -93,6 +95,7 @@ class MissionKind(Generic[P]):
     shown: tuple[str, ...] = ()
     makes_map: bool = False
     takes_picture: bool = False
+    by_hand: bool = False
 
     def start(self, context: MissionContext, values: Mapping[str, Any]) -> Mission:
         """A mission of this kind.
@@ -122,6 +125,7 @@ class MissionKind(Generic[P]):
             parameters=self.parameters.model_json_schema(),
             shown=self.shown,
             takes_picture=self.takes_picture,
+            by_hand=self.by_hand,
         )
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal, Protocol
+from typing import Literal, Protocol, runtime_checkable
 
 from pydantic import JsonValue
 
@@ -151,3 +151,11 @@ class Mission(Protocol):
 
     def decide(self, observation: Observation) -> Decision:
         """Choose what to do after this frame."""
+
+
+@runtime_checkable
+class Accompanying(Mission, Protocol):
+    """A mission that goes along while a person drives, and ends when a person says so."""
+
+    def finish(self) -> str:
+        """Do what is left to do at the end; what was done, for people."""

@@ -101,10 +101,10 @@ class Planner:
             self.control.settle()
 
     def _pause_where_held(self, driver: str, now_s: float) -> None:
-        """Pause for the emergency stop, or for a person who drives by hand."""
+        """Pause for the emergency stop, or for a person who drives by hand, unless the mission goes along."""
         if stop := self._emergency_stop():
             self.control.pause(stop, "emergency_stop")
-        elif driver:
+        elif driver and not self.control.goes_along:
             self.control.pause(f"{driver} drives by hand", "by_hand")
         else:
             return

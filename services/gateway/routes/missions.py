@@ -115,11 +115,14 @@ async def start_goto(
 @router.post("/api/robots/{robot}/missions/{action}")
 async def steer(
     robot: RobotPath,
-    action: Literal["pause", "resume", "cancel"],
+    action: Literal["pause", "resume", "cancel", "finish"],
     gateway: GatewayDep,
     mission_id: MissionId = "",
 ) -> dict[str, Any]:
-    """Pause, resume or cancel the robot's mission, or only the one named."""
+    """Pause, resume, cancel or finish the robot's mission, or only the one named.
+
+    Finished are missions that go along with a person who drives, such as `teach`.
+    """
     return _facts(await _ask(gateway, robot, MissionRequest(action=action, mission_id=mission_id)))
 
 

@@ -3,17 +3,16 @@
 import math
 from dataclasses import dataclass
 
-from services.planner.mapping.edges import CONFIDENCE_MIN, NewEdges, judge_edges
+from services.planner.mapping.edges import judge_edges
 from services.planner.mapping.floor_gain import gain_here
 from services.planner.mapping.floor_views import FloorViews
+from services.planner.mapping.near_nodes import NearNodes
 from services.planner.mapping.nodes import add_node, is_new_node
-from services.planner.mapping.reach import distances, elsewhere, in_reach, nodes_nearby
 from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.similarity import ranked, similarity, trusted
 from services.planner.surroundings import hidden_openings, through_gap
 from shared.mapgraph.frontiers import mark_explored, sector_rad
-from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.view_range import (
     LONGEST_SHARE,
@@ -27,9 +26,6 @@ from shared.messages.maps import UpdateNode
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
 
-COMPARED = 5
-"""The node left and the neighbours most similar to it; chosen: they surround the first metres of the way."""
-
 CORNER_STEPS = 2
 """Steps after which a view that is out of sight of the map means a corner; chosen: before, a frame was
 missed."""
@@ -37,9 +33,6 @@ missed."""
 UNSURE_FRAMES = 6
 """Frames that resemble nodes and tell no direction, as along a corrugated wall, before the robot goes back;
 chosen: 0.7 m in a room."""
-
-TURN_RAD = math.radians(15.0)
-"""A robot turns less than that between two frames beside what it knows; chosen: half a radian a second."""
 
 BESIDE_M = 0.2
 """Who is nearer to a node than this stands at it; chosen: two steps."""
@@ -65,8 +58,8 @@ class Departure:
     Attributes:
         done: whether the direction is closed.
         heading_rad: where it leads, robot frame; held by the yaw towards the node left, and by turns since.
-        here: where the robot is, by what it did since.
         unseen: whether the last frame showed nothing of the map.
+        near: the nodes around, and where the robot is.
     """
 
     def __init__(
@@ -79,9 +72,9 @@ class Departure:
         start: Displacement,
         views: FloorViews,
     ) -> None:
-        self._profile, self._maps, self._matcher, self._views = profile, maps, matcher, views
+        self._profile, self._maps, self._views = profile, maps, views
         self.node_id, self.sector, self.heading_rad = start.node_id, sector, heading_rad
-        self.here = start
+        self.near = NearNodes(profile, maps, matcher, start)
         self._steps = self._unseen_frames = self._unsure_frames = 0.0
         self._share = 1.0
         self._driven_m = 0.0
@@ -92,15 +85,20 @@ class Departure:
         self.done = self.unseen = False
         self.progress = Progress()
 
+    @property
+    def here(self) -> Displacement:
+        """Where the robot is, by what it did since."""
+        return self.near.here
+
     def step(self, observation: Observation) -> Decision | NewNode:
         """Go straight on, or end."""
         self._share = observation.frame_share
         self._steps += self._share
         self._driven_m += observation.moved.way_m
         rules = self._profile.mapping
-        self.here = self.here.moved(observation.moved)
+        self.near.moved(observation.moved)
         self.heading_rad = observation.moved.direction(self.heading_rad)
-        matches = self._seen()
+        matches = self.near.seen()
         best = ranked(matches, self._profile)
         s_best = similarity(best[0][1], self._profile) if best else 0
         self.progress = Progress(nearest_node=best[0][0] if best else None, similarity=s_best)
@@ -110,13 +108,13 @@ class Departure:
         if self.unseen:
             return self._out_of_sight(s_best)
         if self._retreating or self._doorway(observation.ranges, matches):
-            return self._new_node(observation, {**self._candidates(), **matches})
-        if is_new_node(matches, self._profile) and not self._is_crowded(matches):
-            return self._new_or_known(observation, {**self._candidates(), **matches})
+            return self._new_node(observation, {**self.near.candidates(), **matches})
+        if is_new_node(matches, self._profile) and not self.near.is_crowded(matches):
+            return self._new_or_known(observation, {**self.near.candidates(), **matches})
         if self._driven_m > rules.departure_m * self._room_lengths(matches.get(self.node_id)):
             gain = gain_here(self._maps.graph, self.here, observation.ranges, self._profile, self._views)
             if gain >= rules.gain_min:
-                return self._new_node(observation, {**self._candidates(), **matches})
+                return self._new_node(observation, {**self.near.candidates(), **matches})
             return self._close("nothing new on the way")
         return self._straight_on(observation.ranges, s_best)
 
@@ -149,53 +147,20 @@ class Departure:
         self._beside, self._back_to_node = False, True
         return self._straight_on(ranges, s_best)
 
-    def _seen(self) -> Matches:
-        """The nodes around that lie where they are seen: the two sides of a desk island look the same."""
-        matches = self._matcher.match(self._near(), 0)
-        away = set(elsewhere(self._maps.graph, matches, self.here, self._profile))
-        origin = matches.get(self.node_id)
-        if origin is not None and self._profile.sensing.similarity == "verified" and self._jumped(origin):
-            away.add(self.node_id)
-        return {node: match for node, match in matches.items() if node not in away}
-
-    def _jumped(self, origin: NodeMatch) -> bool:
-        """Whether the node left is seen as if the robot had turned at once, be its bearing sure or not."""
-        if origin.yaw_rad is None or not trusted(origin, self._profile):
-            return False
-        miss_rad = abs(math.remainder(origin.yaw_rad + self.here.yaw_rad, math.tau))
-        return miss_rad > TURN_RAD + self.here.yaw_std_rad
-
     def _keep_course(self, origin: NodeMatch | None) -> None:
         """Straight on by the yaw of the node left; and where that and a sure bearing put the robot."""
-        if origin is None or origin.yaw_rad is None or not trusted(origin, self._profile):
-            return
-        self.heading_rad = math.remainder(sector_rad(self.sector) + origin.yaw_rad, math.tau)
-        sure = origin.confidence >= CONFIDENCE_MIN
-        self.here = self.here.turned(origin.yaw_rad, origin.heading_rad if sure else None)
+        yaw_rad = self.near.locate(origin)
+        if yaw_rad is not None:
+            self.heading_rad = math.remainder(sector_rad(self.sector) + yaw_rad, math.tau)
 
     def _new_or_known(self, observation: Observation, matches: Matches) -> Decision | NewNode:
         """New unless a node is too similar that lies here: another room furnished alike makes none known."""
         graph = self._maps.graph
         edges = judge_edges(graph, observation, matches, self._profile, self.here)
-        credible = self._credible(matches, edges)
+        credible = self.near.credible(matches, edges)
         if is_new_node(credible, self._profile):
             return self._new_node(observation, credible)
         return self._close(f"leads to node {ranked(credible, self._profile)[0][0]}")
-
-    def _is_crowded(self, matches: Matches) -> bool:
-        """Whether a node that is seen lies too near for another one: where desks repeat views change fast."""
-        if not self._profile.mapping.node_apart_m:
-            return False
-        apart_m = distances(self._maps.graph, self.here, matches)
-        return min(apart_m.values(), default=math.inf) < self._profile.mapping.node_apart_m
-
-    def _credible(self, matches: Matches, edges: NewEdges) -> Matches:
-        """What the robot surely sees: the node left, nodes that lie where they are seen, those of edges."""
-        if self._profile.sensing.similarity == "raw":
-            return matches
-        within = in_reach(self._maps.graph, matches, self.here, self._profile)
-        sure = {self.node_id, *within, *edges.admitted}
-        return {node: match for node, match in matches.items() if node in sure}
 
     def _out_of_sight(self, s_best: int) -> Decision:
         """The view changed within a few steps, as at a corner: go back and make a node there."""
@@ -259,25 +224,6 @@ class Departure:
         if node is not None and not node.explored[self.sector]:
             self._maps.commit([UpdateNode(node=mark_explored(node, self.sector))])
 
-    def _candidates(self) -> Matches:
-        """Nodes that may get an edge: the most similar ones, or the newest (thesis section 6.1.1)."""
-        newest = self._profile.mapping.edge_window
-        if not newest:
-            count = self._profile.mapping.edge_candidates
-            around = nodes_nearby(self._maps.graph, self.here, self._profile, count)
-            return self._matcher.match(around, count)
-        return self._matcher.match(sorted(self._maps.graph.nodes)[-newest:], 0)
-
-    def _near(self) -> list[int]:
-        graph = self._maps.graph
-        around = sorted(graph.neighbours(self.node_id), key=lambda n: -_inliers(graph, self.node_id, n))
-        return [self.node_id, *around[: COMPARED - 1]]
-
 
 def _go(heading_rad: float, why: str) -> Decision:
     return Decision("go", math.remainder(heading_rad, math.tau), 0, 1.0, "frontier", why)
-
-
-def _inliers(graph: MapGraph, first: int, second: int) -> int:
-    edge = graph.edge(first, second)
-    return edge.inliers if edge is not None else 0

@@ -86,6 +86,7 @@ class GoalDestination:
     """Where a picture was taken: the nodes it resembles, and what was learnt on the way there."""
 
     compared, search_steps = COMPARED, SEARCH_STEPS
+    cuts_corners = True
 
     def __init__(
         self, profile: Profile, maps: MapAccess, matcher: Matcher, goal: Features, experience: EdgeExperience
@@ -114,6 +115,10 @@ class GoalDestination:
     def unreachable(self) -> tuple[FailureKind, str]:
         """The goal is not in the map, or at one of several places."""
         return self._failure
+
+    def beyond(self, _end: int) -> tuple[int, ...]:
+        """After its last node comes the picture."""
+        return ()
 
     def starts(self, visible: Mapping[int, float]) -> dict[int, float]:
         """Without nodes that no way was found to; those that failed come later."""

@@ -1,6 +1,6 @@
 """What a mission adds to travel: where it leads, when it is reached, and what is made of setbacks."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -58,6 +58,7 @@ class Destination(Protocol):
         picture: the goal picture's features; None where the path ends at a node.
         arrival_rad: disparity at which the end is reached.
         aliased: the picture resembles a wrong spot too: it counts only from the last waypoint on.
+        cuts_corners: whether a later waypoint in sight may be headed for before the present one is reached.
         compared: nodes of the map compared with a frame to localise.
         search_steps: frames without anything known after which the travel is given up.
     """
@@ -65,11 +66,15 @@ class Destination(Protocol):
     picture: Features | None
     arrival_rad: float
     aliased: bool
+    cuts_corners: bool
     compared: int
     search_steps: int
 
     def targets(self) -> Mapping[int, float]:
         """Nodes the path may end at, with the cost of the way beyond; without any the travel is given up."""
+
+    def beyond(self, end: int) -> Sequence[int]:
+        """Nodes to follow from the end of a path that was planned, in order; none: the path ends there."""
 
     def starts(self, visible: Mapping[int, float]) -> Mapping[int, float]:
         """Of the nodes in sight, with the cost of the way there, those to start from."""

@@ -44,6 +44,7 @@ class FrontierDestination:
 
     compared, search_steps = COMPARED, SEARCH_STEPS
     aliased = False
+    cuts_corners = True
 
     def __init__(
         self,
@@ -68,6 +69,10 @@ class FrontierDestination:
         """Nodes with a frontier that the rules of the map let a robot leave by."""
         nodes = [n for n, node in self._maps.graph.nodes.items() if frontier_sectors(node)]
         return {n: 0.0 for n in nodes if n not in self._set_aside and self._directions.of(n)}
+
+    def beyond(self, _end: int) -> tuple[int, ...]:
+        """The path ends at the frontier."""
+        return ()
 
     def starts(self, visible: Mapping[int, float]) -> Mapping[int, float]:
         """Those in sight that did not fail as a start; all again once the robot has moved on for a while."""

@@ -128,6 +128,7 @@ class Travel:
         if path:
             self._held_frames = 0
             destination.set_out()
+            path += destination.beyond(path[-1])
             self._set_off([*path, GOAL] if pictures else path, Event.PATH_FOUND)
             return None
         if not starts:

@@ -174,7 +174,8 @@ class PathFollower:
         return is_half_clear(there, self._maps.graph, ranges, self._profile)
 
     def _compare(self, matcher: Matcher) -> dict[int, NodeMatch]:
-        ahead = [node for node in self.path[self.index : self.index + WINDOW] if node != GOAL]
+        window = dict.fromkeys(self.path[self.index : self.index + WINDOW])
+        ahead = [node for node in window if node != GOAL]
         picture = self._destination.picture
         nodes = [*ahead, *(node for node in self._tracker.nearby()[:BESIDE] if node not in ahead)]
         seen = matcher.match(nodes, targets=() if picture is None else (picture,))
@@ -188,7 +189,7 @@ class PathFollower:
     def _advance(self, matches: dict[int, NodeMatch], ranges: Ranges) -> tuple[Note, ...]:
         """Go on to the latest waypoint that may be headed for; by the thesis only to the next."""
         here = matches.get(self.path[self.index])
-        reach = 1 if self._strict else WINDOW - 1
+        reach = WINDOW - 1 if self._destination.cuts_corners and not self._strict else 1
         for later in range(min(self.index + reach, len(self.path) - 1), self.index, -1):
             there = matches.get(self.path[later])
             if there is None or not self._may_advance(here, there, later, ranges):
@@ -207,7 +208,7 @@ class PathFollower:
 
     def _may_advance(self, here: NodeMatch | None, there: NodeMatch, later: int, ranges: Ranges) -> bool:
         beside = later == self.index + 1 and self._is_at(here)
-        if not beside and self._crosses_keep_out(self.path[later]):
+        if not beside and (not self._destination.cuts_corners or self._crosses_keep_out(self.path[later])):
             return False
         aliased_goal = self._destination.aliased and self.path[later] == GOAL
         return may_advance(

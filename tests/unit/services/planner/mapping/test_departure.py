@@ -189,8 +189,8 @@ def test_a_node_is_made_at_the_end_of_a_long_way_though_one_far_off_is_still_lik
 def test_a_way_past_nodes_that_stay_near_is_closed(departure, matcher):
     still = Observation(features(), RANGES, Motion(0.12, 0.0))
     matcher.seen = match(0, -0.3, 0.0, 150)
-    departure.here = Displacement(0, x_m=-1.3)
+    departure.near.here = Displacement(0, x_m=-1.3)
     while not departure.done:
-        departure.here = Displacement(0, x_m=0.3)
+        departure.near.here = Displacement(0, x_m=0.3)
         decision = departure.step(still)
     assert decision.why == "nothing new on the way"

@@ -35,7 +35,7 @@ def event_before(free_m, **leg):
     joined = edge(0, 1, 2, driven=False).model_copy(update=leg)
     maps = Maps(MapGraph([Node(node_id=0), Node(node_id=1)], [joined]))
     tracker = Tracker(DEFAULT, maps, Seen(), certain=False)
-    to_a_node = SimpleNamespace(picture=None, arrival_rad=0.0, aliased=False)
+    to_a_node = SimpleNamespace(picture=None, arrival_rad=0.0, aliased=False, cuts_corners=True)
     experience = EdgeExperience(DEFAULT, maps)
     follower = PathFollower(DEFAULT, maps, [0, 1], to_a_node, set(), experience, tracker)
     ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(free_m + 0.3,) * SECTORS, max_range_m=4.0)
@@ -47,7 +47,7 @@ def last_event(views):
     maps = Maps(MapGraph([Node(node_id=0)], []))
     tracker = Tracker(DEFAULT, maps, Seen(), certain=False)
     goal = SimpleNamespace(
-        picture=features(), arrival_rad=DEFAULT.arrival.arrival_rad, aliased=False, sees=lambda *_: None
+        picture=features(), arrival_rad=DEFAULT.arrival.arrival_rad, aliased=False, cuts_corners=True, sees=lambda *_: None
     )
     follower = PathFollower(DEFAULT, maps, [GOAL], goal, set(), EdgeExperience(DEFAULT, maps), tracker)
     ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(3.0,) * SECTORS, max_range_m=4.0)
@@ -91,7 +91,7 @@ def test_a_goal_that_does_not_show_from_the_last_node_is_headed_for_by_the_map()
     tracker = Tracker(DEFAULT, maps, Seen(), certain=False)
     tracker.stand_at(Displacement(0, spread_m=0.1))
     goal = SimpleNamespace(
-        picture=features(), arrival_rad=0.01, aliased=False, sees=lambda *_: None,
+        picture=features(), arrival_rad=0.01, aliased=False, cuts_corners=True, sees=lambda *_: None,
         lies=lambda _: Displacement(0, y_m=2.0),
     )  # fmt: skip
     experience, unclear = EdgeExperience(DEFAULT, maps), {(GOAL, 0)}
@@ -110,7 +110,7 @@ def test_the_nodes_around_are_compared_beside_those_ahead():
     maps, asked = Maps(grid(12, 1)), []
     tracker = Tracker(DEFAULT, maps, Seen(), certain=False)
     tracker.stand_at(Displacement(2, x_m=0.2, spread_m=0.1))
-    to_a_node = SimpleNamespace(picture=None, arrival_rad=0.0, aliased=False)
+    to_a_node = SimpleNamespace(picture=None, arrival_rad=0.0, aliased=False, cuts_corners=True)
     experience, path = EdgeExperience(DEFAULT, maps), [6, 7, 8, 9]
     follower = PathFollower(DEFAULT, maps, path, to_a_node, set(), experience, tracker)
     seen = SimpleNamespace(match=lambda nodes, **_: asked.extend(nodes) or {})

@@ -1,0 +1,1 @@
+"""Routes: taught by driving, kept in the map by name, driven node by node."""
