@@ -141,8 +141,12 @@ class Planner:
         self._deltas.take_all()
 
     def _ready(self, features: Features, ranges: Ranges) -> bool:
-        """In lockstep both must be of one frame; the simulator repeats them until they are answered."""
-        return not features.lockstep or features.seq == ranges.seq
+        """In lockstep both must be of one frame; the simulator repeats them until they are answered.
+
+        A hand on the robot answers them at once: then distances are ahead, and the nearest in time are taken.
+        """
+        ahead = self.control.goes_along and features.seq < ranges.seq
+        return not features.lockstep or features.seq == ranges.seq or ahead
 
     def _answer(self, observation: Observation) -> None:
         features = observation.features

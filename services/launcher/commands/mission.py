@@ -52,35 +52,17 @@ def start(
     json_file: options.JsonFile = None,
 ) -> None:
     """Start a mission of any kind and follow it to its end."""
-    from services.launcher.client import failure, mission, stack
+    from services.launcher.client import any_mission, mission, stack
     from services.launcher.drawing.pictures import frame_from_file
-    from services.launcher.terminal.output import print_figures, wide_console, write_json
-    from services.launcher.terminal.progress import mission_progress
     from shared.messages.missions import MissionRequest
 
     parameters = dict(options.named_value(text) for text in given or [])
     with stack.open_stack(stack.StackChoice(data_dir, endpoint=endpoint, timeout_s=timeout_s)) as opened:
-        client = mission.MissionClient(opened.bus, opened.robot)
         goal = image and mission.goal_features(opened.bus, frame_from_file(image, opened.robot))
         request = MissionRequest(
             action=kind, map=map_name, parameters=parameters, goal=goal, seed=seed, max_steps=max_steps
         )
-        with mission_progress(wide_console(stderr=True), kind) as watch:
-            run = client.run(request, watch)
-    status = run.status
-    report = {
-        "kind": kind,
-        "map": map_name,
-        "outcome": status.state,
-        "failure": status.failure,
-        "reason": status.reason,
-        "steps": status.step,
-        **{figure.name: figure.value for figure in status.figures},
-    }
-    write_json(json_file, report)
-    print_figures(f"{kind} in {map_name}", report)
-    if not run.succeeded:
-        raise failure.ExperimentError(f"{kind} ended as {status.failure or status.state}: {status.reason}")
+        any_mission.run_mission(opened, request, json_file)
 
 
 def _properties(schema: dict[str, Any]) -> list[str]:

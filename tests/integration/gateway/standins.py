@@ -168,7 +168,7 @@ class Planner:
 
     def _answer(self, wish: MissionRequest) -> None:
         self.asked.append(wish)
-        states = {"pause": "paused", "cancel": "cancelled"}
+        states = {"pause": "paused", "cancel": "cancelled", "finish": "succeeded"}
         if 404 in (wish.goal_node, wish.parameters.get("goal_node")):
             raise MissionError("the map has no node 404", "missing")
         if wish.action not in CONTROLS:
@@ -212,6 +212,7 @@ def _stored(path: str, nodes: int, body: bytes) -> Response:
         "maps/flat": {"name": "flat", "revision": 9, "sent": body.decode()},
         "maps/flat/places": [],
         "maps/flat/rules": [],
+        "maps/flat/routes": [],
         "maps/flat/inspections": [],
         "maps/flat/compare": {"map": "flat", "from": 5, "to": 9, "nodes_added": [3]},
         "maps/flat/undo": {"map": "flat", "revision": 10, "undone": 9},

@@ -14,7 +14,7 @@ export class Mission {
     this.kinds = [];
     $("mission-form").addEventListener("submit", (event) => { event.preventDefault(); this.start(); });
     $("mission-kind").addEventListener("change", () => this.choose());
-    for (const action of ["pause", "resume", "cancel"]) $(action).addEventListener("click", () => this.steer(action));
+    for (const action of ["pause", "resume", "cancel", "finish"]) $(action).addEventListener("click", () => this.steer(action));
     this.clear();
   }
 
@@ -48,6 +48,7 @@ export class Mission {
     $("pause").disabled = state !== "running";
     $("resume").disabled = state !== "paused";
     $("cancel").disabled = !BUSY.includes(state);
+    $("finish").hidden = !BUSY.includes(state) || !this.kinds.find(({ name }) => name === this.status.action)?.by_hand;
   }
 
   /** What the planner can be asked to do; asked again while it is away. */
@@ -96,6 +97,10 @@ export class Mission {
 
   goToPlace(place) {
     return this.ask("missions", { action: "goto", map: this.where().map, parameters: { place } });
+  }
+
+  driveRoute(route, reverse) {
+    return this.ask("missions", { action: "route", map: this.where().map, parameters: { route, reverse } });
   }
 
   steer(action) {

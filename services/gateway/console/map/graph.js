@@ -36,14 +36,15 @@ export class Graph {
     $("graph").addEventListener("keydown", (event) => this.key(event));
     new ResizeObserver(() => this.resized()).observe($("graph"));
     setInterval(() => this.load(), POLL_MS);
+    this.onMarks = []; // called when places, rules or routes may be others
     this.clear("");
   }
 
   clear(map) {
     Object.assign(this, { map, nodes: [], edges: [], spots: new Map(), revision: null, truth: null, moved: false });
-    Object.assign(this, { places: [], rules: [], seen: new Set(), picked: new Set() });
+    Object.assign(this, { places: [], rules: [], routes: [], route: null, seen: new Set(), picked: new Set() });
     this.picks?.();
-    this.marked?.();
+    this.onMarks.forEach((hear) => hear());
     this.cy.elements().remove();
     $("no-graph").hidden = false;
   }
@@ -116,6 +117,12 @@ export class Graph {
     this.picks?.();
   }
 
+  /** Draw one route of the map; null draws none. */
+  showRoute(name) {
+    this.route = name;
+    this.paintMarks();
+  }
+
   /** Nodes that a keep-out is about, by itself or by its areas. */
   forbidden() {
     const areas = new Map(this.places.map((place) => [place.name.toLowerCase(), place.nodes]));
@@ -159,14 +166,14 @@ export class Graph {
     try {
       const facts = await get(`/api/maps/${map}`);
       if (map !== this.map || facts.revision === this.revision) return;
-      const [nodes, edges, places, rules] = await Promise.all(
-        ["nodes", "edges", "places", "rules"].map((part) => get(`/api/maps/${map}/${part}`)));
+      const [nodes, edges, places, rules, routes] = await Promise.all(
+        ["nodes", "edges", "places", "rules", "routes"].map((part) => get(`/api/maps/${map}/${part}`)));
       if (map !== this.map) return;
       const spots = await this.layOut(nodes, edges);
       if (map !== this.map) return;
-      Object.assign(this, { revision: facts.revision, nodes, edges, spots, places, rules });
+      Object.assign(this, { revision: facts.revision, nodes, edges, spots, places, rules, routes });
       this.draw();
-      this.marked?.();
+      this.onMarks.forEach((hear) => hear());
       $("graph-facts").textContent = TEXT.graphFacts(nodes.length, edges.length, facts.revision);
     } catch (problem) {
       $("graph-facts").textContent = problem.status === 404 ? TEXT.graphNone : problem.message;
@@ -250,15 +257,19 @@ export class Graph {
     const areas = new Set(this.places.flatMap(({ nodes }) => (nodes.length > 1 ? nodes : [])));
     const forbidden = new Set(this.forbidden());
     const ruled = new Set(this.rules.flatMap((rule) => rule.edges || []).map(([a, b]) => `e${Math.min(a, b)}-${Math.max(a, b)}`));
+    const driven = this.routes.find((route) => route.name === this.route)?.nodes || [];
+    const stops = new Set(driven);
+    const legs = new Set(driven.slice(1).map((id, k) => `e${Math.min(driven[k], id)}-${Math.max(driven[k], id)}`));
     this.cy.batch(() => {
       for (const { node_id: id } of this.nodes) {
         const element = this.cy.getElementById(`n${id}`);
         element.data("label", names.get(id) ?? String(id));
         element.toggleClass("area", areas.has(id)).toggleClass("forbidden", forbidden.has(id)).toggleClass("picked", this.picked.has(id));
+        element.toggleClass("on-route", stops.has(id)).toggleClass("route-start", id === driven[0]);
       }
-      this.cy.edges().forEach((edge) => { edge.toggleClass("ruled", ruled.has(edge.id())); });
+      this.cy.edges().forEach((edge) => { edge.toggleClass("ruled", ruled.has(edge.id())).toggleClass("on-route", legs.has(edge.id())); });
     });
-    Object.assign($("graph").dataset, { places: this.places.length, forbidden: forbidden.size });
+    Object.assign($("graph").dataset, { places: this.places.length, forbidden: forbidden.size, routes: this.routes.length, route: driven.length });
   }
 
   addGoal(last) {

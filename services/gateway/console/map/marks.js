@@ -14,7 +14,7 @@ export class Marks {
     $("pick").addEventListener("click", () => this.pick(!graph.picking));
     $("name-picked").addEventListener("click", () => this.name([...graph.picked]));
     $("forbid-picked").addEventListener("click", () => this.forbid([...graph.picked]));
-    graph.marked = () => this.show();
+    graph.onMarks.push(() => this.show());
     graph.picks = () => this.picks();
     this.picks();
   }

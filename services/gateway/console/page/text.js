@@ -71,6 +71,12 @@ export const TEXT = {
     const hours = rule.hours.map((span) => `${span.days.join(" ")} ${span.opens}–${span.closes}`).join("; ");
     return `open ${hours || "never"} (${rule.time_zone}): ${edges}`;
   },
+  routeColumns: ["route", "nodes", ""],
+  route: ({ nodes, gaps }) =>
+    gaps.length ? `broken between ${gaps.map(([a, b]) => `${a} and ${b}`).join(", ")}: teach it anew` : `${nodes.length} nodes`,
+  driveRoute: "Drive it",
+  driveBack: "Drive back",
+  removeRoute: (name) => `Remove the route ${name}? Its nodes stay; an undo brings it back.`,
   lift: "Lift",
   liftRule: (name) => `Lift the rule ${name}? Robots go there again from then on.`,
   goThere: "Go there",
@@ -96,7 +102,7 @@ export const TEXT = {
     `Between revision ${c.from} and ${c.to}: ${c.nodes_added.length} nodes added, ${c.nodes_removed.length} removed, ` +
     `${c.nodes_changed.length} changed; ${c.edges_added.length} edges added, ${c.edges_removed.length} removed, ` +
     `${c.edges_changed.length} changed` +
-    [["places", "named"], ["rules", "set"]].map(([what, done]) => {
+    [["places", "named"], ["rules", "set"], ["routes", "kept"]].map(([what, done]) => {
       const [put, gone] = [[...c[`${what}_added`], ...c[`${what}_changed`]], c[`${what}_removed`]];
       return `${put.length ? `; ${what} ${done}: ${put.join(", ")}` : ""}${gone.length ? `; ${what} gone: ${gone.join(", ")}` : ""}`;
     }).join("") + ".",
