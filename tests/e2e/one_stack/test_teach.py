@@ -1,6 +1,5 @@
 """Teaching on real processes: a person drives, the robot maps, and drives the same way there and back."""
 
-import json
 import math
 import subprocess
 import sys
@@ -107,4 +106,3 @@ def test_a_way_that_a_person_drives_is_kept_and_driven_back_and_there(
         assert driven.returncode == 0, driven.stderr
         there = hand.truth().pose
         assert math.dist((there.x_m, there.y_m), (goal.x_m, goal.y_m)) < 0.3
-    print(json.dumps(route))
