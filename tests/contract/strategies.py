@@ -189,7 +189,9 @@ FITS: dict[type[BaseModel], Callable[[Fields, int, int], Fields]] = {
     Frame: _fit_frame,
     Photo: _fit_photo,
     Edge: _fit_edge,
-    **dict.fromkeys((Place, KeepOut, OneWay, Slow, OpeningHours, Route, DeletePlace, DeleteRule, DeleteRoute), _fit_mark),
+    **dict.fromkeys(
+        (Place, KeepOut, OneWay, Slow, OpeningHours, Route, DeletePlace, DeleteRule, DeleteRoute), _fit_mark
+    ),
     **dict.fromkeys((Inspection, InspectionRequest), _fit_mark),
 }
 """What fields of one message owe each other, beyond what each of them must be by itself."""

@@ -43,7 +43,7 @@ class Passage:
     Attributes:
         nearest, s_best: the node that the last frame resembles most, and by how much; None, 0 without any.
         unseen: whether it showed nothing of the map.
-        unseen_m: how far the robot has gone since one did.
+        unseen_frames: frames since one did; those of turning on the spot count less.
     """
 
     def __init__(
@@ -54,7 +54,7 @@ class Passage:
         self._last: tuple[Observation, Matches] | None = None
         self._was_unseen = False
         self.nearest: int | None = None
-        self.s_best, self.unseen, self.unseen_m = 0, False, 0.0
+        self.s_best, self.unseen, self.unseen_frames = 0, False, 0.0
 
     @property
     def here(self) -> Displacement:
@@ -71,11 +71,11 @@ class Passage:
         self.unseen = self.s_best <= self._profile.mapping.s_edge_min
         if self.unseen:
             self._last, self._was_unseen = None, True
-            self.unseen_m += observation.moved.way_m
+            self.unseen_frames += observation.frame_share
             return None
         self._near.locate(matches.get(self.here.node_id))
         self._views.add(self.here, observation.ranges)
-        self._last, self.unseen_m = (observation, matches), 0.0
+        self._last, self.unseen_frames = (observation, matches), 0.0
         if (known := self._come_to(matches)) is not None:
             return Reached(known, new=False)
         if self._is_needed(matches):

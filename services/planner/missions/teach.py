@@ -26,10 +26,6 @@ from shared.messages.places import PlaceName, PutRoute, Route, key_of
 COMPARED = 8
 """Nodes compared to find out where the robot is; as many as a goto compares."""
 
-LOST_M = 3.0
-"""Way out of sight of the map after which reckoning says no more where the robot is; the longest edge in a
-room (`MappingRules.edge_longest_m`)."""
-
 
 class TeachParameters(BaseModel):
     """Whether the way is kept."""
@@ -94,7 +90,8 @@ class Teach:
         reached = None if self._passage is None else self._passage.stop()
         if reached is not None:
             self._reach(reached)
-        graph, passed = self._maps.graph, self._trail.nodes
+        graph = self._maps.graph
+        passed = Trail(graph, self._trail.nodes).nodes  # somebody may have taken an edge of it away
         told = f"taught: the map has {len(graph.nodes)} nodes and {len(graph.edges)} edges"
         if self._route is None:
             return told
@@ -138,14 +135,15 @@ class Teach:
         return self._unseen(passage, news=not was_unseen)
 
     def _unseen(self, passage: Passage, *, news: bool) -> Decision:
-        """The person drove on too fast, or round a corner: say so, and reckon for a while."""
+        """The person drove on too fast, or round a corner: say so, and reckon for a few frames."""
         node_id = passage.here.node_id
         carried = self._tracker.was_carried()
-        if carried or passage.unseen_m > LOST_M:
+        if carried or passage.unseen_frames > self._profile.mapping.saturation_steps:
             self._passage = None
-            self._tracker.stand_at(None)
-            why = "this is another place than a moment ago" if carried else f"{LOST_M:.0f} m without a view"
-            why = f"{why}: node {node_id} and those around are lost; drive to a node of the map"
+            if carried:
+                self._tracker.stand_at(None)
+            what = "this is another place than a moment ago" if carried else "out of sight for too long"
+            why = f"{what}: node {node_id} is lost; drive to a node of the map"
             return Decision("hold", why=why, notes=(Note("view_lost", why, {"node": node_id}),))
         why = f"node {node_id} is out of sight, S {passage.s_best}: drive back until it shows, then slower"
         notes = (Note("view_fades", why, {"node": node_id}),) if news else ()

@@ -66,7 +66,8 @@ def test_kinds_are_those_of_the_planner(http: httpx.Client) -> None:
 
 
 @pytest.mark.parametrize(
-    ("action", "state"), [("pause", "paused"), ("resume", "running"), ("cancel", "cancelled")]
+    ("action", "state"),
+    [("pause", "paused"), ("resume", "running"), ("cancel", "cancelled"), ("finish", "succeeded")],
 )
 def test_missions_are_steered(http: httpx.Client, planner: Planner, action: str, state: str) -> None:
     answer = http.post(f"/api/robots/r1/missions/{action}?mission_id=m1")

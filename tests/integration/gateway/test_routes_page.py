@@ -64,7 +64,7 @@ def test_a_route_is_drawn_when_chosen_and_driven_there_and_back(
     page.wait_for_selector('#graph[data-route="4"]', timeout=WAIT_MS)
     drawn = "document.getElementById('graph')._cyreg.cy.elements('.on-route').map((each) => each.id()).sort()"
     assert page.evaluate(drawn) == ["e0-1", "e1-2", "e2-3", "n0", "n1", "n2", "n3"]
-    clicks.on("#routes button:text-is('Drive back')")
+    clicks.on("#routes button:text-is('Back')")
     assert asked(planner, "route", {"route": "Tour", "reverse": True})
     assert clicks.count == 2
     page.click("#routes button:text-is('Tour')")

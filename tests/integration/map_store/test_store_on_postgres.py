@@ -6,7 +6,7 @@ import pytest
 
 from services.map_store.storage.database import Database
 from tests.postgres import PostgresServer
-from tests.unit.services.map_store import conftest, test_damage, test_marks, test_store
+from tests.unit.services.map_store import conftest, test_damage, test_marks, test_routes, test_store
 from tests.unit.services.map_store.api import test_history_api
 from tests.unit.services.map_store.history import test_revisions
 from tests.unit.services.map_store.integrity import test_repair
@@ -20,6 +20,7 @@ BORROWED = {
     test_history_api: (),
     test_marks: ("marked",),
     test_missions: (),
+    test_routes: ("taught",),
     test_queue: ("desk",),
     test_timetable: ("times",),
     test_revisions: ("lived",),

@@ -19,7 +19,7 @@ export class Routes {
       TEXT.route(route),
       html("span", { class: "row" },
         html("button", { type: "button", onclick: () => this.drive(route.name, false) }, TEXT.driveRoute),
-        html("button", { type: "button", onclick: () => this.drive(route.name, true) }, TEXT.driveBack),
+        html("button", { type: "button", title: TEXT.backwards, onclick: () => this.drive(route.name, true) }, TEXT.driveBack),
         html("button", { type: "button", class: "danger", onclick: () => this.remove(route.name) }, TEXT.remove)),
     ]);
     $("routes").replaceChildren(...(rows.length ? [table(TEXT.routeColumns, rows)] : []));

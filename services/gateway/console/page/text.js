@@ -74,8 +74,9 @@ export const TEXT = {
   routeColumns: ["route", "nodes", ""],
   route: ({ nodes, gaps }) =>
     gaps.length ? `broken between ${gaps.map(([a, b]) => `${a} and ${b}`).join(", ")}: teach it anew` : `${nodes.length} nodes`,
-  driveRoute: "Drive it",
-  driveBack: "Drive back",
+  driveRoute: "Drive",
+  driveBack: "Back",
+  backwards: "from its end to its beginning",
   removeRoute: (name) => `Remove the route ${name}? Its nodes stay; an undo brings it back.`,
   lift: "Lift",
   liftRule: (name) => `Lift the rule ${name}? Robots go there again from then on.`,

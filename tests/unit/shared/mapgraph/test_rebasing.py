@@ -5,6 +5,7 @@ import pytest
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.rebasing import rebased
 from shared.messages.maps import AddNode, DeleteEdge, DeleteNode, Edge, Node, PutEdge, UpdateNode
+from shared.messages.places import PutRoute, Route
 from tests.bare_places import FEATURES, sectors
 
 
@@ -62,6 +63,13 @@ def test_an_edge_of_a_new_place_to_one_that_is_gone_is_left_out(before):
     mine = [add(2), PutEdge(edge=Edge(a=0, b=2)), PutEdge(edge=Edge(a=1, b=2))]
     now = changed(before, add(2), DeleteNode(node_id=0))
     assert rebased(mine, before, now) == [add(3), PutEdge(edge=Edge(a=1, b=3))]
+
+
+def test_a_route_is_kept_without_the_nodes_that_are_gone(before):
+    mine = [PutRoute(route=Route(name="tour", nodes=(0, 1, 0)))]
+    assert rebased(mine, before, changed(before, add(2))) == mine
+    gone = changed(before, DeleteNode(node_id=1))
+    assert rebased(mine, before, gone) == [PutRoute(route=Route(name="tour", nodes=(0,)))]
 
 
 def test_a_map_that_did_not_change_takes_the_same_operations(before):

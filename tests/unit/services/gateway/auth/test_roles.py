@@ -33,6 +33,8 @@ AGENT = {
 OPERATOR = {
     ("POST", "/api/maps"),
     ("DELETE", "/api/maps/{map_name}/places"),
+    ("PUT", "/api/maps/{map_name}/routes"),
+    ("DELETE", "/api/maps/{map_name}/routes"),
     ("POST", "/api/robots/{robot}/drive"),
     ("DELETE", "/api/robots/{robot}/estop"),
     ("PATCH", "/api/robots/{robot}/tasks/{task_id}"),

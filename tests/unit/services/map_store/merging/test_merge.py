@@ -14,7 +14,7 @@ from services.map_store.store import MapStore
 from shared.bus import wait_until
 from shared.messages.maps import AddNode, DeleteNode, Node, PutEdge
 from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
-from shared.messages.places import KeepOut, Marks, Place, PutPlace, PutRule
+from shared.messages.places import KeepOut, Marks, Place, PutPlace, PutRoute, PutRule, Route
 from shared.queries import AbsentError, RefusedError
 from shared.wire import encode
 from tests.merge_world import KEYPOINTS, PIPELINE, Pose, edges_of, features_of, matches_of, row
@@ -85,6 +85,16 @@ def test_pictures_outlive_the_map_they_came_from_and_an_undo_takes_all_back(maps
     maps.undo("hall")
     after = maps.graph("hall")[1]
     assert (dict(after.nodes), dict(after.edges)) == (dict(before.nodes), dict(before.edges))
+
+
+def test_routes_come_along_with_the_numbers_that_their_nodes_have_now(maps: MapStore):
+    here, there = Route(name="tour", nodes=(0, 1, 2)), Route(name="Tour", nodes=(2, 7, 12, 7))
+    maps.transact("hall", [PutRoute(route=here)])
+    maps.transact("wing", [PutRoute(route=there)])
+    merge_of(maps).run()
+    ids = {old: 8 + k for k, old in enumerate(WING)}
+    moved = Route(name="Tour (wing)", nodes=(ids[2], ids[7], ids[12], ids[7]))
+    assert maps.graph("hall")[1].marks.routes == (here, moved)
 
 
 def test_names_and_rules_come_along_and_where_both_have_one_neither_is_lost(maps: MapStore):

@@ -9,7 +9,18 @@ from services.map_store.storage.graph import AddStoredNode, Graph, Step, StoredN
 from shared.mapgraph import operations
 from shared.mapgraph.marks import nodes_of
 from shared.messages.maps import DeleteEdge, DeleteNode, Edge, Node, PutEdge, UpdateNode
-from shared.messages.places import DeletePlace, DeleteRule, KeepOut, OneWay, Place, PutPlace, PutRule
+from shared.messages.places import (
+    DeletePlace,
+    DeleteRoute,
+    DeleteRule,
+    KeepOut,
+    OneWay,
+    Place,
+    PutPlace,
+    PutRoute,
+    PutRule,
+    Route,
+)
 
 
 def place(number: int, stamp_ns: int = 0) -> AddStoredNode:
@@ -104,7 +115,9 @@ MARKS = st.one_of(
         st.lists(NAMED, max_size=1),
     ),
     st.builds(lambda name, a: PutRule(rule=OneWay(name=name, edges=((a, a + 1),))), NAMED, st.integers(0, 3)),
+    st.builds(lambda name, nodes: PutRoute(route=Route(name=name, nodes=nodes)), NAMED, LISTED),
     st.builds(lambda name: DeletePlace(name=name), NAMED),
+    st.builds(lambda name: DeleteRoute(name=name), NAMED),
     st.builds(lambda name: DeleteRule(name=name), NAMED),
 )
 STEPS = st.one_of(
@@ -135,7 +148,7 @@ def test_whatever_was_done_the_inverse_leads_back_and_every_edge_has_both_ends(s
     assert dict(back.nodes) == dict(TRIANGLE.nodes)
     assert dict(back.edges) == dict(TRIANGLE.edges)
     assert back.marks == TRIANGLE.marks
-    listed = [
-        n for mark in (*change.graph.places.values(), *change.graph.rules.values()) for n in nodes_of(mark)
-    ]
+    after = change.graph
+    marks = (*after.places.values(), *after.rules.values(), *after.routes.values())
+    listed = [n for mark in marks for n in nodes_of(mark)]
     assert set(listed) <= change.graph.nodes.keys()

@@ -47,7 +47,11 @@ def last_event(views):
     maps = Maps(MapGraph([Node(node_id=0)], []))
     tracker = Tracker(DEFAULT, maps, Seen(), certain=False)
     goal = SimpleNamespace(
-        picture=features(), arrival_rad=DEFAULT.arrival.arrival_rad, aliased=False, cuts_corners=True, sees=lambda *_: None
+        picture=features(),
+        arrival_rad=DEFAULT.arrival.arrival_rad,
+        aliased=False,
+        cuts_corners=True,
+        sees=lambda *_: None,
     )
     follower = PathFollower(DEFAULT, maps, [GOAL], goal, set(), EdgeExperience(DEFAULT, maps), tracker)
     ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(3.0,) * SECTORS, max_range_m=4.0)
