@@ -4,6 +4,7 @@ import pytest
 
 from shared.bus import Bus, wait_until
 from shared.messages.drive import Manual
+from shared.queries import RefusedError
 from shared.topics import MANUAL
 from tests.integration.map_store.conftest import START_S
 from tests.integration.map_store.conftest import bus as bus
@@ -30,3 +31,19 @@ def test_a_mission_pauses_while_a_person_drives_and_is_resumed_by_whoever_wants_
     drives("release")
     assert ask(bus, action="status").state == "paused"
     assert ask(bus, action="resume").state == "running"
+
+
+def test_a_mission_that_goes_along_with_a_hand_is_not_paused_and_ends_when_it_is_finished(bus: Bus, planner):
+    planner()
+    hand = bus.publisher(MANUAL, robot="r1")
+    hand.put(Manual(robot="r1", who="anna"))
+    ask(bus, action="teach", map="flat")
+    for _ in range(20):
+        hand.put(Manual(robot="r1", who="anna"))
+        assert ask(bus, action="status").state == "running"
+    ended = ask(bus, action="finish")
+    assert (ended.state, ended.action) == ("succeeded", "teach")
+    assert ended.reason.startswith("taught: the map has 0 nodes")
+    ask(bus, action="explore", map="flat")
+    with pytest.raises(RefusedError, match="explore ends by itself; cancel it"):
+        ask(bus, action="finish")
