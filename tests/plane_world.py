@@ -96,6 +96,7 @@ class PlaneWorld:
     driven_m: float = 0.0
     moved: Motion = NO_MOTION
     walkers: list["Walker"] = field(default_factory=list)
+    max_range_m: float = MAX_RANGE_M
 
     def __post_init__(self) -> None:
         self.shapes = footprints(self.space.parts, 0.02, 0.79)
@@ -130,18 +131,18 @@ class PlaneWorld:
         angles = np.arange(12) * math.tau / 12
         rays = (self.pose[2] + angles[:, None] + BEAM_RAYS).ravel()
         here = np.array(self.pose[:2])
-        hits = cast_rays(here, rays, self.shapes, MAX_RANGE_M)
+        hits = cast_rays(here, rays, self.shapes, self.max_range_m)
         if self.walkers:
             moving = footprints(tuple(walker.part() for walker in self.walkers), 0.02, 0.79)
-            hits = np.minimum(hits, cast_rays(here, rays, moving, MAX_RANGE_M))
+            hits = np.minimum(hits, cast_rays(here, rays, moving, self.max_range_m))
         hits = hits.reshape(12, -1).min(axis=1)
-        noisy = np.clip(hits + self.rng.normal(0.0, 0.01, 12), 0.0, MAX_RANGE_M)
+        noisy = np.clip(hits + self.rng.normal(0.0, 0.01, 12), 0.0, self.max_range_m)
         ranges = Ranges(
             seq=self.seq,
             robot="r1",
             angles_rad=tuple(angles),
-            distances_m=tuple(np.where(hits < MAX_RANGE_M, noisy, MAX_RANGE_M)),
-            max_range_m=MAX_RANGE_M,
+            distances_m=tuple(np.where(hits < self.max_range_m, noisy, self.max_range_m)),
+            max_range_m=self.max_range_m,
         )
         return Observation(picture(self.pose, self.seq), ranges, self.moved)
 

@@ -65,7 +65,8 @@ class MappingRules(_Rules):
         explored: which directions an edge covers.
         covers_m: floor this near to a node needs no other one; None: 1 m in a room, further where views carry
             further; 0: every open direction is explored.
-        gain_min: share of the floor around a spot that must be new for a direction to be explored.
+        gain_min: share of the floor around a spot that must be new for a direction to be explored, in a room;
+            where nodes cover more than a metre, less by the root of that.
         departure_m: way in an unexplored direction of a room after which nothing new is to be expected there.
         saturation_steps: frames without anything known before the robot turns back (Q17).
         exploration_noise_rad, admissible_noise_rad: half widths of the strategies' random headings (Q18).

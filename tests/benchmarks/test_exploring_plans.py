@@ -15,7 +15,9 @@ import pytest
 
 from experiments.generated.peers import frontier_curve
 from experiments.generated.plan import COVERED
+from experiments.generated.row import RANGE, RANGE_M
 from services.drive.limits import DriveLimits
+from services.launcher.client.environments import environment_of
 from services.launcher.evaluation.coverage_curve import metres_to
 from services.planner.missions.explore import FrontierExploration
 from services.planner.profiles import DEFAULT
@@ -24,7 +26,7 @@ from simulator.generation.splits import split_of
 from simulator.generation.world_text import write_world
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
-from tests.plane_world import MAX_RANGE_M, PlaneMap, PlaneMatcher, PlaneWorld, run
+from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, run
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(3600)]
 
@@ -33,7 +35,6 @@ PLANS = (
     "school-0-small,school-15-small,shop-2-small"
 )
 STEPS_MAX = 12_000
-COVERS_M = 1.0
 
 
 class Watched:
@@ -66,12 +67,12 @@ def world_of(name, folder):
     return load_world(str(folder / f"{name}.yaml"))
 
 
-def curve_of(space, watched):
+def curve_of(space, watched, covers_m):
     """Driven metres and covered share of the floor after each node."""
     floor, curve = space.centres_m(), []
     uncovered = np.ones(len(floor), bool)
     for driven_m, pose in zip(watched.node_m, watched.maps.poses.values(), strict=True):
-        uncovered &= np.linalg.norm(floor - np.array(pose[:2]), axis=1) > COVERS_M
+        uncovered &= np.linalg.norm(floor - np.array(pose[:2]), axis=1) > covers_m
         curve.append((driven_m, 1.0 - float(uncovered.mean())))
     return curve
 
@@ -81,14 +82,17 @@ def curve_of(space, watched):
 def test_metres_on_a_floor_plan(name, seed, tmp_path, keep):
     world = world_of(name, tmp_path)
     space, start = free_space(world), world.start
-    plane, maps = PlaneWorld((start.x_m, start.y_m, 0.0), np.random.default_rng(seed), space), PlaneMap()
+    place = environment_of(world)
+    range_m = float(place.variables.get(RANGE, RANGE_M))
+    here, rng = (start.x_m, start.y_m, 0.0), np.random.default_rng(seed)
+    plane, maps = PlaneWorld(here, rng, space, max_range_m=range_m), PlaneMap()
     matcher = PlaneMatcher(plane, maps, carries=float(os.environ.get("CARRIES", "1")))
-    told = DEFAULT.replaced(covers_m=COVERS_M)
+    told = DEFAULT.replaced(covers_m=place.covered_m)
     mission = FrontierExploration(told, maps, matcher, np.random.default_rng(seed))
     watched = Watched(plane, maps, mission)
     decision, _ = run(plane, watched, DriveLimits(), STEPS_MAX)
-    curve = curve_of(space, watched)
-    peer = frontier_curve(space, (start.x_m, start.y_m), COVERS_M, MAX_RANGE_M, COVERED)
+    curve = curve_of(space, watched, place.covered_m)
+    peer = frontier_curve(space, (start.x_m, start.y_m), place.covered_m, range_m, COVERED)
     keep(
         {
             "ended": decision.outcome,

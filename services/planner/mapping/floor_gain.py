@@ -28,8 +28,9 @@ ROOM_COVERS_M = 1.0
 STRAIGHT_SHARE = 0.25
 """Share of its gain that a direction loses which turns the robot round; chosen: of two that are as good the
 one ahead comes first."""
-VIEWED_M = 1.5
-"""Beyond, floor is looked for farther away than distance sensors reach, and free ways tell more; chosen."""
+VIEWED_SHARE = 0.375
+"""Of what distance sensors reach: where nodes cover more, floor is looked for beyond that (AHEAD), and free
+ways tell more."""
 AHEAD = (1.0, 2.0)
 """Where new floor is looked for along a free direction, in radii that a node covers; chosen: through a door
 that is one away, floor begins behind the walls beside it."""
@@ -105,7 +106,7 @@ def best_sector(
 def gain_here(
     graph: MapGraph, here: Displacement, ranges: Ranges, profile: Profile, views: FloorViews
 ) -> float:
-    """Share of the floor around the robot which no node covers; 0 where every direction is to be explored.
+    """New floor around the robot, which no node covers (`_gain`); 0 where every direction is to be explored.
 
     Args:
         graph: the map.
@@ -121,9 +122,9 @@ def gain_here(
     known_m = _known_m(graph, poses, here.node_id, covers_m)
     spot = np.array([here.x_m, here.y_m])
     new = _new_floor_m(known_m, spot, covers_m)
-    if covers_m <= VIEWED_M:
-        return _share(views.weights(new, views.around(poses), covers_m))
-    return _share(_weights(new - spot, here.yaw_rad, np.array(free_ways_m(ranges, profile))))
+    if covers_m <= VIEWED_SHARE * views.range_m:
+        return _gain(views.weights(new, views.around(poses), covers_m), covers_m)
+    return _gain(_weights(new - spot, here.yaw_rad, np.array(free_ways_m(ranges, profile))), covers_m)
 
 
 def _poses_around(graph: MapGraph, node_id: int) -> dict[int, RelativePose]:
@@ -146,11 +147,11 @@ def _gains(
         spots = [own.position_m + min(ahead * covers_m, free_m[sector]) * way for ahead in AHEAD]
         spots[1:] = [spot for spot in spots[1:] if not _seen_nearer(graph, poses, node.node_id, spot)]
         floors = [_new_floor_m(known_m, spot, covers_m) for spot in spots]
-        if views.cover(node.node_id) and covers_m <= VIEWED_M:
+        if views.cover(node.node_id) and covers_m <= VIEWED_SHARE * views.range_m:
             counts = [views.weights(floor, seen, covers_m) for floor in floors]
         else:
             counts = [_weights(floor - own.position_m, own.yaw_rad, np.array(free_m)) for floor in floors]
-        gains[sector] = max(_share(count) for count in counts)
+        gains[sector] = max(_gain(count, covers_m) for count in counts)
     return gains
 
 
@@ -181,9 +182,12 @@ def _new_floor_m(known_m: FloatArray, spot_m: FloatArray, covers_m: float) -> Fl
     return np.asarray(floor[(gaps > covers_m).all(axis=1)])
 
 
-def _share(counts: FloatArray) -> float:
-    """Of the disc, by what its new points count."""
-    return float(counts.sum()) / len(_disc())
+def _gain(counts: FloatArray, covers_m: float) -> float:
+    """New floor by what its points count: as a share of the disc in a room, where nodes cover more of more.
+
+    A flat is twenty discs of one metre, a yard two of four metres: there the same share is a passage missed.
+    """
+    return math.sqrt(max(1.0, covers_m / ROOM_COVERS_M)) * float(counts.sum()) / len(_disc())
 
 
 def _weights(offset: FloatArray, own_yaw_rad: float, free_m: FloatArray) -> FloatArray:

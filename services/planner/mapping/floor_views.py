@@ -38,17 +38,23 @@ RING_M = BESIDE_M * np.array([[math.cos(turn), math.sin(turn)] for turn in np.ar
 
 
 class FloorViews:
-    """Views by node, each as it was seen from there; lives as long as a mission."""
+    """Views by node, each as it was seen from there; lives as long as a mission.
+
+    Attributes:
+        range_m: how far the sensors reach; 0 before the first view.
+    """
 
     def __init__(self, robot_radius_m: float) -> None:
         self._radius_m = robot_radius_m
         self._views: dict[int, list[FloatArray]] = {}
+        self.range_m = 0.0
 
     def add(self, here: Displacement, ranges: Ranges) -> None:
         """Keep a view, unless one from that node was taken hardly elsewhere.
 
         A spot passed again, at another departure say, shows no more of a wall.
         """
+        self.range_m = ranges.max_range_m
         views = self._views.setdefault(here.node_id, [])
         if any(math.dist(view[:2], (here.x_m, here.y_m)) < APART_M for view in views):
             return

@@ -87,12 +87,12 @@ def test_profiles_that_ask_for_no_gain_explore_everything(changes):
     assert left(grid(), INSIDE, **changes)[INSIDE] == set(range(12))
 
 
-def wall_in_the_south(away_m):
+def wall_in_the_south(away_m, range_m=4.0):
     """Views from the nodes along the southern border, every quarter of a metre."""
-    views, echo_m = FloorViews(RADIUS_M), [4.0] * 12
+    views, echo_m = FloorViews(RADIUS_M), [range_m] * 12
     echo_m[7:12] = [1.41 * away_m, away_m, away_m, away_m, 1.41 * away_m]
     angles_rad = tuple(sector_rad(sector) for sector in range(12))
-    seen = Ranges(robot="r1", angles_rad=angles_rad, distances_m=tuple(echo_m), max_range_m=4.0)
+    seen = Ranges(robot="r1", angles_rad=angles_rad, distances_m=tuple(echo_m), max_range_m=range_m)
     for node in range(COLUMNS):
         for x_m in (0.0, 0.25, 0.5, 0.75):
             views.add(Displacement(node, x_m), seen)
@@ -103,6 +103,19 @@ def test_a_wall_seen_from_close_by_leads_nowhere_though_the_robot_would_fit_betw
     assert left(grid(), INSIDE)[BORDER] >= SOUTH
     assert not left(grid(), INSIDE, wall_in_the_south(0.9))[BORDER] & SOUTH
     assert left(grid(), INSIDE, wall_in_the_south(1.8))[BORDER] >= SOUTH
+
+
+def test_walls_tell_only_where_the_sensors_reach_as_far_as_floor_is_looked_for():
+    wide = {"covers_m": 2.0}
+    assert left(grid(), INSIDE, wall_in_the_south(0.9, range_m=4.0), **wide)[BORDER] >= SOUTH
+    assert not left(grid(), INSIDE, wall_in_the_south(0.9, range_m=12.0), **wide)[BORDER] & SOUTH
+
+
+@pytest.mark.parametrize(("covers_m", "worth"), [(1.0, set()), (4.0, set(range(12)))])
+def test_where_nodes_cover_more_a_smaller_share_of_that_is_worth_the_way(covers_m, worth):
+    ways_m = (0.5 * covers_m,) * 12
+    lonely = MapGraph([Node(node_id=0, open=ALL, free_m=ways_m)], [])
+    assert left(lonely, 0, covers_m=covers_m, gain_min=0.25)[0] == worth
 
 
 def test_an_empty_neighbourhood_is_all_new():
