@@ -55,6 +55,9 @@ def test_a_comparison_tells_what_changed_between_two_revisions(client: TestClien
         "rules_added": [],
         "rules_removed": [],
         "rules_changed": [],
+        "routes_added": [],
+        "routes_removed": [],
+        "routes_changed": [],
     }
     back = client.get("/maps/flat/compare?from=4&to=2").json()
     assert (back["from"], back["to"]) == (4, 2)
