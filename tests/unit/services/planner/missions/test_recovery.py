@@ -67,16 +67,18 @@ def test_a_closed_door_is_a_typed_failure_and_an_open_one_is_used_again(explored
     assert math.dist(world.pose[:2], HALL[:2]) < 0.35
 
 
+@pytest.mark.slow
+@pytest.mark.timeout(600)
 def test_a_closed_door_is_given_up_soon(mapped):
-    """How many edges lead through it, and by how many legs they are tried, is chance: so five maps."""
+    """How many edges lead through it, and by how many legs they are tried, is chance: so three maps."""
     steps = []
-    for maps in (mapped, *(map_by(seed) for seed in (3, 4, 5, 6))):
+    for maps in (mapped, *(map_by(seed) for seed in (3, 4))):
         at_door = in_lounge(maps)
         at_door[0].put(DOOR)
         decision, taken = go(at_door, HALL)
         assert decision.failure == "blocked", decision.why
         steps.append(taken)
-    assert sorted(steps)[2] < 600, "at a via point that shows nothing beyond, waiting is no use"
+    assert sorted(steps)[1] < 600, "at a via point that shows nothing beyond, waiting is no use"
 
 
 def test_a_door_that_closes_on_one_of_two_ways_is_gone_round(explored):
