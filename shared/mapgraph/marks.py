@@ -64,20 +64,20 @@ def nothing_called(name: str, marks: Collection[M], what: str = "place") -> str:
 
 def place_called(name: str, places: Mapping[str, Place]) -> Place | str:
     """The place of that name, or a text that says that there is none and which are nearest."""
-    try:
-        key = key_of(name)
-    except ValueError as error:
-        return str(error)
-    return places.get(key) or nothing_called(name, list(places.values()))
+    return _called(name, places, "place")
 
 
 def route_called(name: str, routes: Mapping[str, Route]) -> Route | str:
     """The route of that name, or a text that says that there is none and which are nearest."""
+    return _called(name, routes, "route")
+
+
+def _called(name: str, marks: Mapping[str, M], what: str) -> M | str:
     try:
         key = key_of(name)
     except ValueError as error:
         return str(error)
-    return routes.get(key) or nothing_called(name, list(routes.values()), "route")
+    return marks.get(key) or nothing_called(name, list(marks.values()), what)
 
 
 def gaps(route: Route, joined: Container[tuple[int, int]]) -> list[tuple[int, int]]:

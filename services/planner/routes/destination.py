@@ -2,18 +2,13 @@
 
 from collections.abc import Mapping
 
-from services.planner.ports import MapAccess, Matcher, Matches, Note, Progress
+from services.planner.ports import MapAccess, Matcher, Note, Progress
 from services.planner.profiles import Profile
-from services.planner.travel.destination import Setback, Verdict
+from services.planner.travel.destination import NodeDestination, Setback, Verdict
 from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.states import Event
-from services.planner.travel.tracking import Tracker
 from shared.mapgraph.graph import edge_key
-from shared.mapgraph.local.displacement import Displacement
-from shared.messages.features import Features
-from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
-from shared.messages.sensors import Ranges
 
 COMPARED = 8
 """Nodes compared to localise a frame; as many as a goto compares."""
@@ -31,7 +26,7 @@ AVOID_M = 3.0
 """Added to the cost of starting at a waypoint that failed; chosen: another node as near comes first."""
 
 
-class RouteDestination:
+class RouteDestination(NodeDestination):
     """The end of a route, and the nodes before it.
 
     Attributes:
@@ -40,7 +35,6 @@ class RouteDestination:
     """
 
     compared, search_steps = COMPARED, SEARCH_STEPS
-    aliased = False
     cuts_corners = False
 
     def __init__(
@@ -52,9 +46,9 @@ class RouteDestination:
         nodes: tuple[int, ...],
         at: int = 0,
     ) -> None:
-        self._maps, self._matcher, self._experience = maps, matcher, experience
+        super().__init__(matcher)
+        self._maps, self._experience = maps, experience
         self.nodes, self.at = nodes, at
-        self.picture: Features | None = None
         self.arrival_rad = profile.arrival.arrival_rad
         self.left_out: list[int] = []
         self._end = at
@@ -101,21 +95,6 @@ class RouteDestination:
         closed = self._experience.unreachable
         return {node: c + self._avoid.get(node, 0.0) for node, c in visible.items() if node not in closed}
 
-    def localised(self, _seen: Matches, _ranges: Ranges) -> tuple[Note, ...]:
-        """Nothing is learnt: edges are judged by driving them."""
-        return ()
-
-    def goes_straight(self, _goal: NodeMatch, _here: Displacement | None) -> bool:
-        """There is no picture to head for."""
-        return False
-
-    def sees(self, _goal: NodeMatch, _here: Displacement | None) -> None:
-        """A route has no picture."""
-
-    def lies(self, _node_id: int) -> Displacement | None:
-        """A route has no picture."""
-        return None
-
     def set_out(self) -> None:
         """There is a path."""
         self._no_path_frames = 0
@@ -148,12 +127,6 @@ class RouteDestination:
     def unreachable(self) -> tuple[FailureKind, str]:
         """The end of the route was left out."""
         return "blocked", f"node {self.nodes[-1]}, the end of the route, is not reached"
-
-    def refutes_arrival(self, end: int, similarity: int, tracker: Tracker) -> str:  # noqa: ARG002
-        """Whether the view belongs to another part of the map."""
-        matches = self._matcher.match([end, *tracker.nearby()], COMPARED)
-        possible = end in tracker.possible(matches)
-        return "" if possible else f"aliased: other nodes resemble this view more than node {end}"
 
     def _leave_out(self, why: str, notes: tuple[Note, ...]) -> Verdict:
         node = self.nodes[self.at]

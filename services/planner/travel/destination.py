@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from services.planner.ports import Matches, Note
+from services.planner.ports import Matcher, Matches, Note
 from services.planner.travel.states import Event
 from services.planner.travel.tracking import Tracker
 from shared.mapgraph.graph import EdgeKey
@@ -121,3 +121,39 @@ class Destination(Protocol):
             similarity: of the view and the end.
             tracker: where the robot is.
         """
+
+
+class NodeDestination:
+    """What destinations without a picture have in common: a path ends at a node.
+
+    Attributes:
+        compared: nodes compared to localise a frame.
+    """
+
+    picture: Features | None = None
+    aliased = False
+    compared: int
+
+    def __init__(self, matcher: Matcher) -> None:
+        self._matcher = matcher
+
+    def goes_straight(self, _goal: NodeMatch, _here: Displacement | None) -> bool:
+        """There is no picture to head for."""
+        return False
+
+    def localised(self, _seen: Matches, _ranges: Ranges) -> tuple[Note, ...]:
+        """Nothing is learnt: edges are judged by standing at nodes and by driving."""
+        return ()
+
+    def sees(self, _goal: NodeMatch, _here: Displacement | None) -> None:
+        """There is no picture."""
+
+    def lies(self, _node_id: int) -> Displacement | None:
+        """There is no picture."""
+        return None
+
+    def refutes_arrival(self, end: int, similarity: int, tracker: Tracker) -> str:  # noqa: ARG002
+        """Whether the view belongs to another part of the map."""
+        matches = self._matcher.match([end, *tracker.nearby()], self.compared)
+        possible = end in tracker.possible(matches)
+        return "" if possible else f"aliased: other nodes resemble this view more than node {end}"

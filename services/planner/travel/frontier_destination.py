@@ -3,18 +3,14 @@
 from collections.abc import Mapping
 
 from services.planner.mapping.allowed_directions import AllowedDirections
-from services.planner.ports import MapAccess, Matcher, Matches, Note
+from services.planner.ports import MapAccess, Matcher, Note
 from services.planner.profiles import Profile
-from services.planner.travel.destination import Setback, Verdict
+from services.planner.travel.destination import NodeDestination, Setback, Verdict
 from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.tracking import Tracker
 from shared.mapgraph.frontiers import frontier_sectors, without_frontiers
-from shared.mapgraph.local.displacement import Displacement
-from shared.messages.features import Features
 from shared.messages.maps import UpdateNode
-from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
-from shared.messages.sensors import Ranges
 
 COMPARED = 5
 """Nodes compared to localise a frame; chosen: the robot has been at all of them, so the nearest few
@@ -35,7 +31,7 @@ SEARCH_STEPS = 120
 step."""
 
 
-class FrontierDestination:
+class FrontierDestination(NodeDestination):
     """Any node with a frontier; remembers what failed, so that exploration always ends.
 
     Attributes:
@@ -43,7 +39,6 @@ class FrontierDestination:
     """
 
     compared, search_steps = COMPARED, SEARCH_STEPS
-    aliased = False
     cuts_corners = True
 
     def __init__(
@@ -54,10 +49,10 @@ class FrontierDestination:
         experience: EdgeExperience,
         directions: AllowedDirections,
     ) -> None:
-        self._profile, self._maps, self._matcher = profile, maps, matcher
+        super().__init__(matcher)
+        self._profile, self._maps = profile, maps
         self._directions, self._set_aside = directions, set[int]()
         self._experience = experience
-        self.picture: Features | None = None
         self.arrival_rad = profile.arrival.travel_arrival_rad
         self.reached = 0
         self._end = 0
@@ -82,21 +77,6 @@ class FrontierDestination:
             if self._stranded > STRANDED_STEPS:
                 self._bad_starts, self._stranded = set(), 0
         return starts
-
-    def goes_straight(self, _goal: NodeMatch, _here: Displacement | None) -> bool:
-        """There is no picture to head for."""
-        return False
-
-    def localised(self, _seen: Matches, _ranges: Ranges) -> tuple[Note, ...]:
-        """Nothing is learnt: exploration sees edges again when it stands at a node."""
-        return ()
-
-    def sees(self, _goal: NodeMatch, _here: Displacement | None) -> None:
-        """A frontier has no picture."""
-
-    def lies(self, _node_id: int) -> Displacement | None:
-        """A frontier has no picture."""
-        return None
 
     def set_out(self) -> None:
         """There is a path again."""
@@ -141,11 +121,10 @@ class FrontierDestination:
         """All is explored; the mission ends before it asks."""
         return "no_path", "nothing unexplored is left"
 
-    def refutes_arrival(self, end: int, similarity: int, tracker: Tracker) -> str:  # noqa: ARG002
+    def refutes_arrival(self, end: int, similarity: int, tracker: Tracker) -> str:
         """Whether the view belongs to another part of the map."""
-        matches = self._matcher.match([end, *tracker.nearby()], COMPARED)
-        if end not in tracker.possible(matches):
-            return f"aliased: other nodes resemble this view more than node {end}"
+        if refuted := super().refutes_arrival(end, similarity, tracker):
+            return refuted
         self._bad_starts, self._in_vain = set(), 0
         self.reached = end
         return ""
