@@ -37,6 +37,7 @@ class Node(Part):
         frame_seq: number of its frame.
         open: directions (node's camera frame) in which the distance sensors saw room.
         free_m: how far the robot could go in each direction; None where nobody measured.
+        echoes_m: what the distance sensors read in each direction; None where nobody measured.
         explored: directions already known: an edge leads there or the robot left that way.
     """
 
@@ -47,6 +48,7 @@ class Node(Part):
     keypoints: int = Field(default=0, ge=0)
     open: Sectors = (False,) * SECTORS
     free_m: Ways | None = None
+    echoes_m: Ways | None = None
     explored: Sectors = (False,) * SECTORS
 
 

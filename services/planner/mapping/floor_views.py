@@ -12,7 +12,8 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-from shared.mapgraph.frontiers import SECTOR_RAD, sector_rad
+from services.planner.echoes import by_sector_m
+from shared.mapgraph.frontiers import SECTOR_RAD
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.relative_poses import RelativePose
 from shared.messages.base import SECTORS
@@ -58,7 +59,7 @@ class FloorViews:
         views = self._views.setdefault(here.node_id, [])
         if any(math.dist(view[:2], (here.x_m, here.y_m)) < APART_M for view in views):
             return
-        views.append(np.array([here.x_m, here.y_m, here.yaw_rad, *_by_sector(ranges)]))
+        views.append(np.array([here.x_m, here.y_m, here.yaw_rad, *by_sector_m(ranges)]))
 
     def cover(self, node_id: int) -> bool:
         """Whether anything was seen from a node."""
@@ -109,10 +110,3 @@ class FloorViews:
         hidden = blocked | (~seen & ~near & (away_m <= echo_m + covers_m))
         found = seen.any(axis=1)
         return found, ~found & hidden.any(axis=1) & (blocked.sum(axis=1) < WALL_VIEWS)
-
-
-def _by_sector(ranges: Ranges) -> list[float]:
-    """The reading nearest to the middle of each sector."""
-    angles_rad = np.array(ranges.angles_rad)
-    off_rad = [np.abs(np.angle(np.exp(1j * (angles_rad - sector_rad(s))))) for s in range(SECTORS)]
-    return [ranges.distances_m[int(off.argmin())] for off in off_rad]

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from services.planner.echoes import by_sector_m
 from services.planner.mapping.edges import NewEdges
 from services.planner.mapping.floor_gain import without_poor_directions
 from services.planner.mapping.floor_views import FloorViews
@@ -65,6 +66,7 @@ def add_node(
         keypoints=len(features.lonlat_rad),
         open=tuple(free >= profile.sensing.opening_m for free in free_m),
         free_m=free_m,
+        echoes_m=tuple(round(echo_m, 2) for echo_m in by_sector_m(observation.ranges)),
     )
     seen = admitted + edges_to(node_id, edges.covered, edges, profile)
     node, *others = explored_along(maps.graph, node, seen, profile)

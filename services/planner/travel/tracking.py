@@ -8,6 +8,7 @@ the robot has looked in vain for long.
 import logging
 from collections.abc import Mapping
 
+from services.planner.echoes import is_elsewhere
 from services.planner.mapping.reach import claims, distances, in_reach, nodes_nearby
 from services.planner.ports import MapAccess, Matcher, Matches, Observation
 from services.planner.profiles import Profile
@@ -22,6 +23,7 @@ from shared.mapgraph.local.resection import resected
 from shared.mapgraph.local.view_range import openness
 from shared.mapgraph.routing import GOAL
 from shared.messages.matching import NodeMatch
+from shared.messages.sensors import Ranges
 
 PATIENCE_FRAMES = 40
 """Frames that show nothing within reach after which the robot must have been carried, however smoothly;
@@ -48,8 +50,8 @@ class Tracker:
         profile: thresholds.
         maps: the map.
         matcher: compares frames.
-        certain: only a place without rivals counts where nobody knows where the robot is: one that maps would
-            join two places for good.
+        certain: only a place without rivals counts where nobody knows where the robot is, and only a spot
+            around which the same things stand: one that maps would join two places for good.
         whereabouts: as the mission before left them; this tracker changes them.
     """
 
@@ -68,6 +70,7 @@ class Tracker:
         self._resumes = self._at.here is not None
         self._strict = profile.sensing.similarity == "raw"
         self._lost_frames = 0
+        self._ranges: Ranges | None = None
 
     @property
     def here(self) -> Displacement | None:
@@ -81,6 +84,7 @@ class Tracker:
     def observe(self, observation: Observation) -> None:
         """A new frame, and how far the robot went since the one before."""
         self._at.before, self._at.now = self._at.now, observation.features
+        self._ranges = observation.ranges
         if self.here is not None:
             self.here = self.here.moved(observation.moved)
 
@@ -106,6 +110,8 @@ class Tracker:
         graph = self._maps.graph
         if self._strict:
             return matches
+        if self._certain:
+            matches = {node: match for node, match in matches.items() if not self._is_double(match)}
         if self._resumes:
             self._resume()
         if self.here is not None and self.here.node_id in graph.nodes:
@@ -180,6 +186,14 @@ class Tracker:
         if not stands or here.node_id not in seen or not self._is_sure(seen[here.node_id]):
             log.info("not about node %d any more: where the robot is has to be seen", here.node_id)
             self.stand_at(None)
+
+    def _is_double(self, match: NodeMatch) -> bool:
+        """Whether a frame looks as if taken at a node around which other things stand."""
+        node = self._maps.graph.nodes.get(match.node_id)
+        if node is None or self._ranges is None or match.yaw_rad is None:
+            return False
+        at_node = is_at(match, self._maps.graph, self._profile)
+        return at_node and is_elsewhere(node, self._ranges, match.yaw_rad)
 
     def _against_before(self) -> NodeMatch | None:
         """This frame against the one before it."""

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from services.planner.mapping.edges import judge_edges, stands_alone
+from services.planner.mapping.edges import NewEdges, judge_edges, stands_alone
 from services.planner.mapping.nodes import add_node
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT, PHOTO, THESIS
@@ -90,6 +90,24 @@ def test_a_match_that_stands_alone_is_an_edge_without_free_ground():
     assert stands_alone(match(0, 35, 80), DEFAULT)
     assert not stands_alone(match(0, 25, 80), DEFAULT)
     assert not stands_alone(match(0, 35, 80).model_copy(update={"confidence": 0.4}), DEFAULT)
+
+
+def test_a_doubtful_bearing_is_an_edge_only_along_what_the_robot_drove():
+    doubtful = match(0, 71, 120).model_copy(update={"confidence": 0.6})
+    assert edges_of(DEFAULT, doubtful) == []
+    assert edges_of(DEFAULT, doubtful, driven_from=0) == [0]
+    assert edges_of(THESIS, doubtful) == [0]
+    assert not stands_alone(doubtful, DEFAULT)
+
+
+def test_a_node_keeps_what_the_distance_sensors_read_around_it():
+    maps = Memory()
+    read_m = tuple(0.5 + 0.011 * n for n in range(12))
+    ranges = observation().ranges.model_copy(
+        update={"angles_rad": tuple(np.arange(12) * math.tau / 12), "distances_m": read_m}
+    )
+    node, _ = add_node(maps, Observation(observation().features, ranges), NewEdges(), DEFAULT, None)
+    assert maps.graph.nodes[node].echoes_m == pytest.approx(read_m, abs=0.006)
 
 
 def test_what_is_seen_alike_from_far_away_is_no_edge():

@@ -1,5 +1,7 @@
 """A robot does not jump: what looks alike elsewhere is not where it is."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ from services.planner.profiles import DEFAULT, THESIS
 from services.planner.travel.tracking import PATIENCE_FRAMES, Tracker
 from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.local.displacement import Displacement
+from shared.messages.maps import UpdateNode
 from shared.messages.sensors import Ranges
 from shared.motion.motion import Motion
 from tests.unit.services.planner.travel.seen import Maps, Matcher, by_node, features, match
@@ -83,6 +86,33 @@ def test_one_that_maps_wants_to_be_certain(matcher):
     alike = by_node(match(9, 0.0, 0.0, 60), match(10, 1.0, 0.0, 50))
     assert tracker_of(matcher, certain=True).possible(HERE | alike) == {}
     assert set(tracker_of(matcher, certain=True).possible(HERE | ELSEWHERE)) == {9, 10}
+
+
+@pytest.mark.parametrize("certain", [True, False], ids=["maps", "drives to a goal"])
+@pytest.mark.parametrize("left", [0, 3], ids=["as the node looks", "turned right by three sectors"])
+def test_one_that_maps_is_at_no_node_around_which_other_things_stand(matcher, certain, left):
+    """A rib of a corrugated wall looks as the next one; goals are found after furniture was moved, too."""
+    around_m = (1.2,) * 6 + (3.0,) * 6
+    graph = grid(20, 2)
+    graph.apply([UpdateNode(node=graph.nodes[1].model_copy(update={"echoes_m": around_m}))])
+    tracker = Tracker(DEFAULT, Maps(graph), matcher, certain=certain)
+    turn = left * math.tau / 12
+    tracker.stand_at(Displacement(0, x_m=0.9, yaw_rad=-turn, spread_m=0.6))
+    cos, sin = math.cos(turn), math.sin(turn)
+    there, beside, away = (
+        match(node, ahead_m * cos, ahead_m * sin, inliers).model_copy(update={"yaw_rad": turn})
+        for node, ahead_m, inliers in ((1, 0.1, 300), (0, -0.9, None), (1, 0.9, None))
+    )
+    for reads_m, seen, possible in (
+        (np.roll(around_m, left), there, True),
+        (np.roll(around_m, left + 6), there, not certain),
+        (np.roll(around_m, left + 6), away, True),
+    ):
+        ranges = RANGES.model_copy(
+            update={"angles_rad": tuple(np.arange(12) * math.tau / 12), "distances_m": tuple(reads_m)}
+        )
+        tracker.observe(Observation(features(), ranges, Motion(0.0, 0.0)))
+        assert (1 in tracker.possible(by_node(seen, beside))) == possible
 
 
 def test_what_the_frame_shows_takes_over_from_what_was_driven(tracker):
