@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from functools import reduce
+from functools import cache, reduce
 
 import numpy as np
 import numpy.typing as npt
@@ -140,18 +140,24 @@ def _gains(
     known_m, own = _known_m(graph, poses, node.node_id, covers_m), poses[node.node_id]
     free_m = node.free_m or (covers_m,) * SECTORS
     seen = views.around(poses)
-    gains = {}
+
+    def weights(floor_m: FloatArray) -> FloatArray:
+        if views.cover(node.node_id) and covers_m <= VIEWED_SHARE * views.range_m:
+            return views.weights(floor_m, seen, covers_m)
+        return _weights(floor_m - own.position_m, own.yaw_rad, np.array(free_m))
+
+    gains: dict[int, float] = {}
     for sector in sectors:
         angle_rad = own.yaw_rad + sector * SECTOR_RAD
         way = np.array([math.cos(angle_rad), math.sin(angle_rad)])
         spots = [own.position_m + min(ahead * covers_m, free_m[sector]) * way for ahead in AHEAD]
         spots[1:] = [spot for spot in spots[1:] if not _seen_nearer(graph, poses, node.node_id, spot)]
         floors = [_new_floor_m(known_m, spot, covers_m) for spot in spots]
-        if views.cover(node.node_id) and covers_m <= VIEWED_SHARE * views.range_m:
-            counts = [views.weights(floor, seen, covers_m) for floor in floors]
-        else:
-            counts = [_weights(floor - own.position_m, own.yaw_rad, np.array(free_m)) for floor in floors]
-        gains[sector] = max(_gain(count, covers_m) for count in counts)
+        gains[sector] = 0.0
+        for floor in sorted(floors, key=len, reverse=True):
+            if _gain(np.ones(len(floor)), covers_m) <= gains[sector]:
+                break  # it counts no more even where all of it was seen
+            gains[sector] = max(gains[sector], _gain(weights(floor), covers_m))
     return gains
 
 
@@ -209,6 +215,7 @@ def _on_this_side(graph: MapGraph, start: int, far_m: float) -> set[int]:
     )
 
 
+@cache
 def _disc() -> FloatArray:
     """Points spread evenly over the unit disc."""
     side = np.linspace(-1.0, 1.0, ACROSS)

@@ -99,14 +99,17 @@ class FloorViews:
         self, floor_m: FloatArray, views: FloatArray, covers_m: float
     ) -> tuple[BoolArray, BoolArray]:
         """(N,) each: seen by any view; else behind what was seen, and not behind a wall."""
+        echoes_m, count = views[:, 3:], len(floor_m)
         offset = floor_m[:, None] - views[None, :, :2]
         away_m = np.hypot(offset[..., 0], offset[..., 1])
-        bearing_rad = np.arctan2(offset[..., 1], offset[..., 0]) - views[:, 2]
-        sector = np.rint(bearing_rad / SECTOR_RAD).astype(int) % SECTORS
-        echo_m = views[np.arange(len(views)), 3 + sector]
+        floor, view = np.nonzero(away_m <= echoes_m.max(axis=1, initial=0.0) + max(covers_m, WALL_M))
+        offset, away_m = offset[floor, view], away_m[floor, view]
+        bearing_rad = np.arctan2(offset[:, 1], offset[:, 0]) - views[view, 2]
+        echo_m = echoes_m[view, np.rint(bearing_rad / SECTOR_RAD).astype(int) % SECTORS]
         seen = away_m <= echo_m - self._radius_m
         near = echo_m <= DOOR_SEEN_M
         blocked = ~seen & near & (away_m <= echo_m + WALL_M)
         hidden = blocked | (~seen & ~near & (away_m <= echo_m + covers_m))
-        found = seen.any(axis=1)
-        return found, ~found & hidden.any(axis=1) & (blocked.sum(axis=1) < WALL_VIEWS)
+        views_that = (np.bincount(floor[which], minlength=count) for which in (seen, hidden, blocked))
+        saw, may_hide, show_wall = views_that
+        return saw > 0, (saw == 0) & (may_hide > 0) & (show_wall < WALL_VIEWS)
