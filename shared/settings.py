@@ -7,7 +7,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ValidationError
 from pydantic_core import ErrorDetails
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from shared.transport.keys import check_robot
 
@@ -18,6 +18,23 @@ OptionalPath = Annotated[Path | None, BeforeValidator(lambda path: None if path 
 
 
 RobotName = Annotated[str, AfterValidator(check_robot)]
+
+
+def _listed(names: object) -> object:
+    if not isinstance(names, str):
+        return names
+    return tuple(name.strip() for name in names.split(",")) if names.strip() else ()
+
+
+def _each_once(names: tuple[str, ...]) -> tuple[str, ...]:
+    for name in names:
+        if names.count(check_robot(name)) > 1:
+            raise ValueError(f"every robot must be named once, got {name!r} again")
+    return names
+
+
+RobotNames = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_listed), AfterValidator(_each_once)]
+"""Of several robots, as "r1,r2" in the environment; empty: of none."""
 
 
 class ServiceSettings(BaseSettings):

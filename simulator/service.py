@@ -4,7 +4,6 @@ import logging
 import threading
 import time
 from collections import deque
-from pathlib import Path
 from typing import Any
 
 from shared.bus import Bus, Publisher
@@ -18,6 +17,7 @@ from shared.sole_robot import SoleRobot
 from shared.topics import FRAME, ODOMETRY, RANGES, SIMULATION, TRUTH, VELOCITY
 from simulator.disturbances.transit import Transit
 from simulator.experimenter import Experimenter, RequestError
+from simulator.neighbours import Neighbours
 from simulator.outbox import MessageMaker
 from simulator.service_settings import SimulatorSettings
 from simulator.simulation import Simulation
@@ -56,7 +56,8 @@ class RecentFrames:
 class Ports:
     """Everything the loop sends and receives."""
 
-    def __init__(self, bus: Bus, robot: str, state_dir: Path) -> None:
+    def __init__(self, bus: Bus, settings: SimulatorSettings, world: str) -> None:
+        robot = settings.robot
         self._out: dict[type[Message], Publisher[Any]] = {
             Frame: bus.publisher(FRAME, robot=robot),
             Ranges: bus.publisher(RANGES, robot=robot),
@@ -65,7 +66,8 @@ class Ports:
         }
         self._velocities = bus.subscribe(VELOCITY, robot=robot)
         self.requests = bus.requests(SIMULATION, robot=robot)
-        self.stop = RobotEStop(bus, robot, state_dir)
+        self.stop = RobotEStop(bus, robot, settings.state_dir)
+        self.neighbours = Neighbours(bus, settings.company, world)
 
     def send(self, *messages: Message) -> None:
         """Publish in the order given."""
@@ -89,6 +91,11 @@ class Loop:
         self.transit: Transit[Frame] = Transit(levels.latency, levels.drops, settings.seed)
         self.seq = 0
         self.stamp_ns = time.time_ns()
+
+    def hear_neighbours(self, now_s: float) -> None:
+        """Learn where the other robots are; `now_s` is monotonic."""
+        for name, pose in self.ports.neighbours.news(now_s):
+            self.simulation.tell_company(name, pose)
 
     def serve_requests(self) -> bool:
         """Answer waiting requests; True if the world has changed under the robot."""
@@ -124,6 +131,7 @@ class LockstepLoop(Loop):
 
     def step(self, now_s: float) -> None:
         """Advance if the awaited velocity came; send the frame again if none came for a while."""
+        self.hear_neighbours(now_s)
         velocity = self.ports.newest_velocity()
         answered = velocity is not None and velocity.seq == self.seq
         late = now_s - self._sent_s > self.settings.repeat_s
@@ -202,6 +210,7 @@ class RealTimeLoop(Loop):
     def step(self, now_s: float) -> None:
         """Obey the newest velocity, let physics catch up, send what is due."""
         self.serve_requests()
+        self.hear_neighbours(now_s)
         velocity = self.ports.newest_velocity()
         if self.ports.stop.engaged():
             self.simulation.stop()
@@ -242,7 +251,7 @@ def run(settings: SimulatorSettings, world: WorldFile, bus: Bus, stop: threading
     sole = SoleRobot(bus, settings.robot)
     log.info("building world %s", settings.world)
     simulation = Simulation(world, settings.simulation(), settings.seed)
-    ports = Ports(bus, settings.robot, settings.state_dir)
+    ports = Ports(bus, settings, simulation.world.name)
     loop = (LockstepLoop if settings.lockstep else RealTimeLoop)(simulation, settings, ports)
     sole.claim()
     bus.announce("simulator")

@@ -1,12 +1,13 @@
 """Settings of the simulator process, from SIMULATOR_* variables."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import BeforeValidator, Field, PositiveFloat, PositiveInt
+from pydantic import BeforeValidator, Field, PositiveFloat, PositiveInt, model_validator
 from pydantic_settings import NoDecode, SettingsConfigDict
 
-from shared.settings import ServiceSettings
+from shared.access.credentials import credentials_in
+from shared.settings import RobotNames, ServiceSettings
 from simulator.cache_folder import user_cache_dir
 from simulator.disturbances.levels import Disturbances
 from simulator.robot.undercarriage import Base
@@ -30,6 +31,8 @@ class SimulatorSettings(ServiceSettings):
         cache_dir: where textures and light are kept between starts; empty keeps nothing.
         cache_limit_mb: size of that folder, see SimulationSettings.
         disturbance: levels from 0 to 1 of what disturbs camera and world, as "fog=0.5,noise=0.3".
+        company: names of other simulated robots in the same place, as "r2,r3": each simulator shows where the
+            others are, and distance sensors and wheels meet them.
         polite_people: see SimulationSettings.
         base: what the robot rolls on.
         odometry: the robot says where its wheels have got to, as encoders do.
@@ -55,11 +58,23 @@ class SimulatorSettings(ServiceSettings):
     cache_dir: Folder = Field(default_factory=user_cache_dir)
     cache_limit_mb: PositiveInt = SimulationSettings().cache_limit_mb
     disturbance: Annotated[Disturbances, NoDecode] = Disturbances()
+    company: RobotNames = ()
     polite_people: bool = True
     base: Base = "holonomic"
     odometry: bool = False
     imu: bool = False
     state_dir: Path = Path("data/robot-state")
+
+    @model_validator(mode="after")
+    def _may_have_company(self) -> Self:
+        if self.robot in self.company:
+            raise ValueError(f"COMPANY names other robots, got {self.robot!r}, which is the robot itself")
+        if self.company and credentials_in(self.certs) is not None:
+            raise ValueError(
+                "COMPANY names other robots and a certificate is for one: on the secured bus a simulator "
+                "hears of no other"
+            )
+        return self
 
     def simulation(self) -> SimulationSettings:
         """The part that the simulation itself needs."""
@@ -70,6 +85,7 @@ class SimulatorSettings(ServiceSettings):
             cache_dir=self.cache_dir,
             cache_limit_mb=self.cache_limit_mb,
             disturbances=self.disturbance,
+            company=self.company,
             polite_people=self.polite_people,
             robot=RobotSettings(base=self.base),
             imu=self.imu,

@@ -93,6 +93,7 @@ class SimulationSettings(_Frozen):
         cache_limit_mb: size of that folder, above which the longest unused goes; chosen for
             three worlds of about 165.
         disturbances: how strongly camera and world are disturbed; nothing by default.
+        company: names of other robots in the same place, see `Simulation.tell_company`.
         polite_people: walkers wait for the robot; without, they walk into it.
         imu: the camera knows where down is.
         imu_noise_rad: 1 sigma of that about each axis; chosen: 0.3 degrees, a cheap IMU in motion.
@@ -106,6 +107,7 @@ class SimulationSettings(_Frozen):
     cache_dir: Path | None = None
     cache_limit_mb: PositiveInt = 640
     disturbances: Disturbances = Disturbances()
+    company: tuple[str, ...] = ()
     polite_people: bool = True
     imu: bool = False
     imu_noise_rad: NonNegativeFloat = 0.3 * math.pi / 180.0

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from shared.motion.motion import NO_MOTION, Motion
+from simulator.company import AWAY, company_of
 from simulator.disturbances.camera import Moment
 from simulator.disturbances.leaning import CameraLean
 from simulator.disturbances.rearranging import rearranged
@@ -56,6 +57,7 @@ class Simulation:
         self._changes: Changes = rearranged(world, levels.furniture, seed)
         self._show(changed_world(world, self._changes))
         self._crowd = self._gather(seed)
+        self._company = company_of(self.settings.company, self.settings.robot)
         self._view = self._look_at() if self.settings.render else None
         self._hider: Pose2 | None = None
         self.reset(seed)
@@ -85,6 +87,14 @@ class Simulation:
     def remove_hider(self) -> None:
         """Take the second robot away."""
         self._hider = None
+
+    def tell_company(self, name: str, pose: Pose2 | None) -> None:
+        """Where another robot of the place is now, seen, felt and hit there; None: nothing is heard of it.
+
+        Raises:
+            KeyError: not one of the settings' `company`.
+        """
+        self._company.tell(name, pose)
 
     def set_item(self, name: str, present: bool | None = None, pose: Pose2 | None = None) -> None:
         """Take a piece of furniture away, put it back, or move it: seen, felt and hit from now on.
@@ -126,6 +136,8 @@ class Simulation:
                 self.stop()
             if self._walkers:
                 self._walk()
+            if self._fellows:
+                self._follow()
             self._physics.step()
             if self.settings.disturbances.rocking:
                 self._camera.advance(self._physics.robot.pose()[2], self._physics.robot.motion())
@@ -182,6 +194,7 @@ class Simulation:
         rng = np.random.default_rng([self._seed, self._readings])
         self._readings += 1
         shapes = self._shapes.with_walkers(self._crowd.outlines()) if self._walkers else self._shapes
+        shapes = shapes.with_walkers(self._company.outlines()) if self._fellows else shapes
         return measure(*self._physics.robot.pose(), shapes, self.settings.ranges, rng)
 
     def odometry(self) -> tuple[Motion, Motion]:
@@ -213,6 +226,18 @@ class Simulation:
         for body, walker in zip(self._walkers, self._crowd.walkers, strict=True):
             self._physics.move_walker(body, walker.pose(), at_once=True)
 
+        self._company.withdraw(pose[:2])
+        self._fellows = [self._physics.add_walker(figure.solid) for figure in self._company.figures()]
+        for body, where in zip(self._fellows, self._company.poses(), strict=True):
+            self._physics.move_walker(body, where or AWAY, at_once=True)
+
+    def _follow(self) -> None:
+        """The bodies of other robots go to where those are; one that appears or goes does so at once."""
+        before = self._company.poses()
+        self._company.advance(self.settings.timestep_s, self._physics.robot.pose()[:2])
+        for body, was, where in zip(self._fellows, before, self._company.poses(), strict=True):
+            self._physics.move_walker(body, where or AWAY, at_once=was is None or where is None)
+
     def _walk(self) -> None:
         """Everybody takes a step; physics carries the bodies there in its next step."""
         self._crowd.advance(self.settings.timestep_s, self._physics.robot.pose()[:2])
@@ -234,7 +259,7 @@ class Simulation:
         # SAPIEN's renderer is loaded only where pictures are wanted.
         from simulator.scene.view import View
 
-        figures = [walker.figure for walker in self._crowd.walkers]
+        figures = [walker.figure for walker in self._crowd.walkers] + self._company.figures()
         return View(self.world, (self._parts, self._lights), self.settings, figures)
 
     def _picture(self, camera: Pose2, motion: Pose2, rocked: PitchRoll) -> Image:
@@ -251,7 +276,8 @@ class Simulation:
 
     def _bodies(self) -> Bodies:
         links = {name: link.entity.pose for name, link in self._physics.robot.links.items()}
-        return Bodies(links, self._seen_hider(), [walker.pose() for walker in self._crowd.walkers])
+        walking = [walker.pose() for walker in self._crowd.walkers]
+        return Bodies(links, self._seen_hider(), [*walking, *self._company.poses()])
 
     def _seen_hider(self) -> Pose2 | None:
         x_m, y_m, _ = self._physics.robot.pose()

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # One more simulated robot beside a running stack, in the same maps: its own simulator, planner, drive and
-# dispatch; feature service, map store and page are shared. The simulators do not show each other's robots.
+# dispatch; feature service, map store and page are shared. Each simulator shows the robots of its company.
 #
-#   TOPNAV_FEATURES_ROBOTS=r1,r2 topnav up --detach
-#   deploy/examples/another_robot.sh r2
+#   TOPNAV_FEATURES_ROBOTS=r1,r2 SIMULATOR_COMPANY=r2 topnav up --detach
+#   SIMULATOR_COMPANY=r1 deploy/examples/another_robot.sh r2
 #
 # PYTHON, TOPNAV_ENDPOINT, TOPNAV_DATA_DIR and the settings of the four services may be set before.
 set -euo pipefail

@@ -1,16 +1,15 @@
 """Settings of the feature service; importing them loads no image library."""
 
 from dataclasses import replace
-from typing import Annotated, Literal, Self
+from typing import Literal, Self
 
 from pydantic import Field, PositiveFloat, field_validator, model_validator
-from pydantic_settings import NoDecode, SettingsConfigDict
+from pydantic_settings import SettingsConfigDict
 
 from services.features.pipeline.interfaces import Profile, Runtime
 from services.features.pipeline.named_pipelines import find_profile
 from shared.access.credentials import credentials_in
-from shared.settings import ServiceSettings
-from shared.transport.keys import check_robot
+from shared.settings import RobotNames, ServiceSettings
 
 
 class FeaturesSettings(ServiceSettings):
@@ -31,7 +30,7 @@ class FeaturesSettings(ServiceSettings):
 
     model_config = SettingsConfigDict(env_prefix="FEATURES_")
 
-    robots: Annotated[tuple[str, ...], NoDecode] = ()
+    robots: RobotNames = ()
     pipeline: str = "sift"
     extractor: str = ""
     tilting: bool = True
@@ -54,21 +53,6 @@ class FeaturesSettings(ServiceSettings):
     def served(self) -> tuple[str, ...]:
         """Names of the robots this process works for."""
         return self.robots or (self.robot,)
-
-    @field_validator("robots", mode="before")
-    @classmethod
-    def _listed(cls, names: object) -> object:
-        if not isinstance(names, str):
-            return names
-        return tuple(name.strip() for name in names.split(",")) if names.strip() else ()
-
-    @field_validator("robots")
-    @classmethod
-    def _each_once(cls, names: tuple[str, ...]) -> tuple[str, ...]:
-        for name in names:
-            if names.count(check_robot(name)) > 1:
-                raise ValueError(f"every robot must be named once, got {name!r} again")
-        return names
 
     @model_validator(mode="after")
     def _may_serve(self) -> Self:

@@ -26,11 +26,15 @@ FRICTION, WALKER_FRICTION = 0.9, 0.2  # rubber on floors; smooth sides, along wh
 
 @dataclass(frozen=True)
 class Bodies:
-    """Poses of the robot's links by name, of the hider if there is one, and of all walkers."""
+    """Poses of the robot's links by name, of the hider if there is one, and of what else moves.
+
+    Attributes:
+        walkers: people, then other robots; None for one that is not there.
+    """
 
     links: dict[str, sapien.Pose]
     hider: Pose2 | None
-    walkers: list[Pose2]
+    walkers: list[Pose2 | None]
 
 
 class PhysicsScene:

@@ -33,7 +33,7 @@ class View:
             world: the world file.
             contents: its parts and lights, see world.contents.expand.
             settings: camera, robot, cache and levels of the disturbances.
-            figures: people and carts, in the order in which `Bodies` has their poses.
+            figures: people, carts and other robots, in the order in which `Bodies` has their poses.
         """
         self._settings, self._levels = settings, settings.disturbances
         self._cache = DiskCache(settings.cache_dir, settings.cache_limit_mb * 1_000_000)

@@ -55,8 +55,8 @@ def taking_part(stack: Stack, name: str) -> Iterator[Robot]:
 
 
 @contextmanager
-def another_robot(stack: Stack, name: str, world: str, folder: Path) -> Iterator[None]:
-    """One more robot beside a running stack in lockstep, as the example starts it."""
+def another_robot(stack: Stack, name: str, world: str, folder: Path, company: str = "") -> Iterator[None]:
+    """One more robot beside a running stack in lockstep, as the example starts it; it sees its company."""
     variables = {
         "PYTHON": sys.executable,
         "TOPNAV_ENDPOINT": stack.endpoint,
@@ -64,6 +64,7 @@ def another_robot(stack: Stack, name: str, world: str, folder: Path) -> Iterator
         "SIMULATOR_WORLD": world,
         "SIMULATOR_LOCKSTEP": "true",
         "SIMULATOR_SEED": "2",
+        "SIMULATOR_COMPANY": company,
     }
     with (folder / f"{name}.log").open("wb") as log:
         robot = subprocess.Popen([SCRIPT, name], env=os.environ | variables, stderr=log)

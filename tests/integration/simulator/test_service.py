@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -30,12 +31,12 @@ def _asked_again(monkeypatch):
 class Peer:
     """The other side: keeps the newest frame and ranges, and all truths."""
 
-    def __init__(self, bus: Bus) -> None:
-        self.bus = bus
-        self._in = [bus.subscribe(topic, robot="r1") for topic in (FRAME, RANGES, TRUTH)]
-        self._commands = bus.publisher(VELOCITY, robot="r1")
-        self._estop_states = bus.publisher(ESTOP_STATE, robot="r1")
-        self.robot_estop = bus.subscribe(ROBOT_ESTOP_STATE, robot="r1")
+    def __init__(self, bus: Bus, robot: str) -> None:
+        self.bus, self.robot = bus, robot
+        self._in = [bus.subscribe(topic, robot=robot) for topic in (FRAME, RANGES, TRUTH)]
+        self._commands = bus.publisher(VELOCITY, robot=robot)
+        self._estop_states = bus.publisher(ESTOP_STATE, robot=robot)
+        self.robot_estop = bus.subscribe(ROBOT_ESTOP_STATE, robot=robot)
         self.frame = self.ranges = self.truth = None
         self.frames = 0
         self.truths = []
@@ -71,7 +72,7 @@ class Peer:
         self._estop_states.put(EStopState(robot="r1", seq=seq, engaged=engaged, who=who))
 
     def ask(self, **request):
-        return self.bus.ask(SIMULATION, SimulationRequest(**request), timeout_s=SOON_S, robot="r1")
+        return self.bus.ask(SIMULATION, SimulationRequest(**request), timeout_s=SOON_S, robot=self.robot)
 
 
 @pytest.fixture
@@ -80,20 +81,21 @@ def start(router_endpoint, room_file, tmp_path):
     processes = []
     buses = []
 
-    def launch(lockstep, **settings):
+    def launch(lockstep, robot="r1", **settings):
         environment = {
             **os.environ,
+            "TOPNAV_ROBOT": robot,
             "TOPNAV_ENDPOINT": router_endpoint,
             "SIMULATOR_WORLD": room_file,
             "SIMULATOR_WIDTH_PX": "256",
             "SIMULATOR_LOCKSTEP": str(lockstep).lower(),
             "SIMULATOR_REPEAT_S": "0.3",
             "SIMULATOR_CACHE_DIR": str(tmp_path / "cache"),
-            "SIMULATOR_STATE_DIR": str(tmp_path / "state"),
+            "SIMULATOR_STATE_DIR": str(tmp_path / f"state-{robot}"),
             **settings,
         }
         manager = open_bus(router_endpoint)
-        peer = Peer(manager.__enter__())
+        peer = Peer(manager.__enter__(), robot)
         buses.append(manager)
         peer.process = subprocess.Popen([sys.executable, "-m", "simulator"], env=environment)
         processes.append(peer.process)
@@ -291,3 +293,28 @@ def test_in_real_time_a_command_for_a_frame_of_long_ago_moves_nothing(start):
         peer.wait_for(insist)
         assert peer.truth.speed_mps < 0.01
     peer.wait_for(lambda: (peer.command(peer.frame.seq), peer.truth.speed_mps > 0.1)[1])
+
+
+def test_robots_of_one_place_see_and_feel_each_other(start):
+    """r2 is put before r1, which stands and looks along x; when its simulator is gone, so is it."""
+    first = start(lockstep=False, SIMULATOR_COMPANY="r2")
+    first.wait_for(lambda: first.complete(1))
+    alone, free_m = first.frame, first.ranges.distances_m[0]
+    second = start(lockstep=False, robot="r2", SIMULATOR_COMPANY="r1")
+    second.ask(action="place_robot", pose=Pose(x_m=3.2, y_m=2.0, yaw_rad=math.pi))
+    first.wait_for(lambda: first.ranges.distances_m[0] < free_m - 0.5)
+    second.wait_for(lambda: second.ranges.distances_m[0] < 1.1)
+    seen = first.frame.seq
+    first.wait_for(lambda: first.frame.seq > seen + 1)
+    assert differing(alone, first.frame) > 100
+    second.process.kill()
+    first.wait_for(lambda: first.ranges.distances_m[0] > free_m - 0.1)
+    seen = first.frame.seq
+    first.wait_for(lambda: first.frame.seq > seen + 1)
+    assert differing(alone, first.frame) < 20
+
+
+def differing(one, other):
+    """Pixels that differ clearly between two frames."""
+    apart = np.frombuffer(one.data, np.uint8).astype(int) - np.frombuffer(other.data, np.uint8)
+    return int((np.abs(apart) > 40).sum())
