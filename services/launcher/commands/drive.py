@@ -30,13 +30,11 @@ def drive(
 
     A mission that runs is paused; resume it in the console or over HTTP.
     """
-    from services.launcher.client.address import find_address
+    from services.launcher.client.address import running_address
     from services.launcher.client.failure import ExperimentError
     from services.launcher.client.hand import Hand
 
-    address = find_address(endpoint, data_dir)
-    if address is None:
-        raise ExperimentError(f"no stack runs in {data_dir}: start one (topnav up), or name its --endpoint")
+    address = running_address(endpoint, data_dir)
     with address.open() as bus:
         answers = Hand(bus, robot, who or getpass.getuser()).move(forward, left, turn, seconds)
     if not answers:

@@ -19,8 +19,7 @@ def record(
     data_dir: options.DataDir = options.DATA_DIR,
 ) -> None:
     """Write what the bus of a running stack says into an MCAP file, until Ctrl+C."""
-    from services.launcher.client.address import find_address
-    from services.launcher.client.failure import ExperimentError
+    from services.launcher.client.address import running_address
     from services.launcher.terminal.output import print_rows, wide_console
     from services.recorder.channels import topics_named
     from services.recorder.recorder import record
@@ -28,9 +27,7 @@ def record(
     from shared.lifecycle import stop_on_signals
 
     left_out = topics_named(without)
-    address = find_address(endpoint, data_dir)
-    if address is None:
-        raise ExperimentError(f"no stack runs in {data_dir}: start one ('topnav up') or give --endpoint")
+    address = running_address(endpoint, data_dir)
     stop = stop_on_signals()
     with RecordingWriter(file) as writer, address.open() as bus:
         text = f"recording {address.endpoint} into {file}; Ctrl+C ends it"

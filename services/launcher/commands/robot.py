@@ -36,14 +36,12 @@ def check(
     Each finding is a line; what is wrong says what to do. Exit 1 where something is.
     """
     from services.launcher.checking.check import RobotCheck
-    from services.launcher.client.address import find_address
-    from services.launcher.client.failure import ExperimentError, one_line_errors
+    from services.launcher.client.address import running_address
+    from services.launcher.client.failure import one_line_errors
     from services.launcher.processes.state import StateFolder
     from services.launcher.terminal.output import write_json
 
-    address = find_address(endpoint, data_dir)
-    if address is None:
-        raise ExperimentError(f"no stack runs in {data_dir}: start one (topnav up), or name its --endpoint")
+    address = running_address(endpoint, data_dir)
     logs = StateFolder(data_dir.resolve()).logs
     with one_line_errors(), address.open() as bus:
         checked = RobotCheck(bus, name, who or getpass.getuser(), logs, _say)

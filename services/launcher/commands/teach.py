@@ -29,15 +29,13 @@ def teach(
     endpoint: options.Endpoint = None,
 ) -> None:
     """Map while a person drives the robot of a running stack; with --route the way is kept by name."""
-    from services.launcher.client.address import find_address
-    from services.launcher.client.failure import ExperimentError, one_line_errors
+    from services.launcher.client.address import running_address
+    from services.launcher.client.failure import one_line_errors
     from services.launcher.client.mission import MissionClient
     from services.launcher.processes.state import StateFolder
     from shared.messages.missions import MissionRequest
 
-    address = find_address(endpoint, data_dir)
-    if address is None:
-        raise ExperimentError(f"no stack runs in {data_dir}: start one (topnav up), or name its --endpoint")
+    address = running_address(endpoint, data_dir)
     with one_line_errors(), address.open() as bus:
         client = MissionClient(bus, robot)
         if finish:

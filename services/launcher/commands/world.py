@@ -121,16 +121,14 @@ def move(
     endpoint: options.Endpoint = None,
 ) -> None:
     """Move furniture in the world of a running stack; the robot finds out by itself."""
-    from services.launcher.client.address import find_address
+    from services.launcher.client.address import running_address
     from services.launcher.client.experimenter import Experimenter
-    from services.launcher.client.failure import ExperimentError, one_line_errors
+    from services.launcher.client.failure import one_line_errors
     from shared.messages.simulation import Pose
 
     if (to is not None) + gone + back != 1:
         raise typer.BadParameter("say one of --to X Y YAW, --gone, --back")
-    address = find_address(endpoint, data_dir)
-    if address is None:
-        raise ExperimentError(f"no stack runs in {data_dir}: start one ('topnav up') or give --endpoint")
+    address = running_address(endpoint, data_dir)
     pose = Pose(x_m=to[0], y_m=to[1], yaw_rad=math.radians(to[2])) if to is not None else None
     with one_line_errors(), address.open() as bus:
         Experimenter(bus, robot).set_item(item, None if pose else back, pose)
