@@ -1,7 +1,6 @@
 """`topnav place`: names of places and areas in a map."""
 
-import json
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -22,17 +21,9 @@ def list_places(
     as_json: options.AsJson = False,
 ) -> None:
     """Show the named places of a map."""
-    from services.launcher.client.maps import open_store
-    from services.launcher.terminal.output import print_rows
+    from services.launcher.client.marks import Marks
 
-    with open_store(data_dir) as store:
-        answer = store.get(f"/maps/{map_name}/places", params={"search": search})
-        places = answer.raise_for_status().json()
-    if as_json:
-        typer.echo(json.dumps(places, indent=2))
-        return
-    rows = [{"place": place["name"], "nodes": ", ".join(map(str, place["nodes"]))} for place in places]
-    print_rows(f"places of {map_name}", rows)
+    Marks("place", map_name, data_dir).list(_row, as_json, search)
 
 
 @app.command("name")
@@ -40,11 +31,9 @@ def name_place(
     name: Name, nodes: Nodes, map_name: options.MapName = "flat", data_dir: options.DataDir = options.DATA_DIR
 ) -> None:
     """Give nodes a name: one is a place, several are an area. A name that exists gets these nodes."""
-    from services.launcher.client.maps import open_store
+    from services.launcher.client.marks import Marks
 
-    with open_store(data_dir) as store:
-        body = {"name": name, "nodes": nodes}
-        revision = store.put(f"/maps/{map_name}/places", json=body).raise_for_status().json()["revision"]
+    revision = Marks("place", map_name, data_dir).put({"name": name, "nodes": nodes})
     typer.echo(f"{name}: nodes {', '.join(map(str, nodes))} of {map_name}, revision {revision}")
 
 
@@ -53,8 +42,10 @@ def forget_place(
     name: Name, map_name: options.MapName = "flat", data_dir: options.DataDir = options.DATA_DIR
 ) -> None:
     """Forget a name; its nodes stay in the map."""
-    from services.launcher.client.maps import open_store
+    from services.launcher.client.marks import Marks
 
-    with open_store(data_dir) as store:
-        store.delete(f"/maps/{map_name}/places", params={"name": name}).raise_for_status()
-    typer.echo(f"{name} is no place of {map_name} any more")
+    Marks("place", map_name, data_dir).forget(name)
+
+
+def _row(place: dict[str, Any]) -> dict[str, str]:
+    return {"place": str(place["name"]), "nodes": ", ".join(map(str, place["nodes"]))}

@@ -1,6 +1,5 @@
 """`topnav route`: routes that were taught, and driving along them."""
 
-import json
 from typing import Annotated, Any
 
 import typer
@@ -23,16 +22,9 @@ def list_routes(
     as_json: options.AsJson = False,
 ) -> None:
     """Show the routes of a map."""
-    from services.launcher.client.maps import open_store
-    from services.launcher.terminal.output import print_rows
+    from services.launcher.client.marks import Marks
 
-    with open_store(data_dir) as store:
-        answer = store.get(f"/maps/{map_name}/routes", params={"search": search})
-        routes = answer.raise_for_status().json()
-    if as_json:
-        typer.echo(json.dumps(routes, indent=2))
-        return
-    print_rows(f"routes of {map_name}", [_row(route) for route in routes])
+    Marks("route", map_name, data_dir).list(_row, as_json, search)
 
 
 @app.command("show")
@@ -55,11 +47,9 @@ def remove_route(
     name: Name, map_name: options.MapName = "flat", data_dir: options.DataDir = options.DATA_DIR
 ) -> None:
     """Forget a route; its nodes stay in the map."""
-    from services.launcher.client.maps import open_store
+    from services.launcher.client.marks import Marks
 
-    with open_store(data_dir) as store:
-        store.delete(f"/maps/{map_name}/routes", params={"name": name}).raise_for_status()
-    typer.echo(f"{name} is no route of {map_name} any more")
+    Marks("route", map_name, data_dir).forget(name)
 
 
 @app.command("drive")

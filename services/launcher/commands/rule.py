@@ -1,6 +1,5 @@
 """`topnav rule`: where robots may not go, which edges they take one way, slowly, or at some hours only."""
 
-import json
 import re
 from pathlib import Path
 from typing import Annotated, Any
@@ -31,15 +30,9 @@ def list_rules(
     as_json: options.AsJson = False,
 ) -> None:
     """Show the rules of a map."""
-    from services.launcher.client.maps import open_store
-    from services.launcher.terminal.output import print_rows
+    from services.launcher.client.marks import Marks
 
-    with open_store(data_dir) as store:
-        rules = store.get(f"/maps/{map_name}/rules").raise_for_status().json()
-    if as_json:
-        typer.echo(json.dumps(rules, indent=2))
-        return
-    print_rows(f"rules of {map_name}", [_row(rule) for rule in rules])
+    Marks("rule", map_name, data_dir).list(_row, as_json)
 
 
 @app.command("keep-out")
@@ -96,18 +89,15 @@ def lift(
     name: Name, map_name: options.MapName = "flat", data_dir: options.DataDir = options.DATA_DIR
 ) -> None:
     """Take a rule away."""
-    from services.launcher.client.maps import open_store
+    from services.launcher.client.marks import Marks
 
-    with open_store(data_dir) as store:
-        store.delete(f"/maps/{map_name}/rules", params={"name": name}).raise_for_status()
-    typer.echo(f"{name} is no rule of {map_name} any more")
+    Marks("rule", map_name, data_dir).forget(name)
 
 
 def _put(rule: dict[str, Any], map_name: str, data_dir: Path) -> None:
-    from services.launcher.client.maps import open_store
+    from services.launcher.client.marks import Marks
 
-    with open_store(data_dir) as store:
-        revision = store.put(f"/maps/{map_name}/rules", json=rule).raise_for_status().json()["revision"]
+    revision = Marks("rule", map_name, data_dir).put(rule)
     typer.echo(f"rule {rule['name']} holds in {map_name}, revision {revision}")
 
 
