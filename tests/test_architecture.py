@@ -65,7 +65,9 @@ EDGE_FILES = {
     "settings.py",
     "inspector.py",
     "remote.py",
-    "control.py",
+    "assignment.py",
+    "mission_control.py",
+    "records.py",
 }  # where a service meets the world
 IMPURE = {
     "zenoh",

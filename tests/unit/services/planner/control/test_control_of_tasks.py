@@ -3,7 +3,7 @@
 import pytest
 from pydantic import BaseModel, ConfigDict
 
-from services.planner.control import MissionControl
+from services.planner.control.mission_control import MissionControl
 from services.planner.mission_kinds import MissionError, MissionKind, MissionKinds, NoParameters
 from services.planner.ports import Progress
 from services.planner.profiles import DEFAULT
@@ -11,7 +11,7 @@ from services.planner.settings import PlannerSettings
 from shared.messages.maps import MissionRecord
 from shared.messages.missions import MissionRequest
 from shared.queries import QueryError, RefusedError
-from tests.unit.services.planner.test_control import Store
+from tests.unit.services.planner.control.test_mission_control import Store
 
 
 class Point(BaseModel):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from services.planner.control import MissionControl
+from services.planner.control.mission_control import MissionControl
 from services.planner.mission_kinds import (
     MissionError,
     MissionKind,

@@ -2,9 +2,9 @@
 
 import pytest
 
+from services.planner.goals.place_evidence import Visit
+from services.planner.goals.places import GoalPlaces
 from services.planner.profiles import DEFAULT, THESIS
-from services.planner.travel.goal_places import GoalPlaces
-from services.planner.travel.place_evidence import Visit
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.routing import GOAL
 from tests.unit.services.planner.travel.seen import Maps, by_node, match

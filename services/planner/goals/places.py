@@ -9,11 +9,11 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from services.planner.goals.place_evidence import PlaceEvidence, Visit
 from services.planner.mapping.reach import claims, distances, elsewhere
 from services.planner.ports import MapAccess, Matches
 from services.planner.profiles import Profile
 from services.planner.similarity import similarity
-from services.planner.travel.place_evidence import PlaceEvidence, Visit
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import Hypothesis, hypotheses
 from shared.mapgraph.local.likely_places import is_plain, likely, typical_similarity

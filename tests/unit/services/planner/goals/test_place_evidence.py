@@ -1,6 +1,6 @@
 """Which of several places it is: by matches, and by what differs as pictures."""
 
-from services.planner.travel.place_evidence import PlaceEvidence, Visit
+from services.planner.goals.place_evidence import PlaceEvidence, Visit
 from shared.mapgraph.local.hypotheses import Hypothesis
 
 HERE, THERE = (Hypothesis((node,), 150, 400) for node in (1, 9))
