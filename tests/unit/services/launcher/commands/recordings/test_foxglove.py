@@ -9,7 +9,7 @@ from mcap.reader import make_reader
 from typer.testing import CliRunner
 
 from services.launcher import cli
-from services.launcher.commands.foxglove import app
+from services.launcher.commands.recordings.foxglove import app
 from services.recorder.backlog import Sample
 from services.recorder.recording import RecordingWriter
 from shared.messages.missions import MissionStatus

@@ -6,7 +6,7 @@ from typer.testing import CliRunner
 from services.features.networks.cache import path_of, state_of
 from services.features.networks.catalogue import MODELS, find_model
 from services.launcher.client.failure import ExperimentError
-from services.launcher.commands.models import app, pull, verify
+from services.launcher.commands.assets.models import app, pull, verify
 
 
 @pytest.fixture

@@ -3,7 +3,7 @@
 import pytest
 from typer.testing import CliRunner
 
-from services.launcher.commands.token import app
+from services.launcher.commands.stack.token import app
 from shared.access.tokens import find, read_tokens
 
 

@@ -8,10 +8,10 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from services.launcher.commands.world import app
+from services.launcher.commands.assets.world import app
 from simulator.world.world_file import WorldFileError, load_world
 
-GAZEBO = Path(__file__).resolve().parents[5] / "deploy/examples/gazebo/two_rooms.world"
+GAZEBO = Path(__file__).resolve().parents[6] / "deploy/examples/gazebo/two_rooms.world"
 MODELS = GAZEBO.parent / "models"
 PAINT = {"texture": "lacquer", "colour": [200, 200, 200]}
 WORLD = {
