@@ -10,37 +10,12 @@ from importlib.metadata import EntryPoint, entry_points
 
 import typer
 
-from services.launcher.commands import (
-    camera,
-    certs,
-    demo,
-    doctor,
-    down,
-    drive,
-    estop,
-    explore,
-    foxglove,
-    goto,
-    locate,
-    map,
-    mcp,
-    mission,
-    models,
-    place,
-    record,
-    recover,
-    replay,
-    robot,
-    route,
-    rule,
-    schedule,
-    status,
-    task,
-    teach,
-    token,
-    up,
-    world,
-)
+from services.launcher.commands.assets import models, world
+from services.launcher.commands.maps import map, place, route, rule
+from services.launcher.commands.missions import explore, goto, locate, mission, schedule, task, teach
+from services.launcher.commands.recordings import foxglove, record, recover, replay
+from services.launcher.commands.robots import camera, drive, estop, robot
+from services.launcher.commands.stack import certs, demo, doctor, down, mcp, status, token, up
 
 ADDED = "topnav.commands"
 """Entry points of this group are Typer apps of further commands."""

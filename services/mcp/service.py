@@ -7,7 +7,8 @@ from http import HTTPStatus
 import httpx
 from mcp.server.transport_security import TransportSecuritySettings
 
-from services.mcp.gateway import ASK_S, Gateway
+from services.mcp.caller import ASK_S
+from services.mcp.gateway import Gateway
 from services.mcp.server import build_server
 from services.mcp.settings import LOOPBACK, McpSettings
 

@@ -4,7 +4,7 @@ import logging
 import threading
 import time
 
-from services.planner.control import MissionControl
+from services.planner.control.mission_control import MissionControl
 from services.planner.mission_kinds import MissionError, mission_kinds
 from services.planner.odometry import FrameMotion
 from services.planner.ports import Decision, Observation

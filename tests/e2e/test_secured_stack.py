@@ -9,7 +9,7 @@ import httpx
 import pytest
 
 from services.launcher.client.address import find_address
-from services.launcher.commands.estop import ENGAGED, UNKNOWN
+from services.launcher.commands.robots.estop import ENGAGED, UNKNOWN
 from services.launcher.processes.free_ports import free_ports
 from shared.access.credentials import FILES
 from shared.bus import wait_until

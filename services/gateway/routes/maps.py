@@ -56,12 +56,19 @@ OPERATIONS = (
         "show_report",
         "One round as a page: both pictures of every place, changes marked.",
     ),
+    (
+        "GET",
+        f"{MAP}{ROUND}/picture",
+        "show_picture",
+        "What `place` looked like in a round; with `before` what it was compared with.",
+    ),
     ("GET", f"{MAP}/export", "export_map", "A map as one archive."),
 )
 STATUS = {"create_map": 201, "import_map": 201, "delete_map": 204, "start_merge": 202}
 MEDIA = {
     "show_thumbnail": "image/jpeg",
     "show_report": "text/html",
+    "show_picture": "image/jpeg",
     "export_map": "application/zip",
 }
 

@@ -5,6 +5,7 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
+from services.launcher.client.failure import ExperimentError
 from services.launcher.processes.state import StateFolder
 from shared.bus import Bus, open_bus
 
@@ -27,6 +28,19 @@ def find_address(endpoint: str | None, data_dir: Path) -> Address | None:
     if running is not None and endpoint in (None, running.endpoint):
         return Address(running.endpoint, running.certs)
     return None if endpoint is None else address_at(endpoint)
+
+
+def running_address(endpoint: str | None, data_dir: Path) -> Address:
+    """The stack that `find_address` finds.
+
+    Raises:
+        ExperimentError: none runs in `data_dir`, and `endpoint` names no other.
+    """
+    address = find_address(endpoint, data_dir)
+    if address is None:
+        why = f"no stack runs in {data_dir}: start one with 'topnav up', or name another by --endpoint"
+        raise ExperimentError(why)
+    return address
 
 
 def address_at(endpoint: str) -> Address:

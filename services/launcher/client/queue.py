@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 
-from services.launcher.client.address import find_address
+from services.launcher.client.address import running_address
 from services.launcher.client.failure import ExperimentError, one_line_errors
 from shared.bus import Bus
 from shared.messages.missions import MissionKindsRequest, MissionRequest
@@ -60,9 +60,7 @@ def open_queue(robot: str, data_dir: Path, endpoint: str | None) -> Iterator[Que
     Raises:
         ExperimentError: no stack runs there, or what its services report.
     """
-    address = find_address(endpoint, data_dir)
-    if address is None:
-        raise ExperimentError(f"no stack runs in {data_dir}: start one with 'topnav up'")
+    address = running_address(endpoint, data_dir)
     with one_line_errors(), address.open() as bus:
         yield QueueClient(bus, robot)
 

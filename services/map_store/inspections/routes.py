@@ -1,20 +1,26 @@
-"""REST: rounds of inspections, what changed in each, and a page of it with both pictures."""
+"""REST: rounds of inspections, what changed in each, their pictures, and a page with both of each place."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Path
-from fastapi.responses import HTMLResponse
+from fastapi import APIRouter, Path, Query
+from fastapi.responses import HTMLResponse, Response
 from pydantic import BaseModel
 
 from services.map_store.api.names import MapName
+from services.map_store.errors import MissingError
 from services.map_store.inspections.report import Shown, page
 from services.map_store.inspections.store import InspectionStore
 from shared.messages.inspections import Inspection, Region
+from shared.messages.places import PlaceName
 
 RoundId = Annotated[
     str,
     Path(alias="round", pattern=r"^[A-Za-z0-9_-]{1,64}-[0-9]{1,9}$", description="mission and round, m1-3"),
 ]
+
+PlaceOf = Annotated[PlaceName, Query(description="name of a place of the round")]
+Before = Annotated[bool, Query(description="the picture that it was compared with")]
+JPEG: dict[int | str, dict[str, Any]] = {200: {"content": {"image/jpeg": {}}}}
 
 
 class VisitView(BaseModel):
@@ -72,6 +78,19 @@ def build(visits: InspectionStore) -> APIRouter:
                 earlier = visits.visit_at(name, visit.place, visit.against_ns)
             shown.append(Shown(visit, earlier))
         return HTMLResponse(page(name, round_id, shown))
+
+    @router.get("/{round}/picture", response_class=Response, responses=JPEG)
+    def show_picture(name: MapName, round_id: RoundId, place: PlaceOf, before: Before = False) -> Response:
+        """The picture of one place, or the one that it was compared with, as their cameras took them."""
+        visit = visits.visit_in(name, *_parts(round_id), place)
+        if visit is not None and before:
+            at_ns = visit.against_ns
+            visit = None if at_ns is None else visits.visit_at(name, place, at_ns)
+        if visit is None:
+            which = "picture from before" if before else "picture"
+            raise MissingError(f"map {name!r}: round {round_id} has no {which} of {place!r} (any more)")
+        headers = {"Cache-Control": "private, no-cache", "X-Content-Type-Options": "nosniff"}
+        return Response(visit.picture, media_type="image/jpeg", headers=headers)
 
     return router
 

@@ -45,6 +45,12 @@ class InspectionStore:
         table = inspections.c
         return self._newest(name, table.place == key_of(place), table.stamp_ns == stamp_ns)
 
+    def visit_in(self, name: str, mission_id: str, number: int, place: str) -> Inspection | None:
+        """The visit of a place in a round, with its picture; None when there was none or it is damaged."""
+        table = inspections.c
+        mine = (table.mission == mission_id, table.round == number)
+        return self._newest(name, table.place == key_of(place), *mine)
+
     def save(self, name: str, visit: Inspection, keep: int) -> None:
         """Keep a visit instead of one of the same place and round; older ones than the last `keep` go."""
         table = inspections.c

@@ -7,7 +7,7 @@ from mcp.server.mcpserver import Context, MCPServer
 from mcp.types import ToolAnnotations
 from pydantic import Field
 
-from services.mcp.answers import Mission, Stop
+from services.mcp.answers.missions import Mission, Stop
 from services.mcp.gateway import Gateway
 
 ENDS = ToolAnnotations(read_only_hint=False, destructive_hint=False, idempotent_hint=True)

@@ -6,7 +6,8 @@ from mcp.server.mcpserver import Image, MCPServer
 from mcp.types import ToolAnnotations
 from pydantic import Field
 
-from services.mcp.answers import RobotFacts, Whereabouts
+from services.mcp.answers.missions import RobotFacts
+from services.mcp.answers.places import Whereabouts
 from services.mcp.gateway import Gateway
 from services.mcp.tools.photos import Photo, picture_of
 

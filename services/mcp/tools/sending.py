@@ -7,7 +7,7 @@ from mcp.server.mcpserver.exceptions import ToolError
 from mcp.types import ToolAnnotations
 from pydantic import Field
 
-from services.mcp.answers import Mission
+from services.mcp.answers.missions import Mission
 from services.mcp.gateway import Gateway
 from services.mcp.tools.photos import Photo, picture_of
 
@@ -17,7 +17,9 @@ PlaceName = Annotated[str, Field(max_length=64, description="as `list_places` ha
 PlaceNames = Annotated[
     list[PlaceName], Field(min_length=1, max_length=64, description="in the order of visits")
 ]
-Rounds = Annotated[int, Field(ge=1, le=1000, description="how often all of them")]
+RouteName = Annotated[str, Field(min_length=1, max_length=64, description="as `list_routes` has it")]
+Back = Annotated[bool, Field(description="from its end to its beginning")]
+Rounds = Annotated[int, Field(ge=1, le=1000, description="how often all of it")]
 Dwell = Annotated[float, Field(ge=0.0, le=600.0, description="seconds to stay at each place")]
 Node = Annotated[int | None, Field(ge=0, lt=2**63, description="a node of the map")]
 Steps = Annotated[int, Field(ge=1, le=20_000, description="give up after so many pictures")]
@@ -55,3 +57,11 @@ def add_sending(server: MCPServer[Any], gateway: Gateway) -> None:
         """Start driving from place to place; what cannot be reached is left out and told. Then `wait`."""
         wish = {"places": places, "rounds": rounds, "dwell_s": dwell_s}
         return Mission.of(await gateway.start("patrol", wish, seed, max_steps))
+
+    @server.tool(annotations=SENDS)
+    async def follow_route(
+        route: RouteName, reverse: Back = False, rounds: Rounds = 1, max_steps: Steps = 20_000, seed: Seed = 0
+    ) -> Mission:
+        """Start driving to the first node of a route and exactly along it, there or back. Then `wait`."""
+        wish = {"route": route, "reverse": reverse, "rounds": rounds}
+        return Mission.of(await gateway.start("route", wish, seed, max_steps))

@@ -6,7 +6,7 @@ from typing import Self
 
 from pydantic import Field, model_validator
 
-from services.planner.goal_nodes import node_called
+from services.planner.goals.nodes import node_called
 from services.planner.mission_kinds import MissionContext, MissionError, MissionKind
 from services.planner.missions.goto import goto_place
 from services.planner.missions.patrol import Checkpoint, Patrol, PatrolParameters

@@ -6,7 +6,7 @@ from functools import partial
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from services.planner.goal_nodes import node_called
+from services.planner.goals.nodes import node_called
 from services.planner.mission_kinds import MissionContext, MissionError, MissionKind
 from services.planner.missions.goto import goto_place
 from services.planner.ports import Decision, Mission, Note, Observation, Progress

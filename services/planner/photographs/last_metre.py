@@ -2,7 +2,7 @@
 
 import math
 
-from services.planner.goal_nodes import why_not_beside
+from services.planner.goals.nodes import why_not_beside
 from services.planner.mapping.reach import claims
 from services.planner.ports import Decision, MapAccess, Matcher, Observation
 from services.planner.profiles import Profile

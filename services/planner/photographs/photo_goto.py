@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from services.planner.goal_nodes import why_not_beside
+from services.planner.goals.nodes import why_not_beside
 from services.planner.photographs.last_metre import LastMetre
 from services.planner.ports import Decision, MapAccess, Matcher, Mission, Note, Observation, Progress
 from services.planner.profiles import Profile

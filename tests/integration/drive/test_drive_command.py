@@ -5,7 +5,7 @@ import threading
 import pytest
 from typer.testing import CliRunner
 
-from services.launcher.commands.drive import app
+from services.launcher.commands.robots.drive import app
 from shared.bus import wait_until
 from tests.integration.drive.conftest import SOON_S
 

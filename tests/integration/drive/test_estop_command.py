@@ -3,7 +3,7 @@
 import pytest
 from typer.testing import CliRunner
 
-from services.launcher.commands.estop import app
+from services.launcher.commands.robots.estop import app
 from tests.integration.drive.conftest import SOON_S
 
 
@@ -18,7 +18,7 @@ def topnav_estop(router_endpoint):
 @pytest.fixture
 def patience(monkeypatch):
     """Each call is a session of its own, which on a slow machine may meet drive later than people wait."""
-    monkeypatch.setattr("services.launcher.commands.estop.TIMEOUT_S", SOON_S)
+    monkeypatch.setattr("services.launcher.commands.robots.estop.TIMEOUT_S", SOON_S)
     monkeypatch.setattr("shared.queries.MEETING_S", SOON_S)
 
 

@@ -11,7 +11,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from services.launcher.client.failure import ExperimentError
-from services.launcher.commands.map import app
+from services.launcher.commands.maps.map import app
 from services.launcher.processes.state import AlreadyRunningError
 from services.launcher.processes.supervisor import Launcher
 from services.map_store.storage import catalogue

@@ -20,19 +20,19 @@ from mcp.client.streamable_http import create_mcp_http_client, streamable_http_c
 from shared.bus import Bus, wait_until
 from shared.estop.sides import EStopServer
 from tests.integration.gateway.conftest import (  # noqa: F401
-    Stored,
     endpoint,
     features,
     patient_stops,
     planner,
     robot_bus,
     serve_gateway,
-    stored,
 )
 from tests.integration.gateway.gateway_process import ASK_S, WAIT_S, free_port
 from tests.integration.gateway.keys import SECRETS, bearer, write_file
-from tests.integration.gateway.standins import FeatureService, MapStore, Peer, Planner
+from tests.integration.gateway.standins import FeatureService, Peer, Planner
+from tests.integration.gateway.standins import served as serve_app
 from tests.integration.gateway.test_evidence import send_frame
+from tests.integration.mcp.kept import Kept, kept_in
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -51,9 +51,16 @@ def drive(endpoint: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[l
 
 
 @pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Kept]:
+    """The map store's database, its queue and its REST interface."""
+    with kept_in(tmp_path_factory.mktemp("maps")) as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
 def guarded(
     endpoint: str,  # noqa: F811
-    stored: Stored,  # noqa: F811
+    kept: Kept,
     features: FeatureService,  # noqa: ARG001, F811
     planner: Planner,  # noqa: ARG001, F811
     robot_bus: Bus,  # noqa: F811
@@ -64,9 +71,9 @@ def guarded(
     """The gateway's address; a robot has sent a picture."""
     assert drive
     tokens = write_file(tmp_path_factory.mktemp("tokens") / "tokens.json")
-    store = f"http://127.0.0.1:{stored[0]}"
     beside = ("features", "planner", "map_store", "drive")
-    with Peer(endpoint, "map_store", MapStore().setup):
+    with serve_app(kept.app) as port, Peer(endpoint, "map_store", kept.setup):
+        store = f"http://127.0.0.1:{port}"
         settings = {"tokens_file": tokens, "guard_reading": True, "map_store_url": store}
         for address in serve_gateway(endpoint, beside, **settings):
             with httpx.Client(base_url=address, headers=bearer("viewer"), trust_env=False) as http:

@@ -11,7 +11,7 @@ from tests.integration.gateway.keys import bearer
 from tests.integration.gateway.standins import Planner
 from tests.integration.mcp.conftest import ByHttp, by_stdio, during
 
-STARTS = {"goto", "explore", "resume"}
+STARTS = {"goto", "explore", "route", "teach", "resume", "finish"}
 
 ESCAPES = ["../../estop", "r1/estop", "flat?x=1", "%2e%2e", "\x00", "r1\r\nX-A: b", "☃" * 500]
 ARGUMENTS: list[tuple[str, dict[str, Any]]] = [
@@ -43,7 +43,42 @@ ARGUMENTS: list[tuple[str, dict[str, Any]]] = [
     ("wait", {"timeout_s": 1e9}),
     ("wait", {"timeout_s": float("nan")}),
     *[("cancel", {"mission_id": escape * 80}) for escape in ESCAPES],
+    *[("cancel_task", {"task_id": escape}) for escape in (*ESCAPES, "", ".", "..", "none", "x" * 57)],
+    *[("what_changed", {"round_id": escape}) for escape in (*ESCAPES, "../m-1", "m-1-9", "m-1-2/report")],
+    ("what_changed", {"place": "x" * 65}),
+    ("what_changed", {"place": "kitchen&before=true"}),
+    ("list_routes", {"search": "x" * 65}),
+    ("list_tasks", {"ended": 10**6}),
+    ("follow_route", {}),
+    ("follow_route", {"route": ""}),
+    ("follow_route", {"route": "tour", "rounds": 0}),
+    ("follow_route", {"route": "tour", "reverse": "as fast as you can"}),
+    ("put_route", {"name": "tour", "nodes": [0, 1]}),
+    ("put_rule", {"name": "quiet"}),
+    ("put_schedule", {"name": "night", "cron": "* * * * *"}),
+    ("add_task", {"kind": "goto"}),
+    ("add_task", {"kind": "fly", "parameters": {}}),
+    ("add_task", {"kind": "cancel", "parameters": {}}),
+    ("add_task", {"kind": "teach", "parameters": {"route": "mine"}}),
+    ("add_task", {"kind": "../estop", "parameters": {}}),
+    ("add_task", {"kind": "goto", "parameters": {"speed": 3}}),
+    ("add_task", {"kind": "goto", "parameters": {"place": "kitchen"}, "priority": 10}),
+    ("add_task", {"kind": "goto", "parameters": {"place": "kitchen"}, "task_id": "../x"}),
+    ("add_task", {"kind": "goto", "parameters": {f"p{n}": n for n in range(65)}}),
 ]
+
+
+@pytest.fixture
+def called(served: str) -> Any:
+    """Call a tool as an agent."""
+
+    def call(tool: str, wish: dict[str, Any]) -> Any:
+        async def errand(client: Client) -> Any:
+            return await client.call_tool(tool, wish)
+
+        return during(ByHttp(served, "agent"), errand)
+
+    return call
 
 
 def _started(planner: Planner) -> list[Any]:
@@ -73,10 +108,43 @@ def test_hostile_calls_move_nothing(guarded: str, planner: Planner) -> None:
     assert _started(planner) == before
 
 
+@pytest.mark.parametrize(
+    ("tool", "wish", "words"),
+    [
+        ("go_to", {"node": 3, "speed": 2.0}, "go_to has no argument 'speed'; it takes place, node, photo,"),
+        ("explore", {"maxsteps": 5, "map": "x"}, "no argument 'map', 'maxsteps'; it takes max_steps, seed"),
+        ("stop", {"why": "fire", "clear": True}, "no argument 'clear'; it takes why"),
+        ("where_am_i", {"robot": "r2"}, "no argument 'robot'; it takes none"),
+        ("wait", {"ctx": {}}, "no argument 'ctx'"),
+        ("add_task", {"kind": "goto", "parameters": {}, "robot": "r2"}, "no argument 'robot'"),
+        ("look", {"☃" * 900: 1}, "...; it takes width_px"),
+    ],
+)
+def test_arguments_that_a_tool_does_not_have_are_named(
+    called: Any, planner: Planner, tool: str, wish: dict[str, Any], words: str
+) -> None:
+    before = _started(planner)
+    answer = called(tool, wish)
+    assert answer.is_error
+    assert words in answer.content[0].text
+    assert len(answer.content[0].text) < 400
+    assert _started(planner) == before
+
+
+def test_schemas_say_that_there_are_no_other_arguments(served: str) -> None:
+    async def errand(client: Client) -> Any:
+        return (await client.list_tools()).tools
+
+    for tool in during(ByHttp(served, "agent"), errand):
+        assert tool.input_schema["additionalProperties"] is False, tool.name
+
+
 @pytest.mark.parametrize("role", [None, "viewer"])
 def test_without_the_role_nothing_starts(served: str, role: str | None, planner: Planner) -> None:
     async def errand(client: Client) -> list[Any]:
-        calls = [("go_to", {"node": 3}), ("explore", {}), ("cancel", {})]
+        calls = [("go_to", {"node": 3}), ("explore", {}), ("cancel", {}), ("follow_route", {"route": "tour"})]
+        calls += [("cancel_task", {"task_id": "none"})]
+        calls += [("add_task", {"kind": "goto", "parameters": {"place": "kitchen"}})]
         return [await client.call_tool(tool, wish) for tool, wish in calls]
 
     before = len(planner.asked)
@@ -99,6 +167,12 @@ def test_an_agents_token_neither_clears_a_stop_nor_drives(guarded: str) -> None:
         assert http.delete("/api/robots/r1/estop?who=me").status_code == 403
         assert http.post("/api/robots/r1/drive", json={"who": "me", "forward_mps": 0.5}).status_code == 403
         assert http.delete("/api/maps/flat").status_code == 403
+        assert http.put("/api/maps/flat/routes", json={"name": "a", "nodes": [0, 1]}).status_code == 403
+        assert http.delete("/api/maps/flat/routes?name=tour").status_code == 403
+        assert http.put("/api/maps/flat/rules", json={"kind": "keep_out", "name": "a"}).status_code == 403
+        night = {"cron": "* * * * *", "task": {"kind": "explore", "map": "flat"}}
+        assert http.put("/api/robots/r1/schedules/night", json=night).status_code == 403
+        assert http.patch("/api/robots/r1/tasks/t", json={"priority": 9}).status_code == 403
 
 
 def test_a_page_of_elsewhere_reaches_no_robot(served: str) -> None:

@@ -6,7 +6,7 @@ import cv2
 import pytest
 from typer.testing import CliRunner
 
-from services.launcher.commands.world import app
+from services.launcher.commands.assets.world import app
 from simulator.generation.splits import worlds_of
 from simulator.world.world_file import load_world
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from services.launcher.commands.world import app
+from services.launcher.commands.assets.world import app
 from shared.bus import Bus, open_bus, wait_until
 from shared.messages.drive import Velocity
 from shared.messages.estop import EStopState

@@ -443,7 +443,7 @@ def test_without_the_extra_one_line_says_what_to_install(tmp_path, monkeypatch, 
 
 
 def test_the_command_line_starts_without_the_sdk():
-    modules = "services.launcher.cli, services.launcher.commands.foxglove"
+    modules = "services.launcher.cli, services.launcher.commands.recordings.foxglove"
     source = f"import sys, {modules}; sys.exit('foxglove' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", source], check=False).returncode == 0
 

@@ -9,7 +9,7 @@ import pytest
 from cryptography import x509
 from typer.testing import CliRunner
 
-from services.launcher.commands.certs import app
+from services.launcher.commands.stack.certs import app
 from shared.access.rules import Role
 from shared.certificates.authority import CERTIFICATE_DAYS
 from shared.certificates.checking import check

@@ -45,6 +45,10 @@ def test_rounds_are_listed_with_what_changed(client):
         ("/maps/nowhere/inspections", 404),
         ("/maps/flat/inspections/nonsense", 422),
         ("/maps/flat/inspections/m-1-9/report", 404),
+        ("/maps/flat/inspections/m-1-9/picture?place=Door", 404),
+        ("/maps/flat/inspections/m-1-2/picture?place=Bath", 404),
+        ("/maps/flat/inspections/m-1-1/picture?place=Door&before=true", 404),
+        ("/maps/flat/inspections/m-1-2/picture", 422),
     ],
 )
 def test_what_is_not_there_is_a_problem(client, path, status):
@@ -78,3 +82,10 @@ def test_a_visit_whose_earlier_picture_is_forgotten_shows_its_own(store, client)
     InspectionStore(store.database).save("flat", visit(3, against_ns=5, yaw_rad=0.1), 10)
     page = client.get("/maps/flat/inspections/m-1-3/report").text
     assert re.findall(r'<image id="(\w+)-', page) == ["now"]
+
+
+def test_both_pictures_of_a_place_are_there_one_by_one(client):
+    url = "/maps/flat/inspections/m-1-2/picture"
+    now = client.get(url, params={"place": "door"})
+    assert (now.content, now.headers["content-type"]) == (b"jpeg 2", "image/jpeg")
+    assert client.get(url, params={"place": "Door", "before": True}).content == b"jpeg 1"

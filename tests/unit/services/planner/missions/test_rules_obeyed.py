@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from services.drive.limits import DriveLimits
-from services.planner.goal_nodes import node_called
+from services.planner.goals.nodes import node_called
 from services.planner.mission_kinds import MissionContext, MissionError, mission_kinds
 from services.planner.missions.explore import FrontierExploration
 from services.planner.missions.goto import Goto

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from services.drive.limits import DriveLimits
+from services.planner.goals.destination import GoalDestination
 from services.planner.missions.explore import FrontierExploration
-from services.planner.missions.goto import GoalDestination, Goto
+from services.planner.missions.goto import Goto
 from services.planner.profiles import DEFAULT
 from services.planner.travel.destination import Verdict
 from services.planner.travel.states import TRANSITIONS, Event, State

@@ -8,7 +8,8 @@ import pytest
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT
 from services.planner.travel.edge_experience import EdgeExperience
-from services.planner.travel.path_follower import NEAREST_STEPS, PathFollower
+from services.planner.travel.path_follower import PathFollower
+from services.planner.travel.patience import NEAREST_STEPS
 from services.planner.travel.states import Event
 from services.planner.travel.tracking import Tracker
 from shared.mapgraph.graph import MapGraph

@@ -1,0 +1,1 @@
+"""Commands about files that a stack uses: worlds and weights."""

@@ -1,0 +1,1 @@
+"""Commands about maps, and the marks that people make on them."""

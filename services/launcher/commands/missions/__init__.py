@@ -1,0 +1,1 @@
+"""Commands that send a robot somewhere, at once or when its turn comes."""

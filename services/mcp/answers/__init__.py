@@ -1,0 +1,1 @@
+"""What tools answer, as an agent reads it. Text in it is JSON: told by others, it stays data."""

@@ -1,0 +1,250 @@
+"""Where a goal picture can have been taken, and which of these places is it: by going there.
+
+Rooms furnished alike resemble a picture of one of them equally. Only at the very spot does the right one
+resemble it more: so each is visited, and arrival is claimed where the others are excluded.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from services.planner.goals.place_evidence import PlaceEvidence, Visit
+from services.planner.mapping.reach import claims, distances, elsewhere
+from services.planner.ports import MapAccess, Matches
+from services.planner.profiles import Profile
+from services.planner.similarity import similarity
+from shared.mapgraph.local.displacement import Displacement
+from shared.mapgraph.local.hypotheses import Hypothesis, hypotheses
+from shared.mapgraph.local.likely_places import is_plain, likely, typical_similarity
+from shared.mapgraph.local.view_range import length_to_m
+from shared.messages.matching import NodeMatch
+from shared.messages.missions import FailureKind
+
+SPOT_SHARE = 0.6
+"""At the very spot view and goal share so much of what two frames in a row share, where its place was in
+doubt; noise and light take from both alike. At 34 spots of an office and a hostel 0.65 and more, at an equal
+desk of another row 0.45 at the median."""
+NEAREST = 2
+"""Nodes most like the picture, of which one is next to whoever stands where it was taken; chosen: one before
+and one beyond."""
+SPOT_M = 0.75
+"""Who is nearer than this to the node most like the picture stands where it was taken; chosen: nodes lie half
+a metre apart, and a base stops a hand's breadth short."""
+AROUND_M = 2.0
+"""Who is nearer than this to it is in the same part of a room; chosen."""
+BEYOND_FACTOR = 2.0
+"""A picture was taken within so many times the distance that its matches with a node stand for: in nine of
+ten edges of three worlds that is right to a factor of 1.6."""
+TRIES = 2
+"""Times the picture may be lost, refuted or the way shut at one place before that counts."""
+
+
+@dataclass(frozen=True)
+class Ruling:
+    """Why an arrival is none yet ("" confirms it), and a `failure` where it never will be one."""
+
+    why: str = ""
+    failure: FailureKind = ""
+
+
+class GoalPlaces:
+    """The places of one goal picture.
+
+    Args:
+        maps: the map.
+        found: the picture against the nodes most like it.
+        profile: thresholds.
+    """
+
+    def __init__(self, maps: MapAccess, found: Matches, profile: Profile) -> None:
+        self._maps, self._profile = maps, profile
+        self._yaw_rad = {node: match.yaw_rad or 0.0 for node, match in found.items()}
+        self._places = self._likely(found)
+        self.plain = not self._places or is_plain(self._places, typical_similarity(maps.graph))
+        self._evidence = PlaceEvidence()
+        self._losses: Counter[Hypothesis] = Counter()
+        self._blocks: Counter[Hypothesis] = Counter()
+        self._shut: set[Hypothesis] = set()
+
+    @property
+    def names(self) -> str:
+        """The node most like the picture of each place, for people."""
+        return ", ".join(str(place.nodes[0]) for place in self._places)
+
+    def open_targets(self, targets: Mapping[int, float]) -> dict[int, float]:
+        """Of the nodes that the goal resembles those of places that may still be it."""
+        if not self._places:
+            return dict(targets)
+        nodes = {node for place in self._open() for node in place.nodes}
+        return {node: cost for node, cost in targets.items() if node in nodes}
+
+    def without(self, targets: Mapping[int, float]) -> list[int]:
+        """Of each place that has none of the targets the node most like the picture."""
+        rivals = [] if self.plain else self._places
+        return [place.nodes[0] for place in rivals if targets.keys().isdisjoint(place.nodes)]
+
+    def sees(self, goal: NodeMatch, here: Displacement | None) -> None:
+        """The picture is in view: how much of it differs counts where it is near by.
+
+        Args:
+            goal: the frame against the picture.
+            here: where the frame was taken.
+        """
+        place = None if self.plain or here is None else self._nearest(here.node_id)
+        if place is not None and goal.difference is not None:
+            self._evidence.looked(place, goal.difference)
+
+    def is_near(self, node: int | None) -> bool:
+        """Whether a robot about `node` can be at the place, where there is but one and both are known."""
+        graph = self._maps.graph
+        if not (self.plain and self._places) or node is None or node not in graph.nodes:
+            return self.plain
+        return any(node == best or node in graph.neighbours(best) for best in self._places[0].nodes[:NEAREST])
+
+    def may_be_seen(self, goal: NodeMatch, here: Displacement | None) -> bool:
+        """Whether the picture in sight can be at its place, by where the robot is; True where nobody knows.
+
+        Args:
+            goal: the frame against the picture.
+            here: where the frame was taken.
+        """
+        if not (self.plain and self._places) or here is None or self.is_near(here.node_id):
+            return self.plain
+        nearest = self._places[0].nodes[0]
+        seen = goal.model_copy(update={"yaw_rad": (goal.yaw_rad or 0.0) + self._yaw_rad[nearest]})
+        return not elsewhere(self._maps.graph, {nearest: seen}, here, self._profile)
+
+    def shows_another(self, view: Matches, here: Displacement | None) -> Hypothesis | None:
+        """The place that a view is of, where the goal's is one alone and it is not that: a look-alike.
+
+        Args:
+            view: the frame against the nodes most like it.
+            here: where the frame was taken; None where nobody knows.
+        """
+        found = self._likely(view)
+        if not (self.plain and self._places and found):
+            return None
+        same = [not set(place.nodes).isdisjoint(self._places[0].nodes) for place in found]
+        may_be = same[0] or (any(same) and self.is_near(None if here is None else here.node_id))
+        if may_be and (here is None or not self._is_beyond(here)):
+            return None
+        return found[0]
+
+    def stood(self, node: int | None) -> Ruling:
+        """The robot stood at the very spot, and the goal picture did not agree with the view."""
+        place = self._nearest(node)
+        if self.plain or place is None:
+            return Ruling("not seen")
+        self._evidence.visited(place, Visit())
+        return self._judge(place)
+
+    def refuted(self, here: Displacement | None) -> Ruling:
+        """What agreed with the goal was another view: at the very spot it counts, near by the second one."""
+        place = None if here is None else self._nearest(here.node_id)
+        if self.plain or here is None or place is None:
+            return Ruling("not there")
+        if not self.is_at(here):
+            self._losses[place] += self._is_within(AROUND_M, here)
+            if self._losses[place] < TRIES:
+                return Ruling("not there")
+        return self.stood(here.node_id)
+
+    def is_at(self, here: Displacement | None) -> bool:
+        """Whether the robot stands where one of several places puts the picture, as far as is known."""
+        return not self.plain and here is not None and self._is_within(SPOT_M, here)
+
+    def _is_beyond(self, here: Displacement) -> bool:
+        """Whether a robot is further from the place than matches with it allow, as far as is known."""
+        graph, place = self._maps.graph, self._places[0]
+        apart_m = length_to_m(graph, place.nodes[0], place.similarity)
+        return not self._is_within(SPOT_M + BEYOND_FACTOR * apart_m, here)
+
+    def _is_within(self, far_m: float, here: Displacement) -> bool:
+        best = {place.nodes[0] for place in self._places}
+        return min(distances(self._maps.graph, here, best).values(), default=math.inf) < far_m
+
+    def arrived(self, node: int | None, visit: Visit) -> Ruling:
+        """The robot stands where the goal picture agrees with the view.
+
+        Args:
+            node: of the map, near there.
+            visit: what it sees of the goal.
+        """
+        if self.plain:
+            return Ruling()
+        place = self._nearest(node)
+        if place is None:
+            return Ruling()
+        self._evidence.visited(place, visit)
+        return self._judge(place)
+
+    def lost(self, node: int | None) -> Ruling:
+        """The goal picture was not found where its place should be."""
+        place = self._nearest(node)
+        if self.plain or place is None:
+            return Ruling("not seen")
+        self._losses[place] += 1
+        if place in self._evidence.visits or self._losses[place] < TRIES:
+            return Ruling("not seen")
+        self._evidence.visited(place, Visit())
+        return self._judge(place)
+
+    def blocked(self, node: int | None) -> Ruling:
+        """The last way to the goal is shut where its place should be: that excludes nothing."""
+        place = self._nearest(node)
+        if self.plain or place is None:
+            return Ruling("not reached")
+        self._blocks[place] += 1
+        if place in self._evidence.visits or self._blocks[place] < TRIES:
+            return Ruling("not reached")
+        self._shut.add(place)
+        return self._judge(place)
+
+    def _open(self) -> list[Hypothesis]:
+        """Places to go to: those not visited yet, then the best one again."""
+        if self.plain:
+            return self._places
+        best = self._evidence.best()
+        return self._left() or ([] if best is None else [best])
+
+    def _left(self) -> list[Hypothesis]:
+        done = self._evidence.visits.keys() | self._shut
+        return [place for place in self._places if place not in done]
+
+    def _judge(self, here: Hypothesis) -> Ruling:
+        visits, best, left = self._evidence.visits, self._evidence.best(), self._left()
+        if left:
+            alike = f"{visits.get(here, Visit()).likeness:.0%} alike"
+            told = self._evidence.told()
+            return Ruling(
+                f"{alike}; {len(left)} places that look alike are not excluded; differences: {told}"
+            )
+        most = visits[best].likeness if best is not None else 0.0
+        if self._shut:
+            shut = ", ".join(str(place.nodes[0]) for place in self._places if place in self._shut)
+            why = f"of the places of nodes {self.names} that of {shut} could not be reached"
+            return Ruling(why, "ambiguous" if most >= SPOT_SHARE else "blocked")
+        if most < SPOT_SHARE:
+            why = f"the goal resembles nodes {self.names}, but is at none of them, {most:.0%} alike at most"
+            return Ruling(why, "goal_not_in_map")
+        if self._evidence.rivals():
+            why = f"one of the places of nodes {self.names}, which look alike"
+            return Ruling(f"{why}; differences: {self._evidence.told()}", "ambiguous")
+        return Ruling() if best == here else Ruling(f"another place resembles the goal more, by {most:.0%}")
+
+    def _likely(self, matches: Matches) -> list[Hypothesis]:
+        profile, graph = self._profile, self._maps.graph
+        if profile.sensing.similarity == "raw":
+            return []
+        similar = {n: m for n, m in matches.items() if similarity(m, profile) > profile.travel.s_via_min}
+        said = claims(graph, similar, profile)
+        return likely(graph, said, hypotheses(graph, said))
+
+    def _nearest(self, node: int | None) -> Hypothesis | None:
+        """The place a node belongs to: by the fewest edges."""
+        graph = self._maps.graph
+        if node is None or node not in graph.nodes:
+            return None
+        of = {n: place for place in self._places for n in place.nodes}
+        return next((of[n] for n in graph.nearest(node, len(graph.nodes)) if n in of), None)

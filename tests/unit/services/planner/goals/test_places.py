@@ -1,0 +1,180 @@
+"""Which of several places that look alike the goal is: each is visited, arrival excludes the others."""
+
+import pytest
+
+from services.planner.goals.place_evidence import Visit
+from services.planner.goals.places import GoalPlaces
+from services.planner.profiles import DEFAULT, THESIS
+from shared.mapgraph.local.displacement import Displacement
+from shared.mapgraph.routing import GOAL
+from tests.unit.services.planner.travel.seen import Maps, by_node, match
+from tests.unit.shared.mapgraph.local.grid import grid
+
+GRAPH = grid(20, 2)
+FIRST = by_node(match(1, 0.0, 0.0, 150), match(2, 1.0, 0.0, 80))
+SECOND = by_node(match(9, 0.0, 0.0, 140), match(10, 1.0, 0.0, 80))
+THIRD = by_node(match(17, 0.0, 0.0, 140), match(18, 1.0, 0.0, 80))
+FAR = next(n for n in GRAPH.nodes if n not in GRAPH.nearest(1, 8))
+TARGETS = dict.fromkeys((1, 2, 9, 10, 17, 18), 0.1)
+
+
+def view(likeness):
+    return Visit(round(230 * likeness), likeness)
+
+
+def places_of(found, profile=DEFAULT):
+    return GoalPlaces(Maps(GRAPH), found, profile)
+
+
+@pytest.fixture
+def two():
+    return places_of(FIRST | SECOND)
+
+
+def test_a_place_without_rivals_is_arrived_at_at_once():
+    places = places_of(FIRST)
+    assert places.plain
+    assert places.arrived(2, view(0.40)).why == ""
+    assert set(places.open_targets(TARGETS)) == {1, 2}
+
+
+def test_a_goal_in_sight_is_headed_for_beside_its_place_only():
+    places = places_of(FIRST)
+    assert [places.is_near(node) for node in (1, 3, 12, None)] == [True, True, False, True]
+
+
+@pytest.mark.parametrize(("seen_m", "may"), [(4.8, True), (1.0, False)])
+def test_a_goal_seen_where_its_place_is_not_is_not_headed_for(seen_m, may):
+    """The next of equal desks, a period nearer."""
+    places, goal = places_of(FIRST), match(GOAL, -seen_m, 0.0)
+    assert places.may_be_seen(goal, Displacement(FAR)) == may
+    assert places.may_be_seen(goal, None)
+
+
+def test_a_view_of_a_look_alike_is_no_arrival():
+    places = places_of(FIRST)
+    another = places.shows_another(SECOND, Displacement(9))
+    assert another is not None
+    assert another.nodes[0] == 9
+    assert places.shows_another(FIRST, Displacement(1)) is None
+
+
+@pytest.mark.parametrize(("node", "another"), [(2, False), (10, True)])
+def test_a_view_that_may_be_of_either_is_believed_beside_the_place(node, another):
+    rival = by_node(match(9, 0.0, 0.0, 160), match(10, 1.0, 0.0, 80))
+    found = places_of(FIRST).shows_another(FIRST | rival, Displacement(node))
+    assert (found is not None) == another
+
+
+def test_a_view_like_the_place_from_further_off_than_its_matches_allow_is_of_another():
+    """As at the next of equal desks: the nodes between the two are seen from both."""
+    places = places_of(FIRST)
+    assert places.shows_another(FIRST, None) is None
+    assert places.shows_another(FIRST, Displacement(FAR)) is not None
+
+
+def test_who_stood_at_the_very_spot_and_did_not_see_the_goal_excludes_it(two):
+    assert two.is_at(Displacement(9, x_m=0.3))
+    assert not two.is_at(Displacement(9, y_m=1.5))
+    assert not two.is_at(None)
+    two.stood(9)
+    assert two.arrived(1, view(0.86)).why == ""
+
+
+def test_a_look_alike_is_visited_before_arrival_is_claimed(two):
+    assert not two.plain
+    assert set(two.open_targets(TARGETS)) == {1, 2, 9, 10}
+    assert "not excluded" in two.arrived(2, view(0.88)).why
+    assert set(two.open_targets(TARGETS)) == {9, 10}
+    assert "another place" in two.arrived(10, view(0.48)).why
+    assert set(two.open_targets(TARGETS)) == {1, 2}
+    assert two.arrived(1, view(0.86)).why == ""
+
+
+def test_the_last_one_visited_may_be_it(two):
+    two.arrived(2, view(0.48))
+    assert two.arrived(9, view(0.88)).why == ""
+
+
+def test_a_place_that_was_not_reached_is_not_excluded(two):
+    two.arrived(2, view(0.88))
+    assert two.blocked(9).failure == ""
+    ruling = two.blocked(9)
+    assert ruling.failure == "ambiguous"
+    assert "9 could not be reached" in ruling.why
+
+
+def test_after_a_place_that_was_not_reached_the_others_are_tried(two):
+    two.blocked(9)
+    assert "not excluded" in two.blocked(9).why
+    assert set(two.open_targets(TARGETS)) == {1, 2}
+    assert two.arrived(2, view(0.88)).failure == "ambiguous"
+
+
+def test_a_goal_that_none_of_the_places_seen_resembles_may_be_at_the_one_not_reached(two):
+    two.arrived(2, view(0.48))
+    two.blocked(9)
+    assert two.blocked(9).failure == "blocked"
+
+
+def test_places_that_resemble_it_equally_are_ambiguous(two):
+    two.arrived(2, view(0.88))
+    ruling = two.arrived(9, view(0.84))
+    assert ruling.failure == "ambiguous"
+    assert "1, 9" in ruling.why
+
+
+def test_two_that_are_both_little_alike_do_not_end_the_search_for_a_third():
+    places = places_of(FIRST | SECOND | THIRD)
+    places.arrived(1, view(0.61))
+    assert places.arrived(9, view(0.60)).failure == ""
+    assert places.arrived(17, view(0.88)).why == ""
+
+
+def test_places_are_compared_by_matches_not_by_what_two_frames_there_shared(two):
+    """At the spot the robot stood nearly still, and two frames shared more."""
+    two.arrived(9, Visit(132, 0.72))
+    assert two.arrived(1, Visit(199, 0.88)).why == ""
+
+
+def test_rooms_with_equal_matches_are_told_apart_by_how_much_they_differ_as_pictures(two):
+    looks = {9: 24.0, 1: 8.0}
+    for node, differs in looks.items():
+        seen = match(GOAL, 0.1, 0.0).model_copy(update={"difference": differs})
+        two.sees(seen, Displacement(node, x_m=0.1))
+    two.arrived(9, view(0.88))
+    assert two.arrived(1, view(0.86)).why == ""
+
+
+def test_an_arrival_that_was_none_counts_at_the_spot_and_near_by_the_second_time(two):
+    assert "not there" in two.refuted(Displacement(9, y_m=1.5)).why
+    assert "not there" in two.refuted(Displacement(6)).why
+    assert "not there" in two.refuted(None).why
+    assert set(two.open_targets(TARGETS)) == {1, 2, 9, 10}
+    two.refuted(Displacement(9, y_m=1.5))
+    assert set(two.open_targets(TARGETS)) == {1, 2}
+    two.refuted(Displacement(1, x_m=0.3))
+    assert set(two.open_targets(TARGETS)) != {1, 2, 9, 10}
+
+
+def test_a_place_that_no_way_leads_to_is_named(two):
+    assert two.without({1: 0.1, 10: 0.2}) == []
+    assert two.without({1: 0.1}) == [9]
+
+
+def test_a_goal_at_none_of_the_places_is_not_in_the_map(two):
+    two.arrived(2, view(0.44))
+    assert two.arrived(9, view(0.40)).failure == "goal_not_in_map"
+
+
+def test_a_place_where_the_picture_is_lost_twice_is_excluded(two):
+    assert two.arrived(2, view(0.88)).why
+    assert two.lost(9).failure == ""
+    assert "another place" in two.lost(9).why
+    assert set(two.open_targets(TARGETS)) == {1, 2}
+
+
+def test_the_thesis_knows_no_rivals():
+    places = places_of(FIRST | SECOND, THESIS)
+    assert places.plain
+    assert set(places.open_targets(TARGETS)) == set(TARGETS)
