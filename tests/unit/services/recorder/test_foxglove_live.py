@@ -69,6 +69,13 @@ def test_what_waits_is_bounded_in_bytes_and_what_was_taken_makes_room():
     assert len(waiting.take_all()) == 2
 
 
+def test_a_frame_that_makes_room_gives_its_bytes_back():
+    waiting = newest(max_bytes=10)
+    for payload in (b"first.", b"second", b"third."):
+        waiting.push(FRAME, "topnav/r1/frame", payload)
+    assert [one.payload for one in waiting.take_all()] == [b"third."]
+
+
 def test_a_peer_that_invents_robots_takes_no_more_than_so_many_keys(monkeypatch):
     monkeypatch.setattr(newest_module, "MAX_KEYS", 2)
     waiting = newest()
