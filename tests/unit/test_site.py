@@ -115,11 +115,26 @@ def test_links_to_programs_become_their_paths_diagrams_tables_and_lists_lists(bu
     assert "<br" not in overview
 
 
+def sections() -> list[Any]:
+    """The steps and their pages, as mkdocs.yml has them."""
+    found = yaml.safe_load((SITE / "mkdocs.yml").read_text(encoding="utf-8"))["nav"]
+    assert isinstance(found, list)
+    return found
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_the_side_of_a_step_names_its_pages(built, step):
+    pages = next(section[step.capitalize()] for section in sections() if step.capitalize() in section)
+    shown = re.findall(
+        r'<span class="md-ellipsis">\s*(.*?)\s*<', (built / step / "index.html").read_text("utf-8")
+    )
+    assert {title for page in pages[1:] for title in page} <= set(shown)
+
+
 def test_the_steps_are_in_the_order_of_a_day():
-    sections = yaml.safe_load((SITE / "mkdocs.yml").read_text(encoding="utf-8"))["nav"]
-    titles = [next(iter(section)) for section in sections]
+    titles = [next(iter(section)) for section in sections()]
     assert titles == ["Overview", *(step.capitalize() for step in STEPS)]
-    assert [section[title][0] for section, title in zip(sections, titles, strict=True)][1:] == [
+    assert [section[title][0] for section, title in zip(sections(), titles, strict=True)][1:] == [
         named(page) for page in DAY
     ]
 
