@@ -4,6 +4,7 @@
 #   make test    every test but those of tests/faults      make check   lint, types, unit tests: two minutes
 #                (WORKERS=0: in one process)
 #   make containers  the same stack by Docker Compose, as a newcomer runs it
+#   make docs    the documentation site, into runs/site (to write it: mkdocs serve --config-file deploy/site/mkdocs.yml)
 #   make faults  what dies, hangs, lies, floods or is cut off: deploy/FAULTS.md
 PYTHON ?= python3
 VENV ?= .venv
@@ -20,7 +21,7 @@ STAMP := $(VENV)/.installed
 INPUTS := pyproject.toml experiments/pyproject.toml constraints.txt deploy/packaging/opencv-shim/pyproject.toml
 SOURCES := services shared simulator experiments tests
 
-.PHONY: setup demo ros-demo test faults check lint types containers bench fuzz sbom audit screenshots clean
+.PHONY: setup demo ros-demo test faults check lint types containers bench fuzz sbom audit screenshots docs clean
 
 setup: $(STAMP)
 	@bash deploy/setup/vulkan.sh
@@ -82,6 +83,9 @@ audit: setup
 
 screenshots: setup
 	$(BIN)/python -m tests.screenshots
+
+docs: setup
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet --config-file deploy/site/mkdocs.yml
 
 clean:
 	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -16,7 +16,7 @@ RUN python -m compileall -q shared
 RUN groupadd --system --gid 10001 topnav \
     && useradd --system --uid 10001 --gid 10001 topnav \
     && for one in authority router ros simulator camera features map_store planner drive dispatch \
-        gateway recorder operator viewer; do install --directory --owner topnav --mode 700 "/certs/$one"; done
+        gateway recorder foxglove operator viewer; do install --directory --owner topnav --mode 700 "/certs/$one"; done
 USER topnav
 # The root file system is read-only: caches go to the tmpfs.
 ENV HOME=/tmp PYTHONDONTWRITEBYTECODE=1 PYTHONUNBUFFERED=1

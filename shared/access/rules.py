@@ -27,6 +27,7 @@ class Role(Enum):
     DISPATCH = "dispatch"
     GATEWAY = "gateway"
     RECORDER = "recorder"
+    FOXGLOVE = "foxglove"
     OPERATOR = "operator"
     VIEWER = "viewer"
 
@@ -94,7 +95,7 @@ def _grant(speakers: Iterable[Role], hearers: Iterable[Role]) -> Grant:
 BODIES = (Role.ROBOT, Role.SIMULATOR)
 PEOPLE = (Role.GATEWAY, Role.OPERATOR)
 """The two ways in which people's wishes reach the bus: the web console and the shell."""
-WATCHERS = (*PEOPLE, Role.RECORDER, Role.VIEWER)
+WATCHERS = (*PEOPLE, Role.RECORDER, Role.FOXGLOVE, Role.VIEWER)
 ASKERS = (*PEOPLE, Role.ROBOT)
 """A robot whose body is in ROS passes on what people wish there: of itself only (services/ros)."""
 
@@ -128,7 +129,7 @@ QUESTIONS: dict[Query[Any, Any], Grant] = {
     topics.ESTOP: _grant([Role.DRIVE], ASKERS),
     # One key reads and writes: who only reads has a key of its own.
     topics.MAP: _grant([Role.MAP_STORE], [Role.PLANNER, *PEOPLE]),
-    topics.MAP_READ: _grant([Role.MAP_STORE], [Role.FEATURES]),
+    topics.MAP_READ: _grant([Role.MAP_STORE], [Role.FEATURES, Role.FOXGLOVE]),
     topics.MISSION_RECORD: _grant([Role.MAP_STORE], [Role.PLANNER]),
     topics.TASKS: _grant([Role.MAP_STORE], [Role.DISPATCH, *PEOPLE]),
     topics.COMPARE: _grant([Role.FEATURES], [Role.PLANNER]),

@@ -23,6 +23,7 @@ MODULES = {
     "drive": "services.drive.settings",
     "dispatch": "services.dispatch.settings",
     "gateway": "services.gateway.settings",
+    "foxglove": "services.recorder.foxglove.live.settings",
 }
 HEADER = """\
 # The settings of each service that docker-compose.yml does not choose: set in .env or in the shell they reach

@@ -49,6 +49,7 @@ def stack(tmp_path):
         ports=Ports(17447, 18000, 18001),
         camera="osc://192.168.1.1",
         ros="deploy/robots/omni.yaml",
+        foxglove=18765,
     )
 
 
@@ -90,7 +91,7 @@ def test_the_schema_would_notice_a_misspelt_key(schema):
 def test_every_process_of_the_architecture_is_there():
     assert set(SERVICES) == {
         "router", "map-store", "simulator", "camera", "ros", "features", "planner", "drive", "dispatch",
-        "gateway",
+        "gateway", "foxglove",
     }  # fmt: skip
 
 
@@ -157,6 +158,7 @@ def test_certificates_and_what_is_real_belong_to_profiles_and_no_service_needs_t
         "certs": ["secure"],
         "camera": ["camera"],
         "ros": ["ros"],
+        "foxglove": ["foxglove"],
     }
     for name, service in SERVICES.items():
         need = service["depends_on"]["certs"]
@@ -215,10 +217,13 @@ def test_choices_reach_the_services(specs):
     assert specs["gateway"].environment["GATEWAY_PORT"] == "18000"
     assert specs["gateway"].environment["GATEWAY_MAP_STORE_URL"] == "http://127.0.0.1:18001"
     assert specs["router"].environment["TOPNAV_ROUTER_LISTEN"] == "tcp/127.0.0.1:17447"
+    assert specs["foxglove"].environment["FOXGLOVE_LIVE_PORT"] == "18765"
+    assert specs["foxglove"].environment["FOXGLOVE_LIVE_HOST"] == "127.0.0.1"
 
 
-def test_docker_publishes_the_gateway_only_and_only_on_loopback_and_needs_nothing_to_start():
-    assert [name for name, service in SERVICES.items() if "ports" in service] == ["gateway"]
+def test_docker_publishes_gateway_and_live_view_only_and_on_loopback_and_needs_nothing_to_start():
+    assert [name for name, service in SERVICES.items() if "ports" in service] == ["gateway", "foxglove"]
+    assert SERVICES["foxglove"]["ports"][0].startswith("127.0.0.1:"), "it asks for no password"
     assert SERVICES["gateway"]["ports"][0].startswith("${TOPNAV_PUBLISH:-127.0.0.1}:")
     services = load_compose(COMPOSE_FILE, {}).services
     gateway, map_store = services["gateway"].environment, services["map-store"].environment
@@ -261,7 +266,7 @@ def test_each_image_installs_one_extra_and_carries_one_services_code(name, repos
     assert re.findall(r"\.\[([\w,-]+)\]", text) == extras
     assert "ENTRYPOINT" not in text
     assert "CMD" not in text
-    package = SERVICES[name]["command"][2].replace(".", "/").removesuffix("/router")
+    package = "/".join(SERVICES[name]["command"][2].split(".")[:2]).removesuffix("/router")
     assert re.search(rf"^COPY {package} {package}$", text, flags=re.MULTILINE)
     copied = set(re.findall(r"^COPY (services/\w+|simulator) ", text, flags=re.MULTILINE))
     assert copied <= {package}

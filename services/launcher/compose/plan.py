@@ -7,6 +7,8 @@ from services.launcher.compose.compose_file import Dependency, Service
 
 REAL = {"TOPNAV_CAMERA": "camera", "TOPNAV_ROS": "ros"}
 """Variables that name a real camera and a robot in ROS, and the profile of what runs then."""
+BESIDE = {"TOPNAV_FOXGLOVE": "foxglove"}
+"""Variables that ask for more, and the profile of what runs then beside all else."""
 SIMULATOR = ("-m", "simulator")
 """Command of the process that is camera and robot otherwise; a robot's own under that name is kept."""
 
@@ -36,12 +38,16 @@ def active_services(
     return _without_absent({name: service for name, service in services.items() if name in wanted})
 
 
-def with_real(services: Mapping[str, Service], variables: Mapping[str, str]) -> dict[str, Service]:
-    """Where a variable of REAL is set, what is of its profile is in the stack, and the simulator is not."""
-    chosen = {profile for variable, profile in REAL.items() if variables.get(variable)}
-    if not chosen:
-        return dict(services)
-    kept = {name: service for name, service in services.items() if service.command[1:3] != SIMULATOR}
+def with_chosen(services: Mapping[str, Service], variables: Mapping[str, str]) -> dict[str, Service]:
+    """Where a variable of REAL or BESIDE is set, what is of its profile is in the stack.
+
+    The simulator is not in it where one of REAL is.
+    """
+    real = {profile for variable, profile in REAL.items() if variables.get(variable)}
+    chosen = real | {profile for variable, profile in BESIDE.items() if variables.get(variable)}
+    kept = {
+        name: service for name, service in services.items() if not real or service.command[1:3] != SIMULATOR
+    }
     return {
         name: service.model_copy(update={"profiles": ()}) if chosen & set(service.profiles) else service
         for name, service in kept.items()

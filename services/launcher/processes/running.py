@@ -168,7 +168,7 @@ def _log_to(path: Path) -> None:
 def _arguments(settings: StackSettings, compose_file: Path, timeout_s: float) -> list[str]:
     arguments = ["up", "--foreground", "--data-dir", str(settings.data_dir), "--timeout-s", str(timeout_s)]
     arguments += ["--file", str(compose_file)]
-    for name in ("world", "seed", "profile", "camera", "ros"):
+    for name in ("world", "seed", "profile", "camera", "ros", "foxglove"):
         value = getattr(settings, name)
         value = located(value) if name in ("world", "ros") else value
         arguments += [f"--{name}", str(value)] if value is not None else []

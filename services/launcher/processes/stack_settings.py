@@ -54,6 +54,7 @@ class StackSettings:
         secure: certificates for everybody, and a router that lets pass only what the access rules allow.
         camera: URL of a real camera, deploy/CAMERAS.md: its process runs, and the simulator does not.
         ros: file of a robot in ROS 2, deploy/ROBOTS.md: likewise.
+        foxglove: port of the live view for Foxglove, which runs only where one is given.
     """
 
     data_dir: Path
@@ -66,6 +67,7 @@ class StackSettings:
     secure: bool = False
     camera: str | None = None
     ros: str | None = None
+    foxglove: int | None = None
 
     @property
     def protocol(self) -> str:
@@ -91,6 +93,7 @@ class StackSettings:
             "TOPNAV_SEED": None if self.seed is None else str(self.seed),
             "TOPNAV_CAMERA": self.camera,
             "TOPNAV_ROS": located(self.ros),
+            "TOPNAV_FOXGLOVE": None if self.foxglove is None else str(self.foxglove),
             **profile_variables(self.profile),
             "TOPNAV_BIND": HOST,
             "TOPNAV_BUS": self.protocol,

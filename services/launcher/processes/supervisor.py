@@ -19,7 +19,7 @@ from typing import Self
 
 from services.launcher.compose.compose_file import COMPOSE_FILE, load_compose
 from services.launcher.compose.local import LocalMachine, ProcessSpec, certificate_folder, local_process
-from services.launcher.compose.plan import active_services, start_stages, with_real
+from services.launcher.compose.plan import active_services, start_stages, with_chosen
 from services.launcher.processes.free_ports import HOST
 from services.launcher.processes.health import CommandHealth, Health, Liveliness, always_ready
 from services.launcher.processes.loop import SupervisorLoop
@@ -49,6 +49,7 @@ class Launcher:
         environment: set in every service last of all.
         secure: certificates, mTLS and access rules on the bus.
         camera: URL of a real camera, and ros: file of a robot in ROS 2, in place of the simulator.
+        foxglove: port of the live view for Foxglove; None leaves it out.
         only: run these services and what they depend on.
         without: leave these services out.
         variables: what the Compose file interpolates, and services are told beside what it says; by default
@@ -79,12 +80,13 @@ class Launcher:
         secure: bool = False,
         camera: str | None = None,
         ros: str | None = None,
+        foxglove: int | None = None,
         told: Callable[[str], None] | None = None,
     ) -> None:
         folder = Path(data_dir).resolve()
         ports, environment = ports or Ports.free(), dict(environment or {})
         self.settings = StackSettings(
-            folder, world, lockstep, seed, profile, ports, environment, secure, camera, ros
+            folder, world, lockstep, seed, profile, ports, environment, secure, camera, ros, foxglove
         )
         self._root, self._timeout_s, self._watch = compose_file.resolve().parent, timeout_s, watch
         self._told = told
@@ -219,7 +221,7 @@ class Launcher:
         self._robots = robot_names(given)
         compose = load_compose(compose_file, given)
         kept = {name: one for name, one in compose.services.items() if name not in without}
-        services = active_services(with_real(kept, given), only=only)
+        services = active_services(with_chosen(kept, given), only=only)
         self._stages = start_stages(services)
         machine = LocalMachine(sys.executable, self.settings.data_dir, self.settings.certs, self._root)
         return [local_process(name, service, compose.services, machine) for name, service in services.items()]

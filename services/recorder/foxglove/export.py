@@ -15,12 +15,11 @@ from typing import IO, TYPE_CHECKING
 from mcap.writer import CompressionType, Writer
 
 from services.recorder.backlog import Sample
-from services.recorder.channels import SCHEMA_ENCODING, RecordingError, topic_of
-from services.recorder.foxglove.plain_json import plain_json, plain_schema
+from services.recorder.channels import RecordingError
+from services.recorder.foxglove.forms import Form, as_drawings, as_json, load_drawings, message_of
 from services.recorder.reading import WholePart
 from services.recorder.recording import CHUNK_BYTES
-from shared.messages.base import Message
-from shared.wire import WireError, decode
+from shared.wire import WireError
 
 if TYPE_CHECKING:
     from services.recorder.foxglove.drawings import Draw
@@ -91,70 +90,36 @@ class Exporter:
 
     def add(self, sample: Sample) -> None:
         """Write a message in all its forms; what cannot be written is counted."""
-        found = topic_of(sample.key)
-        if found is None:
-            self._leave_out(sample.key, "no topic of this version")
-            return
-        topic, _ = found
+        from services.recorder.foxglove.drawings import NotDrawableError
+
         try:
-            message = decode(topic.message, sample.payload, topic.max_bytes)
+            message = message_of(sample.key, sample.payload)
         except WireError as error:
             self._leave_out(sample.key, str(error))
             return
-        self._add_json(sample, message)
-        self._add_drawings(sample, message)
+        self._put(as_json(sample.key, message), sample.arrived_ns)
+        try:
+            for form in as_drawings(sample.key, message, sample.arrived_ns, self._draws):
+                self._put(form, sample.arrived_ns)
+        except NotDrawableError as error:
+            self._leave_out(f"{sample.key} as a drawing", str(error))
 
     def finish(self) -> None:
         """Write the index."""
         self._writer.finish()  # type: ignore[no-untyped-call]
 
-    def _add_json(self, sample: Sample, message: Message) -> None:
-        if sample.key not in self._channels:
-            schema = plain_schema(type(message))
-            self._register(sample.key, message.SCHEMA, SCHEMA_ENCODING, schema, "json")
-        self._put(sample.key, plain_json(message), sample.arrived_ns)
-
-    def _add_drawings(self, sample: Sample, message: Message) -> None:
-        from services.recorder.foxglove.drawings import NotDrawableError
-
-        try:
-            drawings = [one for draw in self._draws for one in draw(message, sample.arrived_ns)]
-        except NotDrawableError as error:
-            self._leave_out(f"{sample.key} as a drawing", str(error))
-            return
-        for drawing in drawings:
-            name = f"{sample.key}/{drawing.part}"
-            if name not in self._channels:
-                schema = drawing.message.get_schema()
-                self._register(name, schema.name, schema.encoding, schema.data, schema.encoding)
-            self._put(name, drawing.message.encode(), sample.arrived_ns)
-
     def _leave_out(self, what: str, reason: str) -> None:
         self.left_out[what] += 1
         self.reasons.setdefault(what, reason)
 
-    def _register(self, name: str, schema: str, schema_encoding: str, data: bytes, encoding: str) -> None:
-        number = self._writer.register_schema(schema, schema_encoding, data)
-        self._channels[name] = self._writer.register_channel(name, encoding, number)
-
-    def _put(self, name: str, data: bytes, arrived_ns: int) -> None:
+    def _put(self, form: Form, arrived_ns: int) -> None:
+        name = form.channel
+        if name not in self._channels:
+            schema = form.schema()
+            number = self._writer.register_schema(schema.name, schema.encoding, schema.definition)
+            self._channels[name] = self._writer.register_channel(name, schema.message_encoding, number)
         self.counts[name] += 1
-        self._writer.add_message(self._channels[name], arrived_ns, data, arrived_ns, self.counts[name])
-
-
-def load_drawings() -> "Draw":
-    """The drawings, imported only here: nothing else of the recorder needs the extra.
-
-    Raises:
-        RecordingError: the foxglove-sdk is missing.
-    """
-    try:
-        from services.recorder.foxglove.drawings import draw
-    except ImportError as error:
-        raise RecordingError(
-            f"an export for Foxglove needs one more package: pip install 'topnav[foxglove]' ({error})"
-        ) from error
-    return draw
+        self._writer.add_message(self._channels[name], arrived_ns, form.data, arrived_ns, self.counts[name])
 
 
 @contextmanager

@@ -27,6 +27,7 @@ SERVICES = {
     "gateway": "services.gateway",
     "ros": "services.ros",
     "recorder": "services.recorder",
+    "foxglove": "services.recorder.foxglove",
     "launcher": "services.launcher",
     "mcp": "services.mcp",
 }

@@ -90,7 +90,16 @@ def test_a_service_with_wrong_settings_ends_with_one_line(
     assert line.startswith("arm: TOPNAV_ROBOT: a robot's name must match")
 
 
-SERVICES = ("dispatch", "drive", "features", "gateway", "map_store", "planner", "recorder")
+SERVICES = (
+    "dispatch",
+    "drive",
+    "features",
+    "gateway",
+    "map_store",
+    "planner",
+    "recorder",
+    "recorder.foxglove",
+)
 
 
 @pytest.mark.parametrize("module", [*(f"services.{name}" for name in SERVICES), "simulator"])

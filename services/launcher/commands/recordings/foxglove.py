@@ -15,7 +15,8 @@ def foxglove(
 ) -> None:
     """Convert a recording for Foxglove: pictures, distances, arrows, decisions, and all numbers for plots."""
     from services.launcher.terminal.output import print_rows
-    from services.recorder.foxglove.export import export, load_drawings
+    from services.recorder.foxglove.export import export
+    from services.recorder.foxglove.forms import load_drawings
 
     load_drawings()  # says what to install before the next line fails
     from services.launcher.drawing.true_pose import draw_true_pose

@@ -25,6 +25,9 @@ def up(
     seed: Annotated[int | None, typer.Option(help="Of every random draw.")] = None,
     camera: Annotated[str | None, typer.Option(help="A real camera's URL; no simulator runs then.")] = None,
     ros: Annotated[str | None, typer.Option(help="A ROS 2 robot's file; no simulator runs then.")] = None,
+    foxglove: Annotated[
+        int | None, typer.Option(min=1, max=65535, help="Port of a live view for Foxglove, as 8765.")
+    ] = None,
     profile: Annotated[
         str | None, typer.Option(help="Rules of planner and drive: default or thesis.")
     ] = None,
@@ -51,7 +54,7 @@ def up(
     from services.launcher.terminal.services import Changes, status_table
 
     choices: dict[str, Any] = {"world": world, "lockstep": lockstep, "seed": seed, "profile": profile}
-    choices |= {"camera": camera, "ros": ros}
+    choices |= {"camera": camera, "ros": ros, "foxglove": foxglove}
     settings = StackSettings(data_dir.resolve(), **choices, secure=secure)
     compose_file, console = (file or COMPOSE_FILE).resolve(), Console()
     if detach:

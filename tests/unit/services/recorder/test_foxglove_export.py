@@ -27,37 +27,12 @@ from shared.messages.missions import Event, EventValue, MissionStatus
 from shared.messages.sensors import Frame, Ranges
 from shared.topics import TOPICS
 from shared.wire import encode
+from tests.protobuf_fields import fields
 
 WIDTH, HEIGHT = 64, 32
 STAMP_NS = 1_700_000_000_250_000_000
 ARRIVED_NS = STAMP_NS + 40_000_000
 STEP_NS = 100_000_000
-
-
-def fields(data):
-    """The fields of a protobuf message by number, without its definition: the library is no dependency."""
-    found, stream = {}, io.BytesIO(data)
-    while stream.tell() < len(data):
-        tag = varint(stream)
-        kind = tag & 7
-        if kind == 0:
-            value = varint(stream)
-        elif kind == 1:
-            value = struct.unpack("<d", stream.read(8))[0]
-        else:
-            value = stream.read(varint(stream))
-        found.setdefault(tag >> 3, []).append(value)
-    return found
-
-
-def varint(stream):
-    value, shift = 0, 0
-    while True:
-        byte = stream.read(1)[0]
-        value |= (byte & 127) << shift
-        shift += 7
-        if byte < 128:
-            return value
 
 
 def doubles(packed):

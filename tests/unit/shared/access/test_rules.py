@@ -118,6 +118,15 @@ def test_viewer_and_recorder_say_nothing_and_ask_nothing():
         assert not grant.hearers & {Role.VIEWER, Role.RECORDER}
 
 
+def test_the_live_view_says_nothing_reads_maps_and_does_not_know_the_true_pose():
+    for grant in (*STREAMS.values(), *QUESTIONS.values()):
+        assert Role.FOXGLOVE not in grant.speakers
+    assert [query for query, grant in QUESTIONS.items() if Role.FOXGLOVE in grant.hearers] == [
+        topics.MAP_READ
+    ]
+    assert Role.FOXGLOVE not in STREAMS[topics.TRUTH].hearers
+
+
 def test_a_role_of_one_robot_carries_its_name():
     assert Role.DRIVE.common_name("r2") == "drive.r2"
     assert Role.MAP_STORE.common_name("r2") == "map_store"

@@ -3,7 +3,7 @@
 import pytest
 
 from services.launcher.compose.compose_file import COMPOSE_FILE, Service, load_compose
-from services.launcher.compose.plan import active_services, start_stages, with_real
+from services.launcher.compose.plan import active_services, start_stages, with_chosen
 
 
 def service(*needs, profiles=()):
@@ -60,12 +60,20 @@ def test_choosing_services_brings_what_they_need():
 def test_a_real_camera_takes_the_place_of_the_simulator_and_of_no_other_body():
     simulator = Service(command=("python", "-m", "simulator"))
     services = {"simulator": simulator, "camera": service(profiles=("camera",)), "a": service()}
-    assert list(active_services(with_real(services, {}))) == ["simulator", "a"]
-    assert list(active_services(with_real(services, {"TOPNAV_CAMERA": ""}))) == ["simulator", "a"]
+    assert list(active_services(with_chosen(services, {}))) == ["simulator", "a"]
+    assert list(active_services(with_chosen(services, {"TOPNAV_CAMERA": ""}))) == ["simulator", "a"]
     given = {"TOPNAV_CAMERA": "osc://192.168.1.1"}
-    assert list(active_services(with_real(services, given))) == ["camera", "a"]
+    assert list(active_services(with_chosen(services, given))) == ["camera", "a"]
     robot = services | {"simulator": Service(command=("python", "robot.py"))}
-    assert list(active_services(with_real(robot, given))) == ["simulator", "camera", "a"]
+    assert list(active_services(with_chosen(robot, given))) == ["simulator", "camera", "a"]
+
+
+def test_a_live_view_is_beside_the_simulator_where_a_port_is_given():
+    simulator = Service(command=("python", "-m", "simulator"))
+    services = {"simulator": simulator, "foxglove": service(profiles=("foxglove",)), "a": service()}
+    assert list(active_services(with_chosen(services, {"TOPNAV_FOXGLOVE": ""}))) == ["simulator", "a"]
+    given = {"TOPNAV_FOXGLOVE": "8765"}
+    assert list(active_services(with_chosen(services, given))) == ["simulator", "foxglove", "a"]
 
 
 def test_a_robot_in_ros_does_so_with_a_camera_of_its_own_or_of_topnav():
@@ -77,7 +85,7 @@ def test_a_robot_in_ros_does_so_with_a_camera_of_its_own_or_of_topnav():
         "a": service(),
     }
     robot = {"TOPNAV_ROS": "robot.yaml"}
-    assert list(active_services(with_real(services, {"TOPNAV_ROS": ""}))) == ["simulator", "a"]
-    assert list(active_services(with_real(services, robot))) == ["ros", "a"]
+    assert list(active_services(with_chosen(services, {"TOPNAV_ROS": ""}))) == ["simulator", "a"]
+    assert list(active_services(with_chosen(services, robot))) == ["ros", "a"]
     both = robot | {"TOPNAV_CAMERA": "osc://192.168.1.1"}
-    assert list(active_services(with_real(services, both))) == ["camera", "ros", "a"]
+    assert list(active_services(with_chosen(services, both))) == ["camera", "ros", "a"]
