@@ -239,5 +239,5 @@ def test_a_fault_inside_is_a_problem_without_its_innards(client: TestClient, mon
 
 def test_openapi_describes_every_route(client: TestClient):
     described = client.get("/openapi.json").json()
-    assert len(described["paths"]) == 26
+    assert len(described["paths"]) == 27
     assert described["paths"]["/maps/import"]["post"]["requestBody"]["content"].keys() == {"application/zip"}
