@@ -49,7 +49,7 @@ def goto(
     from services.launcher.terminal.progress import mission_progress
     from shared.messages.missions import MissionRequest, Parameters
 
-    names = {"place": place, "sign": sign}
+    action, names = "home" if home else "goto", {"place": place, "sign": sign}
     _check_one_goal(image, photo, names, home, field_of_view_deg)
     picture = image or photo
     goal_name = picture.name if picture is not None else place or sign or "home"
@@ -65,9 +65,8 @@ def goto(
         if shot is not None:
             goal = locate_photo(opened.bus, opened.robot, known, shot).features
         given: Parameters = {n: v for n, v in names.items() if v is not None}
-        kind = "home" if home else "goto"
         request = MissionRequest(
-            action=kind, map=map_name, goal=goal, parameters=given, seed=seed, max_steps=max_steps
+            action=action, map=map_name, goal=goal, parameters=given, seed=seed, max_steps=max_steps
         )
         with mission_progress(output.wide_console(stderr=True), f"going to {goal_name}") as watch:
             run = client.run(request, watch)
