@@ -11,7 +11,7 @@ from importlib.metadata import EntryPoint, entry_points
 import typer
 
 from services.launcher.commands.assets import models, world
-from services.launcher.commands.maps import map, place, route, rule
+from services.launcher.commands.maps import map, place, route, rule, signs
 from services.launcher.commands.missions import explore, goto, locate, mission, schedule, task, teach
 from services.launcher.commands.recordings import foxglove, record, recover, replay
 from services.launcher.commands.robots import camera, drive, estop, robot
@@ -35,6 +35,7 @@ for command in (
     explore,
     goto,
     locate,
+    signs,
     drive,
     teach,
     estop,

@@ -81,6 +81,7 @@ def answer_map(store: MapStore, name: str, request: MapRequest) -> MapReply:
         places=marks.places,
         rules=marks.rules,
         routes=marks.routes,
+        signs=marks.signs,
     )
 
 

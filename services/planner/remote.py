@@ -39,7 +39,7 @@ class RemoteMap:
                 raise
             self._create()
             reply = self._ask(MapRequest(action="read"))
-        self.graph = MapGraph(reply.nodes, reply.edges, reply.places, reply.rules, reply.routes)
+        self.graph = MapGraph(reply.nodes, reply.edges, reply.places, reply.rules, reply.routes, reply.signs)
         self.revision = reply.revision
 
     def follow(self, delta: MapDelta) -> None:

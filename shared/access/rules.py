@@ -25,6 +25,7 @@ class Role(Enum):
     PLANNER = "planner"
     DRIVE = "drive"
     DISPATCH = "dispatch"
+    SIGNS = "signs"
     GATEWAY = "gateway"
     RECORDER = "recorder"
     FOXGLOVE = "foxglove"
@@ -54,6 +55,7 @@ OF_ONE_ROBOT = (
     Role.PLANNER,
     Role.DRIVE,
     Role.DISPATCH,
+    Role.SIGNS,
 )
 
 
@@ -100,7 +102,7 @@ ASKERS = (*PEOPLE, Role.ROBOT)
 """A robot whose body is in ROS passes on what people wish there: of itself only (services/ros)."""
 
 STREAMS: dict[Topic[Any], Grant] = {
-    topics.FRAME: _grant([*BODIES, Role.CAMERA], [Role.ROBOT, Role.FEATURES, *WATCHERS]),
+    topics.FRAME: _grant([*BODIES, Role.CAMERA], [Role.ROBOT, Role.FEATURES, Role.SIGNS, *WATCHERS]),
     topics.CAMERA_STATE: _grant([Role.CAMERA], WATCHERS),
     topics.RANGES: _grant(BODIES, [Role.DRIVE, Role.PLANNER, *WATCHERS]),
     # A camera that replays pictures one step at a time waits for the features of each.
@@ -118,7 +120,7 @@ STREAMS: dict[Topic[Any], Grant] = {
     topics.EVENT: _grant([Role.PLANNER], WATCHERS),
     # Only evaluation may know where the robot really is.
     topics.TRUTH: _grant([Role.SIMULATOR], [*PEOPLE, Role.RECORDER]),
-    topics.MAP_DELTA: _grant([Role.MAP_STORE], [Role.FEATURES, Role.PLANNER, *WATCHERS]),
+    topics.MAP_DELTA: _grant([Role.MAP_STORE], [Role.FEATURES, Role.PLANNER, Role.SIGNS, *WATCHERS]),
 }
 QUESTIONS: dict[Query[Any, Any], Grant] = {
     topics.MATCH: _grant([Role.FEATURES], [Role.PLANNER, Role.MAP_STORE, *PEOPLE]),
@@ -128,7 +130,7 @@ QUESTIONS: dict[Query[Any, Any], Grant] = {
     topics.MISSION_KINDS: _grant([Role.PLANNER], PEOPLE),
     topics.ESTOP: _grant([Role.DRIVE], ASKERS),
     # One key reads and writes: who only reads has a key of its own.
-    topics.MAP: _grant([Role.MAP_STORE], [Role.PLANNER, *PEOPLE]),
+    topics.MAP: _grant([Role.MAP_STORE], [Role.PLANNER, Role.SIGNS, *PEOPLE]),
     topics.MAP_READ: _grant([Role.MAP_STORE], [Role.FEATURES, Role.FOXGLOVE]),
     topics.MISSION_RECORD: _grant([Role.MAP_STORE], [Role.PLANNER]),
     topics.TASKS: _grant([Role.MAP_STORE], [Role.DISPATCH, *PEOPLE]),

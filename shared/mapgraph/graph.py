@@ -9,7 +9,7 @@ from shared.mapgraph.operations import Draft
 from shared.mapgraph.operations import EdgeKey as EdgeKey
 from shared.mapgraph.triangle import Sight
 from shared.messages.maps import AddNode, Edge, Node, Operation, UpdateNode
-from shared.messages.places import Place, Route, Rule, key_of
+from shared.messages.places import Place, Route, Rule, Sign, key_of
 
 Made = TypeVar("Made")
 
@@ -29,7 +29,7 @@ class MapGraph:
     """Undirected graph of nodes (thesis section 4.2); once it was asked, only `apply` changes it.
 
     Attributes:
-        places, rules, routes: marks that people made on the map, by the keys of their names.
+        places, rules, routes, signs: marks on the map, by the keys of their names.
     """
 
     def __init__(
@@ -39,12 +39,14 @@ class MapGraph:
         places: Iterable[Place] = (),
         rules: Iterable[Rule] = (),
         routes: Iterable[Route] = (),
+        signs: Iterable[Sign] = (),
     ) -> None:
         self.nodes = {node.node_id: node for node in nodes}
         self.edges = {(edge.a, edge.b): edge for edge in edges}
         self.places = {key_of(place.name): place for place in places}
         self.rules = {key_of(rule.name): rule for rule in rules}
         self.routes = {key_of(route.name): route for route in routes}
+        self.signs = {key_of(sign.name): sign for sign in signs}
         self._made: dict[Hashable, Any] = {}
 
     def apply(self, operations: Iterable[Operation]) -> None:
@@ -53,7 +55,7 @@ class MapGraph:
         Raises:
             GraphError: they do not fit; those before the one that does not are done.
         """
-        draft = Draft(self.nodes, self.edges, self.places, self.rules, self.routes)
+        draft = Draft(self.nodes, self.edges, self.places, self.rules, self.routes, self.signs)
         for operation in operations:
             match operation:
                 case AddNode(node=node):

@@ -1,4 +1,4 @@
-"""Places, rules and routes being changed in place, as part of a `Draft`. Pure."""
+"""Places, rules, routes and signs being changed in place, as part of a `Draft`. Pure."""
 
 from collections.abc import Callable, Container
 from typing import Literal, NamedTuple, TypeVar
@@ -9,20 +9,25 @@ from shared.messages.places import (
     DeletePlace,
     DeleteRoute,
     DeleteRule,
+    DeleteSign,
     KeepOut,
     Place,
     PutPlace,
     PutRoute,
     PutRule,
+    PutSign,
     Route,
     Rule,
+    Sign,
     key_of,
 )
 
-M = TypeVar("M", Place, Rule, Route)
+M = TypeVar("M", Place, Rule, Route, Sign)
+AnyMark = Place | Rule | Route | Sign
+MarkKind = Literal["place", "rule", "route", "sign"]
 
 MARKS_MAX = 1_000
-"""Places of a map, rules, and routes; chosen: more than a person can tell apart."""
+"""Places of a map, rules, routes, and signs; chosen: more than a person can tell apart."""
 
 
 class GraphError(ValueError):
@@ -30,7 +35,7 @@ class GraphError(ValueError):
 
 
 class UnknownError(GraphError):
-    """It names a node, an edge, a place, a rule or a route that is not there."""
+    """It names a node, an edge or a mark that is not there."""
 
 
 class TakenError(GraphError):
@@ -46,30 +51,32 @@ class FullError(GraphError):
 
 
 class MarkWrite(NamedTuple):
-    """A place, a rule or a route before and after; None where there is none."""
+    """A mark before and after; None where there is none."""
 
     key: str
-    before: Place | Rule | Route | None
-    after: Place | Rule | Route | None
+    before: AnyMark | None
+    after: AnyMark | None
 
     @property
-    def kind(self) -> Literal["place", "rule", "route"]:
-        """Which of the three."""
+    def kind(self) -> MarkKind:
+        """Which of the four."""
         return kind_of(self.before or self.after)
 
 
-def kind_of(mark: Place | Rule | Route | None) -> Literal["place", "rule", "route"]:
-    """Which of the three a mark is."""
+def kind_of(mark: AnyMark | None) -> MarkKind:
+    """Which of the four a mark is."""
     if isinstance(mark, Place):
         return "place"
+    if isinstance(mark, Sign):
+        return "sign"
     return "route" if isinstance(mark, Route) else "rule"
 
 
 class MarkDraft:
-    """Places, rules and routes, by the keys of their names.
+    """Places, rules, routes and signs, by the keys of their names.
 
     Args:
-        places, rules, routes: changed in place.
+        places, rules, routes, signs: changed in place.
         nodes: numbers of the nodes there are.
         wrote: is told every write.
     """
@@ -79,37 +86,44 @@ class MarkDraft:
         places: dict[str, Place],
         rules: dict[str, Rule],
         routes: dict[str, Route],
+        signs: dict[str, Sign],
         nodes: Container[int],
         wrote: Callable[[MarkWrite], None],
     ) -> None:
-        self.places, self.rules, self.routes = places, rules, routes
+        self.places, self.rules, self.routes, self.signs = places, rules, routes, signs
         self._nodes, self._wrote = nodes, wrote
 
     def apply(self, operation: MarkOperation) -> None:
         """Do it. Raises UnknownError, InUseError, FullError."""
         match operation:
             case PutPlace(place=place):
-                self._check(place)
-                self._write(MarkWrite(key_of(place.name), self.places.get(key_of(place.name)), place))
+                self._put(place)
             case PutRule(rule=rule):
-                self._check(rule)
-                self._write(MarkWrite(key_of(rule.name), self.rules.get(key_of(rule.name)), rule))
+                self._put(rule)
             case PutRoute(route=route):
-                self._check(route)
-                self._write(MarkWrite(key_of(route.name), self.routes.get(key_of(route.name)), route))
+                self._put(route)
+            case PutSign(sign=sign):
+                self._put(sign)
             case DeletePlace(name=name):
                 self._delete_place(name)
             case DeleteRule(name=name):
                 self._delete(name, self.rules, "rule")
             case DeleteRoute(name=name):
                 self._delete(name, self.routes, "route")
+            case DeleteSign(name=name):
+                self._delete(name, self.signs, "sign")
 
     def forget_node(self, node_id: int) -> None:
-        """A node goes: no place, no rule and no route lists it any longer."""
+        """A node goes: no mark lists it any longer."""
         for mark in self._all():
             if node_id in nodes_of(mark):
                 left = only_nodes(mark, nodes_of(mark) - {node_id})
                 self._write(MarkWrite(key_of(mark.name), mark, left))
+
+    def _put(self, mark: AnyMark) -> None:
+        self._check(mark)
+        key = key_of(mark.name)
+        self._write(MarkWrite(key, self._kept(kind_of(mark)).get(key), mark))
 
     def _delete_place(self, name: str) -> None:
         key = key_of(name)
@@ -124,10 +138,10 @@ class MarkDraft:
             raise UnknownError(nothing_called(name, list(kept.values()), what))
         self._write(MarkWrite(key_of(name), kept[key_of(name)], None))
 
-    def _all(self) -> list[Place | Rule | Route]:
-        return [*self.places.values(), *self.rules.values(), *self.routes.values()]
+    def _all(self) -> list[AnyMark]:
+        return [*self.places.values(), *self.rules.values(), *self.routes.values(), *self.signs.values()]
 
-    def _check(self, mark: Place | Rule | Route) -> None:
+    def _check(self, mark: AnyMark) -> None:
         """Whether all that it is about is there, and there is room for it."""
         for node_id in sorted(nodes_of(mark)):
             if node_id not in self._nodes:
@@ -139,16 +153,21 @@ class MarkDraft:
         same = self._kept(kind_of(mark))
         if key_of(mark.name) not in same and len(same) >= MARKS_MAX:
             raise FullError(
-                f"a map holds at most {MARKS_MAX} places, as many rules and as many routes; delete some first"
+                f"a map holds at most {MARKS_MAX} places, as many rules, routes and signs; delete some first"
             )
         others = [other for other in self._all() if other is not same.get(key_of(mark.name))]
         if sum(mentions(other) for other in (*others, mark)) > MENTIONS_MAX:
             raise FullError(
-                f"places, rules and routes of a map list at most {MENTIONS_MAX} nodes; list fewer"
+                f"places, rules, routes and signs of a map list at most {MENTIONS_MAX} nodes; list fewer"
             )
 
-    def _kept(self, kind: Literal["place", "rule", "route"]) -> dict[str, Place | Rule | Route]:
-        kept: dict[str, object] = {"place": self.places, "rule": self.rules, "route": self.routes}
+    def _kept(self, kind: MarkKind) -> dict[str, AnyMark]:
+        kept: dict[str, object] = {
+            "place": self.places,
+            "rule": self.rules,
+            "route": self.routes,
+            "sign": self.signs,
+        }
         return kept[kind]  # type: ignore[return-value]
 
     def _write(self, write: MarkWrite) -> None:

@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from itertools import groupby, pairwise
 from typing import TypeVar
 
-from shared.messages.places import NAME_MAX, EdgeRule, KeepOut, Mark, Marks, Place, Route, Rule, key_of
+from shared.messages.places import NAME_MAX, EdgeRule, KeepOut, Mark, Marks, Place, Route, Rule, Sign, key_of
 
 M = TypeVar("M", bound=Mark)
 T = TypeVar("T")
@@ -21,7 +21,7 @@ MENTIONS_MAX = 100_000
 
 
 def by_key(marks: Iterable[M]) -> dict[str, M]:
-    """Places, rules or routes by what their names mean."""
+    """Marks of one kind by what their names mean."""
     return {key_of(mark.name): mark for mark in marks}
 
 
@@ -52,7 +52,7 @@ def nothing_called(name: str, marks: Collection[M], what: str = "place") -> str:
     Args:
         name: as it was asked for.
         marks: those there are.
-        what: "place", "rule" or "route".
+        what: "place", "rule", "route" or "sign".
     """
     if not marks:
         return f"the map has no {what} {name!r}, and no {what}s at all"
@@ -70,6 +70,15 @@ def place_called(name: str, places: Mapping[str, Place]) -> Place | str:
 def route_called(name: str, routes: Mapping[str, Route]) -> Route | str:
     """The route of that name, or a text that says that there is none and which are nearest."""
     return _called(name, routes, "route")
+
+
+def sign_called(text: str, signs: Mapping[str, Sign]) -> Sign | str:
+    """The sign that says this or one word of it ("room 214"), or a text with those that say nearly this."""
+    found = _called(text, signs, "sign")
+    if isinstance(found, Sign):
+        return found
+    words = {word for word in text.casefold().split() if word in signs}
+    return signs[words.pop()] if len(words) == 1 else found
 
 
 def _called(name: str, marks: Mapping[str, M], what: str) -> M | str:
@@ -94,6 +103,8 @@ def nodes_of(mark: Mark) -> set[int]:
     """All nodes that it lists, those of areas apart."""
     if isinstance(mark, EdgeRule):
         return {node for way in mark.edges for node in way}
+    if isinstance(mark, Sign):
+        return {sighting.node for sighting in mark.sightings}
     assert isinstance(mark, Place | KeepOut | Route)
     return set(mark.nodes)
 
@@ -112,7 +123,7 @@ def renumbered(mark: M, ids: Mapping[int, int], name: str, areas: Mapping[str, s
     """The same in another map.
 
     Args:
-        mark: a place, a rule or a route.
+        mark: a place, a rule, a route or a sign.
         ids: number there by number here; nodes without one are left out.
         name: what it is called there.
         areas: names of places there by key here.
@@ -147,6 +158,10 @@ def _listing(mark: Mark, number: Callable[[int], int | None]) -> dict[str, objec
     if isinstance(mark, EdgeRule):
         ways = [(number(a), number(b)) for a, b in mark.edges]
         return {"edges": tuple(way for way in ways if None not in way)}
+    if isinstance(mark, Sign):
+        seen = [(sighting, number(sighting.node)) for sighting in mark.sightings]
+        kept = [one.model_copy(update={"node": node}) for one, node in seen if node is not None]
+        return {"sightings": tuple(kept)}
     assert isinstance(mark, Place | KeepOut | Route)
     nodes = [new for n in mark.nodes if (new := number(n)) is not None]
     if isinstance(mark, Route):  # there and back without the far end: the same node twice is one visit
@@ -160,11 +175,17 @@ def users_of(place: str, rules: Iterable[Rule]) -> list[str]:
 
 
 def marks_of(
-    places: Mapping[str, Place], rules: Mapping[str, Rule], routes: Mapping[str, Route] | None = None
+    places: Mapping[str, Place],
+    rules: Mapping[str, Rule],
+    routes: Mapping[str, Route] | None = None,
+    signs: Mapping[str, Sign] | None = None,
 ) -> Marks:
     """All of them, in the order of their keys."""
     return Marks(
-        places=_in_order(places), rules=_in_order(rules), routes=() if routes is None else _in_order(routes)
+        places=_in_order(places),
+        rules=_in_order(rules),
+        routes=_in_order(routes or {}),
+        signs=_in_order(signs or {}),
     )
 
 

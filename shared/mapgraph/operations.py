@@ -12,7 +12,7 @@ from shared.mapgraph.mark_draft import MarkDraft, MarkWrite
 from shared.mapgraph.mark_draft import TakenError as TakenError
 from shared.mapgraph.mark_draft import UnknownError as UnknownError
 from shared.messages.maps import DeleteEdge, DeleteNode, Edge, MarkOperation, PutEdge
-from shared.messages.places import Place, Route, Rule
+from shared.messages.places import Place, Route, Rule, Sign
 from shared.wire import MAX_CONTAINER
 
 N = TypeVar("N")
@@ -42,7 +42,7 @@ class Draft(Generic[N]):
 
     Attributes:
         nodes, edges: as they are by now, by number and by pair of numbers.
-        marks: places, rules and routes likewise, by the keys of their names.
+        marks: places, rules, routes and signs likewise, by the keys of their names.
         writes: what was done; backwards, with before and after exchanged, it leads back.
     """
 
@@ -53,6 +53,7 @@ class Draft(Generic[N]):
         places: dict[str, Place] | None = None,
         rules: dict[str, Rule] | None = None,
         routes: dict[str, Route] | None = None,
+        signs: dict[str, Sign] | None = None,
     ) -> None:
         self.nodes, self.edges = nodes, edges
         self.writes: list[NodeWrite[N] | EdgeWrite | MarkWrite] = []
@@ -60,6 +61,7 @@ class Draft(Generic[N]):
             {} if places is None else places,
             {} if rules is None else rules,
             {} if routes is None else routes,
+            {} if signs is None else signs,
             nodes,
             self.writes.append,
         )

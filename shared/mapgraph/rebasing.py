@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.marks import only_nodes
 from shared.messages.maps import AddNode, DeleteEdge, DeleteNode, Edge, Node, Operation, PutEdge, UpdateNode
-from shared.messages.places import PutRoute
+from shared.messages.places import PutRoute, PutSign
 
 COUNTERS = ("traversals", "failures")
 
@@ -46,6 +46,8 @@ def _again(operation: Operation, before: MapGraph, now: MapGraph, ids: Mapping[i
             return operation if node_id in now.nodes else None
         case PutRoute(route=route):
             return PutRoute(route=only_nodes(route, now.nodes))
+        case PutSign(sign=sign):
+            return PutSign(sign=only_nodes(sign, now.nodes))
         case _:  # places and rules, which no robot writes
             return operation
 

@@ -12,12 +12,15 @@ from shared.messages.places import (
     DeletePlace,
     DeleteRoute,
     DeleteRule,
+    DeleteSign,
     Place,
     PutPlace,
     PutRoute,
     PutRule,
+    PutSign,
     Route,
     Rule,
+    Sign,
 )
 
 Ways = Annotated[
@@ -130,7 +133,7 @@ class DeleteEdge(Part):
     b: int = Field(ge=0)
 
 
-MarkOperation = PutPlace | DeletePlace | PutRule | DeleteRule | PutRoute | DeleteRoute
+MarkOperation = PutPlace | DeletePlace | PutRule | DeleteRule | PutRoute | DeleteRoute | PutSign | DeleteSign
 Operation = Annotated[
     AddNode | UpdateNode | DeleteNode | PutEdge | DeleteEdge | MarkOperation, Field(discriminator="op")
 ]
@@ -165,7 +168,7 @@ class NodeFeatures(Part):
 
 
 class MapReply(Message):
-    """The map after the request; nodes, edges, places, rules and routes only for read."""
+    """The map after the request; nodes, edges and marks only for read."""
 
     SCHEMA: ClassVar[str] = "map_reply.v1"
     MAX_ITEMS: ClassVar[int] = MAP_ITEMS
@@ -177,6 +180,7 @@ class MapReply(Message):
     places: tuple[Place, ...] = Field(default=(), fail_fast=True)
     rules: tuple[Rule, ...] = Field(default=(), fail_fast=True)
     routes: tuple[Route, ...] = Field(default=(), fail_fast=True)
+    signs: tuple[Sign, ...] = Field(default=(), fail_fast=True)
     features: tuple[NodeFeatures, ...] = Field(default=(), fail_fast=True)
 
 

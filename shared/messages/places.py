@@ -1,11 +1,12 @@
-"""Marks that people make on a map: names of places, rules, routes that they teach. Part of the map."""
+"""Marks on a map: names of places, rules, routes that people teach, signs read there. Part of the map."""
 
+import math
 import unicodedata
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from shared.messages.base import Part
+from shared.messages.base import Bearing, Part
 
 NAME_MAX = 64
 """Characters of a name; chosen: as many as those of maps have."""
@@ -52,6 +53,9 @@ Way = Annotated[
 """From one node to another; which of them is first counts for one-way edges only."""
 Ways = Annotated[tuple[Way, ...], Field(max_length=LISTED_MAX, fail_fast=True)]
 
+SIGHTINGS_MAX = 24
+"""Nodes from which one sign is kept; chosen: all those of a corridor that can read a plate in it."""
+
 Day = Literal["mon", "tue", "wed", "thu", "fri", "sat", "sun"]
 DAYS: tuple[Day, ...] = ("mon", "tue", "wed", "thu", "fri", "sat", "sun")
 
@@ -87,6 +91,32 @@ class Route(Mark):
     """
 
     nodes: NodeIds = ()
+
+
+class Sighting(Part):
+    """How a sign is read from a node.
+
+    Attributes:
+        node: the node.
+        bearing_rad: where it is, in the node's camera frame, counter-clockwise from ahead.
+        height_rad: how high its line of text appears: the larger, the nearer.
+        confidence: of the reading.
+    """
+
+    node: int = Field(ge=0, lt=2**63)
+    bearing_rad: Bearing
+    height_rad: float = Field(gt=0.0, le=math.pi)
+    confidence: float = Field(ge=0.0, le=1.0)
+
+
+class Sign(Mark):
+    """Text that robots read, such as a room number; its name is what it says.
+
+    Attributes:
+        sightings: of each node one, the best first. Nodes that are deleted leave with theirs.
+    """
+
+    sightings: Annotated[tuple[Sighting, ...], Field(max_length=SIGHTINGS_MAX)] = ()
 
 
 class KeepOut(Mark):
@@ -175,6 +205,20 @@ class DeleteRoute(Part):
     name: PlaceName
 
 
+class PutSign(Part):
+    """Keep a sign, or replace the one that says the same."""
+
+    op: Literal["put_sign"] = "put_sign"
+    sign: Sign
+
+
+class DeleteSign(Part):
+    """Forget a sign."""
+
+    op: Literal["delete_sign"] = "delete_sign"
+    name: PlaceName
+
+
 class PutRule(Part):
     """Add a rule or replace the one of the same name."""
 
@@ -190,15 +234,16 @@ class DeleteRule(Part):
 
 
 class Marks(Part):
-    """What people wrote on a map."""
+    """What people wrote on a map, and what robots read there."""
 
     places: tuple[Place, ...] = Field(default=(), fail_fast=True)
     rules: tuple[Rule, ...] = Field(default=(), fail_fast=True)
     routes: tuple[Route, ...] = Field(default=(), fail_fast=True)
+    signs: tuple[Sign, ...] = Field(default=(), fail_fast=True)
 
     @model_validator(mode="after")
     def _named_once(self) -> "Marks":
-        for kind in (self.places, self.rules, self.routes):
+        for kind in (self.places, self.rules, self.routes, self.signs):
             if len({key_of(mark.name) for mark in kind}) != len(kind):
                 raise ValueError("a name stands there twice")
         return self

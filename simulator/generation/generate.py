@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from simulator.generation.door_signs import door_signs
 from simulator.generation.furnishing import furnish
 from simulator.generation.kinds import KINDS, SIZES
 from simulator.generation.mending import GenerationError, mended
@@ -40,4 +41,9 @@ def generate(kind: str, seed: int, size: str = "medium") -> dict[str, Any]:
     def whole(some: list[Placed]) -> WorldFile:
         return WorldFile.model_validate(furnished(world, some))
 
-    return furnished(world, mended(pieces, whole))
+    pieces = mended(pieces, whole)
+    if style.signs:  # drawn apart: rooms and furniture stay those that the seed gave before there were signs
+        pieces += door_signs(
+            plan, pieces, np.random.default_rng([seed, SIZES.index(size), *b"signs", *kind.encode()])
+        )
+    return furnished(world, pieces)

@@ -35,19 +35,21 @@ class Kind:
         plan: draws where its rooms are, for a size of 0 to 2.
         wall_height_m: of its rooms.
         hard: floors and walls of halls.
+        signs: numbers beside the doors of its corridors.
     """
 
     plan: Callable[[int, np.random.Generator], Plan]
     wall_height_m: float = 2.6
     hard: bool = False
+    signs: bool = False
 
 
 KINDS: dict[str, Kind] = {
     "flat": Kind(divided_plan),
-    "hostel": Kind(partial(corridor_plan, HOSTEL)),
+    "hostel": Kind(partial(corridor_plan, HOSTEL), signs=True),
     "hotel": Kind(partial(corridor_plan, HOTEL)),
-    "school": Kind(partial(corridor_plan, SCHOOL), wall_height_m=3.0),
-    "offices": Kind(partial(corridor_plan, OFFICES)),
+    "school": Kind(partial(corridor_plan, SCHOOL), wall_height_m=3.0, signs=True),
+    "offices": Kind(partial(corridor_plan, OFFICES), signs=True),
     "open-office": Kind(partial(hall_plan, OPEN_OFFICE)),
     "warehouse": Kind(partial(hall_plan, WAREHOUSE), wall_height_m=5.0, hard=True),
     "shop": Kind(partial(hall_plan, SHOP), wall_height_m=3.2),

@@ -112,6 +112,12 @@ def marks() -> places.Marks:
             places.OpeningHours(name="door", edges=edge, hours=(night,), time_zone="Europe/Berlin"),
         ),
         routes=(places.Route(name="round", nodes=(1, 2, 1)),),
+        signs=(
+            places.Sign(
+                name="214",
+                sightings=(places.Sighting(node=1, bearing_rad=-0.5, height_rad=0.125, confidence=0.75),),
+            ),
+        ),
     )
 
 
@@ -128,6 +134,8 @@ def operations() -> tuple[maps.Operation, ...]:
         places.DeleteRule(name="lane"),
         *(places.PutRoute(route=route) for route in marks().routes),
         places.DeleteRoute(name="round"),
+        *(places.PutSign(sign=sign) for sign in marks().signs),
+        places.DeleteSign(name="214"),
     )
 
 
@@ -373,6 +381,7 @@ def mapped() -> tuple[Message, ...]:
             places=marks().places,
             rules=marks().rules,
             routes=marks().routes,
+            signs=marks().signs,
             features=(maps.NodeFeatures(node_id=1, features=features()),),
         ),
         maps.MapDelta(

@@ -19,6 +19,7 @@ MODULES = {
     "camera": "services.camera.settings",
     "ros": "services.ros.settings",
     "features": "services.features.settings",
+    "signs": "services.signs.settings",
     "planner": "services.planner.settings",
     "drive": "services.drive.settings",
     "dispatch": "services.dispatch.settings",

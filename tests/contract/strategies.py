@@ -23,11 +23,13 @@ from shared.messages.places import (
     DeletePlace,
     DeleteRoute,
     DeleteRule,
+    DeleteSign,
     KeepOut,
     OneWay,
     OpeningHours,
     Place,
     Route,
+    Sign,
     Slow,
 )
 from shared.messages.sensors import Frame
@@ -190,7 +192,20 @@ FITS: dict[type[BaseModel], Callable[[Fields, int, int], Fields]] = {
     Photo: _fit_photo,
     Edge: _fit_edge,
     **dict.fromkeys(
-        (Place, KeepOut, OneWay, Slow, OpeningHours, Route, DeletePlace, DeleteRule, DeleteRoute), _fit_mark
+        (
+            Place,
+            KeepOut,
+            OneWay,
+            Slow,
+            OpeningHours,
+            Route,
+            Sign,
+            DeletePlace,
+            DeleteRule,
+            DeleteRoute,
+            DeleteSign,
+        ),
+        _fit_mark,
     ),
     **dict.fromkeys((Inspection, InspectionRequest), _fit_mark),
 }

@@ -90,8 +90,8 @@ def test_the_schema_would_notice_a_misspelt_key(schema):
 
 def test_every_process_of_the_architecture_is_there():
     assert set(SERVICES) == {
-        "router", "map-store", "simulator", "camera", "ros", "features", "planner", "drive", "dispatch",
-        "gateway", "foxglove",
+        "router", "map-store", "simulator", "camera", "ros", "features", "signs", "planner", "drive",
+        "dispatch", "gateway", "foxglove",
     }  # fmt: skip
 
 
@@ -159,6 +159,7 @@ def test_certificates_and_what_is_real_belong_to_profiles_and_no_service_needs_t
         "camera": ["camera"],
         "ros": ["ros"],
         "foxglove": ["foxglove"],
+        "signs": ["signs"],
     }
     for name, service in SERVICES.items():
         need = service["depends_on"]["certs"]

@@ -119,7 +119,8 @@ def test_every_file_is_a_resource_or_a_patch_of_its_folder():
 
 
 def test_all_processes_but_those_that_are_with_the_robot_are_there():
-    assert set(DEPLOYMENTS) == SERVICES == set(COMPOSE) - {"simulator", "camera", "ros", "foxglove", "certs"}
+    with_the_robot = {"simulator", "camera", "ros", "signs", "foxglove"}
+    assert set(DEPLOYMENTS) == SERVICES == set(COMPOSE) - with_the_robot - {"certs"}
 
 
 @pytest.mark.parametrize("name", sorted(SERVICES))

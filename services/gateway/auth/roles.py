@@ -31,6 +31,7 @@ OPERATOR = frozenset(
         ("DELETE", "/api/maps/{map_name}/places"),
         ("PUT", "/api/maps/{map_name}/routes"),
         ("DELETE", "/api/maps/{map_name}/routes"),
+        ("DELETE", "/api/maps/{map_name}/signs"),
         ("POST", "/api/robots/{robot}/drive"),
         ("PATCH", "/api/robots/{robot}/tasks/{task_id}"),
         ("PUT", "/api/robots/{robot}/schedules/{name}"),

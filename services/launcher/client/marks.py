@@ -1,4 +1,4 @@
-"""Marks that people make on a map, as the commands about places, routes and rules list and forget them."""
+"""Marks on a map, as the commands about places, routes, rules and signs list and forget them."""
 
 import json
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from services.launcher.terminal.output import print_rows
 class Marks:
     """Marks of one kind on one map, in the map store of the stack in `data_dir` or one of its own."""
 
-    kind: Literal["place", "route", "rule"]
+    kind: Literal["place", "route", "rule", "sign"]
     map_name: str
     data_dir: Path
 

@@ -67,6 +67,7 @@ def run_foreground(
         secure=settings.secure,
         camera=settings.camera,
         ros=settings.ros,
+        signs=settings.signs,
         told=told,
     )
     _log_to(launcher.logs / "launcher.jsonl")
@@ -172,6 +173,7 @@ def _arguments(settings: StackSettings, compose_file: Path, timeout_s: float) ->
         value = getattr(settings, name)
         value = located(value) if name in ("world", "ros") else value
         arguments += [f"--{name}", str(value)] if value is not None else []
+    arguments += ["--signs"] if settings.signs else []
     if settings.lockstep is not None:
         arguments.append("--lockstep" if settings.lockstep else "--no-lockstep")
     if settings.secure:

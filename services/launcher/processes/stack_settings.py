@@ -55,6 +55,7 @@ class StackSettings:
         camera: URL of a real camera, deploy/CAMERAS.md: its process runs, and the simulator does not.
         ros: file of a robot in ROS 2, deploy/ROBOTS.md: likewise.
         foxglove: port of the live view for Foxglove, which runs only where one is given.
+        signs: signs are read as well, deploy/SIGNS.md.
     """
 
     data_dir: Path
@@ -68,6 +69,7 @@ class StackSettings:
     camera: str | None = None
     ros: str | None = None
     foxglove: int | None = None
+    signs: bool = False
 
     @property
     def protocol(self) -> str:
@@ -94,6 +96,7 @@ class StackSettings:
             "TOPNAV_CAMERA": self.camera,
             "TOPNAV_ROS": located(self.ros),
             "TOPNAV_FOXGLOVE": None if self.foxglove is None else str(self.foxglove),
+            "TOPNAV_SIGNS": "true" if self.signs else None,
             **profile_variables(self.profile),
             "TOPNAV_BIND": HOST,
             "TOPNAV_BUS": self.protocol,

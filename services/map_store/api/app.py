@@ -21,6 +21,7 @@ from services.map_store.errors import UnavailableError
 from services.map_store.inspections import routes as inspection_routes
 from services.map_store.inspections.store import InspectionStore
 from services.map_store.merging.merges import Merges
+from services.map_store.signs import routes as sign_routes
 from services.map_store.store import MapStore
 from shared.web.bodies import BodyLimit, BodyLimits
 
@@ -72,6 +73,7 @@ def create_app(
         graph_routes.build(store, write),
         mark_routes.build(store, write),
         taught_routes.build(store, write),
+        sign_routes.build(store, write),
         care_routes.build(store, write),
         archive_routes.build(store, write, max_archive_bytes),
         merge_routes.build(store, merges, write),

@@ -102,6 +102,9 @@ class ComparisonView(BaseModel):
     routes_added: list[str]
     routes_removed: list[str]
     routes_changed: list[str]
+    signs_added: list[str]
+    signs_removed: list[str]
+    signs_changed: list[str]
 
 
 class Health(BaseModel):

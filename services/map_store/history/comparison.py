@@ -53,6 +53,9 @@ class Comparison:
     routes_added: tuple[str, ...] = ()
     routes_removed: tuple[str, ...] = ()
     routes_changed: tuple[str, ...] = ()
+    signs_added: tuple[str, ...] = ()
+    signs_removed: tuple[str, ...] = ()
+    signs_changed: tuple[str, ...] = ()
 
 
 def rewind(graph: Graph, inverses: Iterable[Iterable[Step]]) -> Graph:
@@ -85,6 +88,7 @@ def compare(before: Graph, after: Graph) -> Comparison:
         **_mark_changes("places", before.places, after.places),
         **_mark_changes("rules", before.rules, after.rules),
         **_mark_changes("routes", before.routes, after.routes),
+        **_mark_changes("signs", before.signs, after.signs),
     )
 
 

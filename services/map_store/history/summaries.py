@@ -29,6 +29,8 @@ SENTENCES = (
     ("delete_rule", "rule", "lifted"),
     ("put_route", "route", "put"),
     ("delete_route", "route", "forgotten"),
+    ("put_sign", "sign", "read"),
+    ("delete_sign", "sign", "forgotten"),
 )
 
 
@@ -94,7 +96,9 @@ def _name(step: RawStep) -> str:
             return repr(step["rule"]["name"])
         case "put_route":
             return repr(step["route"]["name"])
-        case "delete_place" | "delete_rule" | "delete_route":
+        case "put_sign":
+            return repr(step["sign"]["name"])
+        case "delete_place" | "delete_rule" | "delete_route" | "delete_sign":
             return repr(step["name"])
     edge = step.get("edge", step)
     return f"{edge['a']}-{edge['b']}"

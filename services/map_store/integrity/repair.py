@@ -121,7 +121,8 @@ def _give_up_blobs(
         if bare.keys() & key and not gone.keys() & key:
             steps.append(PutEdge(edge=edge))
     kept = graph.nodes.keys() - gone.keys()
-    for mark in (*graph.places.values(), *graph.rules.values(), *graph.routes.values()):
+    marked = graph.marks
+    for mark in (*marked.places, *marked.rules, *marked.routes, *marked.signs):
         if bare.keys() & nodes_of(mark):  # they left it when they were deleted
             steps.append(put(only_nodes(mark, kept)))
     done = [f"node {node_id}: removed, its features are lost" for node_id in gone]

@@ -45,7 +45,7 @@ def mend_rows(
 
 
 def _intact_marks(connection: Connection, found: MapRecord) -> Marks:
-    """Places, rules and routes; none where their record is damaged."""
+    """All marks; none where their record is damaged."""
     row = connection.execute(select(marks).where(marks.c.map_id == found.map_id)).first()
     return parse_marks(row) if row is not None and intact(marks, row) else Marks()
 
@@ -64,6 +64,7 @@ def intact_graph(
         by_key(only_nodes(place, good.keys()) for place in written.places),
         by_key(only_nodes(rule, good.keys()) for rule in written.rules),
         by_key(only_nodes(route, good.keys()) for route in written.routes),
+        by_key(only_nodes(sign, good.keys()) for sign in written.signs),
     )
 
 

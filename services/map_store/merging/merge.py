@@ -16,10 +16,11 @@ from shared.mapgraph.merging.candidates import Candidate, MergeRefusedError
 from shared.mapgraph.merging.choice import choose
 from shared.mapgraph.merging.joining import check_size, joined_edges, new_ids
 from shared.mapgraph.merging.sight_graph import SightGraph
+from shared.mapgraph.signs import joined
 from shared.messages.features import Features
 from shared.messages.maps import PutEdge
 from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
-from shared.messages.places import PutPlace, PutRoute, PutRule
+from shared.messages.places import PutPlace, PutRoute, PutRule, PutSign
 from shared.queries import QueryError, RefusedError
 from shared.wire import WireError
 
@@ -138,7 +139,7 @@ class Merge:
         return (*steps, *self._marks(ids))
 
     def _marks(self, ids: Mapping[int, int]) -> Iterator[Step]:
-        """The other map's places, rules and routes; a name that is taken gets that map's behind it."""
+        """The other map's marks; a name that is taken gets that map's behind it, but signs are joined."""
         base, other = self._base.stored, self._other.stored
         names = free_names(other.places, base.places, self._other.name)
         for key, place in other.places.items():
@@ -149,3 +150,5 @@ class Merge:
         known = free_names(other.routes, base.routes, self._other.name)
         for key, route in other.routes.items():
             yield PutRoute(route=renumbered(route, ids, known[key], names))
+        for key, sign in other.signs.items():
+            yield PutSign(sign=joined(base.signs.get(key), renumbered(sign, ids, sign.name, names)))

@@ -17,7 +17,7 @@ from shared.mapgraph.mark_draft import MARKS_MAX
 from shared.messages.base import Name, Part
 from shared.messages.features import MAX_THUMBNAIL_BYTES
 from shared.messages.maps import Edge, PutEdge
-from shared.messages.places import Place, PutPlace, PutRoute, PutRule, Route, Rule, key_of
+from shared.messages.places import Place, PutPlace, PutRoute, PutRule, PutSign, Route, Rule, Sign, key_of
 from shared.topics import FEATURES
 from shared.wire import MAX_CONTAINER
 
@@ -50,6 +50,7 @@ class Index(Part):
     named_places: tuple[Place, ...] = Field(default=(), max_length=MARKS_MAX)
     rules: tuple[Rule, ...] = Field(default=(), max_length=MARKS_MAX)
     routes: tuple[Route, ...] = Field(default=(), max_length=MARKS_MAX)
+    signs: tuple[Sign, ...] = Field(default=(), max_length=MARKS_MAX)
 
 
 def write_archive(
@@ -67,6 +68,7 @@ def write_archive(
         named_places=marks.places,
         rules=marks.rules,
         routes=marks.routes,
+        signs=marks.signs,
     )
     owners: dict[str, tuple[StoredNode, Kind]] = {stored.features: (stored, "features") for stored in nodes}
     owners |= {stored.thumbnail: (stored, "thumbnail") for stored in nodes if stored.thumbnail}
@@ -156,7 +158,8 @@ class Archive:
         steps += [PutPlace(place=place) for place in self.index.named_places]
         steps += [PutRule(rule=rule) for rule in self.index.rules]
         steps += [PutRoute(route=route) for route in self.index.routes]
-        for what in (self.index.named_places, self.index.rules, self.index.routes):
+        steps += [PutSign(sign=sign) for sign in self.index.signs]
+        for what in (self.index.named_places, self.index.rules, self.index.routes, self.index.signs):
             if len({key_of(mark.name) for mark in what}) != len(what):
                 raise InvalidError(f"{INDEX}: a name stands there twice")
         if len({(edge.a, edge.b) for edge in self.index.edges}) != len(self.index.edges):

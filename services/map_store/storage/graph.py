@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from services.map_store.errors import ConflictError, InvalidError, MapError, MissingError
-from shared.mapgraph.mark_draft import MarkWrite
+from shared.mapgraph.mark_draft import AnyMark, MarkWrite
 from shared.mapgraph.marks import marks_of
 from shared.mapgraph.operations import (
     Draft,
@@ -30,13 +30,16 @@ from shared.messages.places import (
     DeletePlace,
     DeleteRoute,
     DeleteRule,
+    DeleteSign,
     Marks,
     Place,
     PutPlace,
     PutRoute,
     PutRule,
+    PutSign,
     Route,
     Rule,
+    Sign,
 )
 
 MAX_NODE_ID = 2**63 - 1
@@ -87,18 +90,19 @@ def added_by(steps: Iterable[Step]) -> list[StoredNode]:
 
 @dataclass(frozen=True)
 class Graph:
-    """One revision of a map; places, rules and routes by the keys of their names."""
+    """One revision of a map; its marks by the keys of their names."""
 
     nodes: Mapping[int, StoredNode] = field(default_factory=lambda: MappingProxyType({}))
     edges: Mapping[EdgeKey, Edge] = field(default_factory=lambda: MappingProxyType({}))
     places: Mapping[str, Place] = field(default_factory=lambda: MappingProxyType({}))
     rules: Mapping[str, Rule] = field(default_factory=lambda: MappingProxyType({}))
     routes: Mapping[str, Route] = field(default_factory=lambda: MappingProxyType({}))
+    signs: Mapping[str, Sign] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
     def marks(self) -> Marks:
-        """Places, rules and routes."""
-        return marks_of(self.places, self.rules, self.routes)
+        """Places, rules, routes and signs."""
+        return marks_of(self.places, self.rules, self.routes, self.signs)
 
 
 @dataclass(frozen=True)
@@ -109,7 +113,7 @@ class Change:
         before, graph: the graph before and after them.
         inverse: steps that lead back.
         nodes, edges: those written or deleted on the way, the edges of deleted nodes included.
-        marks: whether a place, a rule or a route was.
+        marks: whether a mark was.
     """
 
     before: Graph
@@ -127,7 +131,12 @@ def apply(graph: Graph, steps: Iterable[Step]) -> Change:
         MissingError, ConflictError, InvalidError: with the number of the step and the thing it names.
     """
     draft = Draft(
-        dict(graph.nodes), dict(graph.edges), dict(graph.places), dict(graph.rules), dict(graph.routes)
+        dict(graph.nodes),
+        dict(graph.edges),
+        dict(graph.places),
+        dict(graph.rules),
+        dict(graph.routes),
+        dict(graph.signs),
     )
     for number, step in enumerate(steps):
         try:
@@ -143,6 +152,7 @@ def apply(graph: Graph, steps: Iterable[Step]) -> Change:
             MappingProxyType(draft.marks.places),
             MappingProxyType(draft.marks.rules),
             MappingProxyType(draft.marks.routes),
+            MappingProxyType(draft.marks.signs),
         ),
         inverse=tuple(_back(write) for write in reversed(draft.writes)),
         nodes=frozenset(write.node_id for write in draft.writes if isinstance(write, NodeWrite)),
@@ -187,12 +197,16 @@ def _mark_back(write: MarkWrite) -> Step:
             return DeletePlace(name=name)
         case "route":
             return DeleteRoute(name=name)
+        case "sign":
+            return DeleteSign(name=name)
         case "rule":
             return DeleteRule(name=name)
 
 
-def put(mark: Place | Rule | Route) -> PutPlace | PutRule | PutRoute:
+def put(mark: AnyMark) -> PutPlace | PutRule | PutRoute | PutSign:
     """The step that writes a mark."""
     if isinstance(mark, Place):
         return PutPlace(place=mark)
+    if isinstance(mark, Sign):
+        return PutSign(sign=mark)
     return PutRoute(route=mark) if isinstance(mark, Route) else PutRule(rule=mark)

@@ -29,6 +29,7 @@ def read_graph(connection: Connection, found: MapRecord) -> Graph:
         by_key(written.places),
         by_key(written.rules),
         by_key(written.routes),
+        by_key(written.signs),
     )
     missing = found.node_count - len(graph.nodes), found.edge_count - len(graph.edges)
     if missing != (0, 0):

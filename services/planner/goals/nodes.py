@@ -1,9 +1,9 @@
-"""Which node a mission to a named place drives to, and whether the rules of the map allow it."""
+"""Which node a mission to a named place or to a sign drives to, and whether the map's rules allow it."""
 
 from services.planner.mission_kinds import MissionError
 from services.planner.ports import MapAccess
 from shared.mapgraph.local.keep_clear import keep_clear
-from shared.mapgraph.marks import place_called
+from shared.mapgraph.marks import place_called, sign_called
 
 
 def node_called(maps: MapAccess, name: str) -> int:
@@ -18,12 +18,31 @@ def node_called(maps: MapAccess, name: str) -> int:
         raise MissionError(place, "missing")
     if not place.nodes:
         raise MissionError(f"place {place.name!r} has no nodes left: name it again", "missing")
-    forbidden = maps.limits().forbidden
-    allowed = [node for node in place.nodes if node not in forbidden]
-    if not allowed:
+    return _first_allowed(maps, f"place {place.name!r}", place.nodes)
+
+
+def node_reading(maps: MapAccess, text: str) -> int:
+    """The node from which a sign is read best, of those that no rule forbids.
+
+    Raises:
+        MissionError: no sign says that ("missing": the text tells the nearest ones), or all of the nodes that
+            it is read from are gone or forbidden.
+    """
+    sign = sign_called(text, maps.graph.signs)
+    if isinstance(sign, str):
+        raise MissionError(sign, "missing")
+    if not sign.sightings:
         raise MissionError(
-            f"place {place.name!r} is forbidden by rule {forbidden[place.nodes[0]]!r}", "forbidden"
+            f"sign {sign.name!r} is read from no node any more: explore there again", "missing"
         )
+    return _first_allowed(maps, f"sign {sign.name!r}", tuple(one.node for one in sign.sightings))
+
+
+def _first_allowed(maps: MapAccess, what: str, nodes: tuple[int, ...]) -> int:
+    forbidden = maps.limits().forbidden
+    allowed = [node for node in nodes if node not in forbidden]
+    if not allowed:
+        raise MissionError(f"{what} is forbidden by rule {forbidden[nodes[0]]!r}", "forbidden")
     return allowed[0]
 
 

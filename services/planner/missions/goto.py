@@ -5,7 +5,7 @@ from dataclasses import replace
 from pydantic import BaseModel, ConfigDict, Field
 
 from services.planner.goals.destination import GoalDestination
-from services.planner.goals.nodes import check_allowed, node_called
+from services.planner.goals.nodes import check_allowed, node_called, node_reading
 from services.planner.mission_kinds import MissionContext, MissionError, MissionKind
 from services.planner.photographs.photo_goto import PhotoGoto
 from services.planner.ports import Decision, MapAccess, Matcher, Mission, Note, Observation, Progress
@@ -25,6 +25,7 @@ class GotoParameters(BaseModel):
 
     goal_node: int | None = Field(default=None, ge=0, lt=2**63, description="A node of the map.")
     place: PlaceName | None = Field(default=None, description="The name of a place.")
+    sign: PlaceName | None = Field(default=None, description="What a sign says, such as a room number.")
 
 
 class Goto:
@@ -74,13 +75,15 @@ def goto_place(context: MissionContext, name: str) -> Goto:
 
 
 def _make(context: MissionContext, parameters: GotoParameters) -> Mission:
-    node_id, place = parameters.goal_node, parameters.place
-    if sum(given is not None for given in (context.goal, node_id, place)) != 1:
+    node_id, place, sign = parameters.goal_node, parameters.place, parameters.sign
+    if sum(given is not None for given in (context.goal, node_id, place, sign)) != 1:
         raise MissionError(
-            "goto needs a goal picture's features, a goal_node or a place, exactly one of them"
+            "goto needs a goal picture's features, a goal_node, a place or a sign, exactly one of them"
         )
     if place is not None:
         node_id = node_called(context.maps, place)
+    if sign is not None:
+        node_id = node_reading(context.maps, sign)
     goal = context.goal
     if goal is None:
         if node_id not in context.maps.graph.nodes:
@@ -99,7 +102,7 @@ def _make(context: MissionContext, parameters: GotoParameters) -> Mission:
 
 KIND = MissionKind(
     name="goto",
-    title="Drive to a picture, node or place",
+    title="Drive to a picture, node, place or sign",
     parameters=GotoParameters,
     make=_make,
     shown=("similarity",),

@@ -28,6 +28,7 @@ SERVICES = {
     "ros": "services.ros",
     "recorder": "services.recorder",
     "foxglove": "services.recorder.foxglove",
+    "signs": "services.signs",
     "launcher": "services.launcher",
     "mcp": "services.mcp",
 }
@@ -93,7 +94,12 @@ def test_a_service_imports_with_only_its_own_extra(extra, package):
     run = import_with_only(extra, entry_point(package))
     assert run.returncode == 0, run.stderr
     heavy = set(filter(None, run.stdout.strip().split(",")))
-    known = {"simulator": {"sapien", "cv2"}, "features": {"torch", "cv2"}, "camera": {"cv2"}}
+    known = {
+        "simulator": {"sapien", "cv2"},
+        "features": {"torch", "cv2"},
+        "camera": {"cv2"},
+        "signs": {"cv2"},
+    }
     allowed = known.get(extra, set())
     assert heavy <= allowed
 

@@ -99,6 +99,7 @@ SERVICES = (
     "planner",
     "recorder",
     "recorder.foxglove",
+    "signs",
 )
 
 

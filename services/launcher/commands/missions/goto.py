@@ -1,4 +1,4 @@
-"""`topnav goto`: drive to where a picture or a photo was taken, to a place by its name, or home."""
+"""`topnav goto`: drive to where a picture or a photo was taken, to a place, to a sign, or home."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -15,6 +15,9 @@ app = typer.Typer()
 Image = Annotated[Path | None, typer.Option(help="An equirectangular picture, twice as wide as high.")]
 PhotoFile = Annotated[Path | None, typer.Option("--photo", help="An ordinary photo, to be faced as well.")]
 PlaceName = Annotated[str | None, typer.Option(help="A place by its name; see 'topnav place'.")]
+SignText = Annotated[
+    str | None, typer.Option("--sign", help="What a sign says, such as \"room 214\"; see 'topnav signs'.")
+]
 Home = Annotated[bool, typer.Option("--home", help="The place called home.")]
 
 
@@ -24,6 +27,7 @@ def goto(
     photo: PhotoFile = None,
     field_of_view_deg: options.FieldOfView = None,
     place: PlaceName = None,
+    sign: SignText = None,
     home: Home = False,
     map_name: options.MapName = "flat",
     world: options.World = "apartment",
@@ -37,7 +41,7 @@ def goto(
     endpoint: options.Endpoint = None,
     timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
 ) -> None:
-    """Drive to where a picture or a photo was taken, to a named place, or home: one of the four."""
+    """Drive to where a picture or a photo was taken, to a named place, to a sign, or home."""
     from services.launcher.client import failure, maps, mission, stack
     from services.launcher.client.photo import locate_photo, photo_from_file
     from services.launcher.drawing.pictures import frame_from_file
@@ -45,9 +49,10 @@ def goto(
     from services.launcher.terminal.progress import mission_progress
     from shared.messages.missions import MissionRequest, Parameters
 
-    _check_one_goal(image, photo, place, home, field_of_view_deg)
+    action, names = "home" if home else "goto", {"place": place, "sign": sign}
+    _check_one_goal(image, photo, names, home, field_of_view_deg)
     picture = image or photo
-    goal_name = picture.name if picture is not None else place or "home"
+    goal_name = picture.name if picture is not None else place or sign or "home"
     shot = None if photo is None else photo_from_file(photo, field_of_view_deg)
     choice = stack.StackChoice(
         data_dir, world, seed, lockstep, profile, pipeline, endpoint, timeout_s=timeout_s
@@ -59,10 +64,9 @@ def goto(
         goal = image and mission.goal_features(opened.bus, frame_from_file(image, opened.robot))
         if shot is not None:
             goal = locate_photo(opened.bus, opened.robot, known, shot).features
-        given: Parameters = {} if place is None else {"place": place}
-        kind = "home" if home else "goto"
+        given: Parameters = {n: v for n, v in names.items() if v is not None}
         request = MissionRequest(
-            action=kind, map=map_name, goal=goal, parameters=given, seed=seed, max_steps=max_steps
+            action=action, map=map_name, goal=goal, parameters=given, seed=seed, max_steps=max_steps
         )
         with mission_progress(output.wide_console(stderr=True), f"going to {goal_name}") as watch:
             run = client.run(request, watch)
@@ -70,7 +74,7 @@ def goto(
         "map": map_name,
         "image": None if image is None else str(image),
         "photo": None if photo is None else str(photo),
-        "place": "home" if home else place,
+        **{**names, "place": "home" if home else place},
         **_figures(run),
     }
     output.write_json(json_file, report)
@@ -96,9 +100,18 @@ def _figures(run: "MissionRun") -> dict[str, Any]:
 
 
 def _check_one_goal(
-    image: Path | None, photo: Path | None, place: str | None, home: bool, field_of_view_deg: float | None
+    image: Path | None,
+    photo: Path | None,
+    names: dict[str, str | None],
+    home: bool,
+    field_of_view_deg: float | None,
 ) -> None:
-    told = {"--image": image, "--photo": photo, "--place": place, "--home": home or None}
+    told = {
+        "--image": image,
+        "--photo": photo,
+        **{f"--{n}": v for n, v in names.items()},
+        "--home": home or None,
+    }
     given = [option for option, value in told.items() if value is not None]
     if len(given) != 1:
         raise typer.BadParameter(

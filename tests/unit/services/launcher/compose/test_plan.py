@@ -89,3 +89,14 @@ def test_a_robot_in_ros_does_so_with_a_camera_of_its_own_or_of_topnav():
     assert list(active_services(with_chosen(services, robot))) == ["ros", "a"]
     both = robot | {"TOPNAV_CAMERA": "osc://192.168.1.1"}
     assert list(active_services(with_chosen(services, both))) == ["camera", "ros", "a"]
+
+
+def test_what_reads_signs_joins_the_simulator_when_it_is_wanted():
+    simulator = Service(command=("python", "-m", "simulator"))
+    services = {"simulator": simulator, "signs": service(profiles=("signs",)), "a": service()}
+    assert list(active_services(with_chosen(services, {"TOPNAV_SIGNS": ""}))) == ["simulator", "a"]
+    assert list(active_services(with_chosen(services, {"TOPNAV_SIGNS": "true"}))) == [
+        "simulator",
+        "signs",
+        "a",
+    ]

@@ -14,7 +14,18 @@ from services.map_store.store import MapStore
 from shared.bus import wait_until
 from shared.messages.maps import AddNode, DeleteNode, Node, PutEdge
 from shared.messages.matching import MatchReply, MatchRequest, NodeMatch
-from shared.messages.places import KeepOut, Marks, Place, PutPlace, PutRoute, PutRule, Route
+from shared.messages.places import (
+    KeepOut,
+    Marks,
+    Place,
+    PutPlace,
+    PutRoute,
+    PutRule,
+    PutSign,
+    Route,
+    Sighting,
+    Sign,
+)
 from shared.queries import AbsentError, RefusedError
 from shared.wire import encode
 from tests.merge_world import KEYPOINTS, PIPELINE, Pose, edges_of, features_of, matches_of, row
@@ -95,6 +106,18 @@ def test_routes_come_along_with_the_numbers_that_their_nodes_have_now(maps: MapS
     ids = {old: 8 + k for k, old in enumerate(WING)}
     moved = Route(name="Tour (wing)", nodes=(ids[2], ids[7], ids[12], ids[7]))
     assert maps.graph("hall")[1].marks.routes == (here, moved)
+
+
+def test_what_both_maps_read_is_one_sign_seen_from_the_nodes_of_both(maps: MapStore):
+    def seen(node: int, height_rad: float) -> Sighting:
+        return Sighting(node=node, bearing_rad=0.0, height_rad=height_rad, confidence=1.0)
+
+    maps.transact("hall", [PutSign(sign=Sign(name="214", sightings=(seen(1, 0.1),)))])
+    maps.transact("wing", [PutSign(sign=Sign(name="214", sightings=(seen(7, 0.2),)))])
+    merge_of(maps).run()
+    moved = 8 + list(WING).index(7)
+    joined = Sign(name="214", sightings=(seen(moved, 0.2), seen(1, 0.1)))
+    assert maps.graph("hall")[1].marks.signs == (joined,)
 
 
 def test_names_and_rules_come_along_and_where_both_have_one_neither_is_lost(maps: MapStore):

@@ -1,4 +1,4 @@
-"""`topnav goto`: one goal, said in one of four ways; what else is given is refused before anything starts."""
+"""`topnav goto`: one goal, said in one of five ways; what else is given is refused before anything starts."""
 
 import itertools
 import re
@@ -12,6 +12,7 @@ GOALS = {
     "--image": ("--image", "flat.png"),
     "--photo": ("--photo", "phone.jpg"),
     "--place": ("--place", "dock"),
+    "--sign": ("--sign", "214"),
     "--home": ("--home",),
 }
 
@@ -33,7 +34,7 @@ def refusal(*arguments):
 
 def test_without_a_goal_the_ways_to_say_one_are_named():
     told = refusal()
-    assert "one of --image, --photo, --place, --home says where to go, given: none" in told
+    assert "one of --image, --photo, --place, --sign, --home says where to go, given: none" in told
 
 
 @pytest.mark.parametrize(("first", "second"), list(itertools.permutations(GOALS, 2)))

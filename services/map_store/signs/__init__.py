@@ -1,0 +1,1 @@
+"""Signs that were read in a map, over REST."""
