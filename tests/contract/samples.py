@@ -414,6 +414,7 @@ def task() -> tasks.Task:
         for_battery=True,
         schedule="night",
         by="anna",
+        fleet=True,
         due_ns=STAMP_NS,
         created_ns=STAMP_NS + 1,
         started_ns=STAMP_NS + 2,
@@ -449,6 +450,7 @@ def queued() -> tuple[Message, ...]:
             name="night",
             due_ns=STAMP_NS,
             skip=True,
+            to="r2",
             ended=20,
         ),
         tasks.TaskReply(

@@ -67,6 +67,7 @@ def run_foreground(
         secure=settings.secure,
         camera=settings.camera,
         ros=settings.ros,
+        fleet=settings.fleet,
         told=told,
     )
     _log_to(launcher.logs / "launcher.jsonl")
@@ -176,4 +177,6 @@ def _arguments(settings: StackSettings, compose_file: Path, timeout_s: float) ->
         arguments.append("--lockstep" if settings.lockstep else "--no-lockstep")
     if settings.secure:
         arguments.append("--secure")
+    if settings.fleet:
+        arguments.append("--fleet")
     return arguments

@@ -55,6 +55,7 @@ class StackSettings:
         camera: URL of a real camera, deploy/CAMERAS.md: its process runs, and the simulator does not.
         ros: file of a robot in ROS 2, deploy/ROBOTS.md: likewise.
         foxglove: port of the live view for Foxglove, which runs only where one is given.
+        fleet: the process that hands out tasks for whichever robot runs as well.
     """
 
     data_dir: Path
@@ -68,6 +69,7 @@ class StackSettings:
     camera: str | None = None
     ros: str | None = None
     foxglove: int | None = None
+    fleet: bool = False
 
     @property
     def protocol(self) -> str:
@@ -94,6 +96,7 @@ class StackSettings:
             "TOPNAV_CAMERA": self.camera,
             "TOPNAV_ROS": located(self.ros),
             "TOPNAV_FOXGLOVE": None if self.foxglove is None else str(self.foxglove),
+            "TOPNAV_FLEET": "1" if self.fleet else None,
             **profile_variables(self.profile),
             "TOPNAV_BIND": HOST,
             "TOPNAV_BUS": self.protocol,

@@ -50,6 +50,7 @@ class Launcher:
         secure: certificates, mTLS and access rules on the bus.
         camera: URL of a real camera, and ros: file of a robot in ROS 2, in place of the simulator.
         foxglove: port of the live view for Foxglove; None leaves it out.
+        fleet: hand out tasks for whichever robot, too.
         only: run these services and what they depend on.
         without: leave these services out.
         variables: what the Compose file interpolates, and services are told beside what it says; by default
@@ -81,12 +82,24 @@ class Launcher:
         camera: str | None = None,
         ros: str | None = None,
         foxglove: int | None = None,
+        fleet: bool = False,
         told: Callable[[str], None] | None = None,
     ) -> None:
         folder = Path(data_dir).resolve()
         ports, environment = ports or Ports.free(), dict(environment or {})
         self.settings = StackSettings(
-            folder, world, lockstep, seed, profile, ports, environment, secure, camera, ros, foxglove
+            folder,
+            world,
+            lockstep,
+            seed,
+            profile,
+            ports,
+            environment,
+            secure,
+            camera,
+            ros,
+            foxglove,
+            fleet,
         )
         self._root, self._timeout_s, self._watch = compose_file.resolve().parent, timeout_s, watch
         self._told = told
