@@ -85,6 +85,7 @@ ESTOP_STATE = Topic("topnav/{robot}/stopped", estop.EStopState, Delivery.COMMAND
 ROBOT_ESTOP_STATE = Topic("topnav/{robot}/standing", estop.EStopState, Delivery.COMMAND, 10_000)
 STATUS = Topic("topnav/{robot}/status", missions.MissionStatus, Delivery.LOG, 1 * MB)
 QUEUE = Topic("topnav/{robot}/queue", tasks.QueueStatus, Delivery.DATA, 10_000)
+FLEET_QUEUE = Topic("topnav/any/fleet", tasks.QueueStatus, Delivery.DATA, 10_000)
 EVENT = Topic("topnav/{robot}/event", missions.Event, Delivery.LOG, 100_000)
 TRUTH = Topic("topnav/{robot}/truth", simulation.Truth, Delivery.LOG, 10_000)
 MAP_DELTA = Topic("topnav/maps/{map}/delta", maps.MapDelta, Delivery.RECOVERED, 64 * MB)
@@ -104,7 +105,7 @@ MAP_READ = Query("topnav/maps/{map}/read", maps.MapRequest, maps.MapReply, 512 *
 MISSION_RECORD = Query(
     "topnav/missions/{robot}", maps.MissionRecordRequest, maps.MissionRecord, 8 * MB, anyone=True
 )
-TASKS = Query("topnav/missions/{robot}/tasks", tasks.TaskRequest, tasks.TaskReply, 8 * MB, anyone=True)
+TASKS = Query("topnav/missions/{queue}/tasks", tasks.TaskRequest, tasks.TaskReply, 8 * MB, anyone=True)
 COMPARE = Query(
     "topnav/{robot}/compare", inspections.CompareRequest, inspections.CompareReply, 8 * MB, anyone=True
 )

@@ -15,7 +15,7 @@ RUN python -m compileall -q shared
 # An empty volume takes the owner of the folder it covers: all services run as the same user.
 RUN groupadd --system --gid 10001 topnav \
     && useradd --system --uid 10001 --gid 10001 topnav \
-    && for one in authority router ros simulator camera features signs map_store planner drive dispatch \
+    && for one in authority router ros simulator camera features signs map_store planner drive dispatch fleet \
         gateway recorder foxglove operator viewer; do install --directory --owner topnav --mode 700 "/certs/$one"; done
 USER topnav
 # The root file system is read-only: caches go to the tmpfs.

@@ -9,6 +9,7 @@ from typing import Literal
 
 from shared.messages.missions import MissionStatus
 from shared.messages.tasks import Task, TaskReply
+from shared.robots.seen import Seen, kept_by
 
 Action = Literal["wait", "begin", "resume", "cancel", "go_home"]
 HOME = "home"
@@ -26,23 +27,6 @@ class Limits:
 
     low: float
     resume: float
-
-
-@dataclass(frozen=True)
-class Seen:
-    """What is known of the robot; None of what nobody said lately.
-
-    Attributes:
-        status: of its mission.
-        stopped: whether the emergency stop is engaged.
-        driver: who drives it by hand; "" for nobody.
-        charge: of the battery, 0 to 1; None also of a robot that has none or does not tell.
-    """
-
-    status: MissionStatus | None
-    stopped: bool | None
-    driver: str = ""
-    charge: float | None = None
 
 
 @dataclass(frozen=True)
@@ -93,7 +77,7 @@ def _step(queue: TaskReply, seen: Seen, limits: Limits, on_hold: bool) -> Step:
         return Step(why=f"the end of {running.task_id} is being recorded")
     if not queue.tasks:
         return Step()
-    if (why := _kept_by(seen)) is not None:
+    if (why := kept_by(seen)) is not None:
         return Step(why=why)
     first = _first(queue)
     if first.for_battery or not (low or on_hold):
@@ -116,7 +100,7 @@ def _under_way(task: Task, status: MissionStatus, seen: Seen, low: bool) -> Step
         return Step("cancel", task, why="it goes back into the queue")
     if low and not task.for_battery:
         return Step("go_home", way_home(task), why=f"the battery is at {seen.charge:.0%}")
-    if status.state == "paused" and status.paused_by == "emergency_stop" and _kept_by(seen) is None:
+    if status.state == "paused" and status.paused_by == "emergency_stop" and kept_by(seen) is None:
         return Step("resume", task)
     return Step(why=status.reason if status.state == "paused" else "")
 
@@ -124,15 +108,6 @@ def _under_way(task: Task, status: MissionStatus, seen: Seen, low: bool) -> Step
 def way_home(task: Task) -> Task:
     """The task that brings the robot home in the map of `task`; the map store gives it its id."""
     return Task(task_id=HOME, robot=task.robot, kind=HOME, map=task.map, priority=9)
-
-
-def _kept_by(seen: Seen) -> str | None:
-    """What keeps the robot from beginning anything; None for nothing."""
-    if seen.stopped is None:
-        return "nothing is heard of drive"
-    if seen.stopped:
-        return "the emergency stop is engaged"
-    return f"{seen.driver} drives by hand" if seen.driver else None
 
 
 def _charging(charge: float | None, limits: Limits) -> str:

@@ -4,13 +4,14 @@ import logging
 import threading
 import time
 
-from services.dispatch.core import Seen, Step, next_step
-from services.dispatch.hearing import Hearing
+from services.dispatch.core import Step, next_step
 from services.dispatch.settings import DispatchSettings
 from shared.bus import Bus
 from shared.messages.missions import MissionRequest, MissionStatus
 from shared.messages.tasks import QueueStatus, Schedule, Task, TaskReply, TaskRequest
 from shared.queries import QueryError, RefusedError
+from shared.robots.hearing import Hearing
+from shared.robots.seen import Seen
 from shared.schedules.due_times import NS, DueTimes, ScheduleError
 from shared.topics import MISSION, QUEUE, TASKS
 from shared.wire import WireError
@@ -122,7 +123,7 @@ class Dispatch:
         )
 
     def _ask(self, request: TaskRequest) -> TaskReply:
-        return self._bus.ask(TASKS, request, self._settings.query_timeout_s, robot=self._settings.robot)
+        return self._bus.ask(TASKS, request, self._settings.query_timeout_s, queue=self._settings.robot)
 
     def _mission(self, request: MissionRequest) -> MissionStatus:
         return self._bus.ask(MISSION, request, self._settings.query_timeout_s, robot=self._settings.robot)

@@ -20,7 +20,7 @@ from services.gateway.live.hub import Hub
 from services.gateway.live.mission_log import MissionLog
 from services.gateway.settings import GatewaySettings
 from shared.messages.estop import EStopState
-from shared.transport.keys import check_robot
+from shared.transport.keys import check_queue, check_robot
 
 T = TypeVar("T")
 
@@ -84,6 +84,11 @@ def gateway_of(connection: HTTPConnection) -> Gateway:
 GatewayDep = Annotated[Gateway, Depends(gateway_of)]
 RobotPath = Annotated[
     str, Path(pattern=r"^[a-z0-9_-]{1,64}$", description="name of a robot"), AfterValidator(check_robot)
+]
+QueuePath = Annotated[
+    str,
+    Path(pattern=r"^[a-z0-9_-]{1,64}$", description="name of a robot, or any for the fleet's queue"),
+    AfterValidator(check_queue),
 ]
 MapPath = Annotated[str, Path(pattern=r"^[a-z0-9_-]{1,64}$", description="name of a map")]
 NodePath = Annotated[int, Path(ge=0, lt=2**63, description="number of a node")]

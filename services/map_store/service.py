@@ -111,7 +111,7 @@ def run(
 ) -> None:
     """Answer until `stop`; `ready` is called once questions can be asked."""
     maps, records = bus.requests(MAP, map="*"), bus.requests(MISSION_RECORD, robot="*")
-    readers, queues = bus.requests(MAP_READ, map="*"), bus.requests(TASKS, robot="*")
+    readers, queues = bus.requests(MAP_READ, map="*"), bus.requests(TASKS, queue="*")
     inspections = bus.requests(INSPECTION, map="*")
     _reset_followers(store, deltas)
     ready()

@@ -90,7 +90,8 @@ def _keys(role: Role, robot: str, table: Any, side: str) -> Iterator[str]:
     stream: Topic[Any] | Query[Any, Any]
     for stream, grant in table.items():
         if role in getattr(grant, side):
-            yield stream.template.format(robot=robot if role.of_one_robot else "*", map="*")
+            own = robot if role.of_one_robot else "*"
+            yield stream.template.format(robot=own, queue=own, map="*")
 
 
 def _tokens(role: Role, robot: str) -> tuple[str, ...]:

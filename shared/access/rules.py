@@ -26,6 +26,7 @@ class Role(Enum):
     DRIVE = "drive"
     DISPATCH = "dispatch"
     SIGNS = "signs"
+    FLEET = "fleet"
     GATEWAY = "gateway"
     RECORDER = "recorder"
     FOXGLOVE = "foxglove"
@@ -100,6 +101,8 @@ PEOPLE = (Role.GATEWAY, Role.OPERATOR)
 WATCHERS = (*PEOPLE, Role.RECORDER, Role.FOXGLOVE, Role.VIEWER)
 ASKERS = (*PEOPLE, Role.ROBOT)
 """A robot whose body is in ROS passes on what people wish there: of itself only (services/ros)."""
+GIVERS = (Role.DISPATCH, Role.FLEET)
+"""They decide who begins what by what a robot says of itself."""
 
 STREAMS: dict[Topic[Any], Grant] = {
     topics.FRAME: _grant([*BODIES, Role.CAMERA], [Role.ROBOT, Role.FEATURES, Role.SIGNS, *WATCHERS]),
@@ -109,18 +112,21 @@ STREAMS: dict[Topic[Any], Grant] = {
     topics.FEATURES: _grant([Role.FEATURES], [Role.PLANNER, Role.CAMERA, *WATCHERS]),
     topics.HEADING: _grant([Role.PLANNER], [Role.DRIVE, *WATCHERS]),
     topics.VELOCITY: _grant([Role.DRIVE], [*BODIES, Role.PLANNER, *WATCHERS]),
-    topics.MANUAL: _grant(PEOPLE, [Role.DRIVE, Role.PLANNER, Role.DISPATCH, *WATCHERS]),
+    topics.MANUAL: _grant(PEOPLE, [Role.DRIVE, Role.PLANNER, *GIVERS, *WATCHERS]),
     topics.ODOMETRY: _grant(BODIES, [Role.DRIVE, Role.PLANNER, *WATCHERS]),
     topics.IMU: _grant(BODIES, WATCHERS),
-    topics.BATTERY: _grant(BODIES, [Role.DISPATCH, *WATCHERS]),
-    topics.ESTOP_STATE: _grant([Role.DRIVE], [*BODIES, Role.PLANNER, Role.DISPATCH, *WATCHERS]),
+    topics.BATTERY: _grant(BODIES, [*GIVERS, *WATCHERS]),
+    topics.ESTOP_STATE: _grant([Role.DRIVE], [*BODIES, Role.PLANNER, *GIVERS, *WATCHERS]),
     topics.ROBOT_ESTOP_STATE: _grant(BODIES, [Role.DRIVE, *WATCHERS]),
-    topics.STATUS: _grant([Role.PLANNER], [Role.PLANNER, Role.DISPATCH, Role.ROBOT, *WATCHERS]),
-    topics.QUEUE: _grant([Role.DISPATCH], WATCHERS),
+    topics.STATUS: _grant([Role.PLANNER], [Role.PLANNER, *GIVERS, Role.ROBOT, *WATCHERS]),
+    topics.QUEUE: _grant([Role.DISPATCH], [Role.FLEET, *WATCHERS]),
+    topics.FLEET_QUEUE: _grant([Role.FLEET], WATCHERS),
     topics.EVENT: _grant([Role.PLANNER], WATCHERS),
     # Only evaluation may know where the robot really is.
     topics.TRUTH: _grant([Role.SIMULATOR], [*PEOPLE, Role.RECORDER]),
-    topics.MAP_DELTA: _grant([Role.MAP_STORE], [Role.FEATURES, Role.PLANNER, Role.SIGNS, *WATCHERS]),
+    topics.MAP_DELTA: _grant(
+        [Role.MAP_STORE], [Role.FEATURES, Role.PLANNER, Role.SIGNS, Role.FLEET, *WATCHERS]
+    ),
 }
 QUESTIONS: dict[Query[Any, Any], Grant] = {
     topics.MATCH: _grant([Role.FEATURES], [Role.PLANNER, Role.MAP_STORE, *PEOPLE]),
@@ -131,9 +137,9 @@ QUESTIONS: dict[Query[Any, Any], Grant] = {
     topics.ESTOP: _grant([Role.DRIVE], ASKERS),
     # One key reads and writes: who only reads has a key of its own.
     topics.MAP: _grant([Role.MAP_STORE], [Role.PLANNER, Role.SIGNS, *PEOPLE]),
-    topics.MAP_READ: _grant([Role.MAP_STORE], [Role.FEATURES, Role.FOXGLOVE]),
+    topics.MAP_READ: _grant([Role.MAP_STORE], [Role.FEATURES, Role.FLEET, Role.FOXGLOVE]),
     topics.MISSION_RECORD: _grant([Role.MAP_STORE], [Role.PLANNER]),
-    topics.TASKS: _grant([Role.MAP_STORE], [Role.DISPATCH, *PEOPLE]),
+    topics.TASKS: _grant([Role.MAP_STORE], [*GIVERS, *PEOPLE]),
     topics.COMPARE: _grant([Role.FEATURES], [Role.PLANNER]),
     topics.INSPECTION: _grant([Role.MAP_STORE], [Role.PLANNER]),
     topics.SIMULATION: _grant([Role.SIMULATOR], [Role.OPERATOR]),

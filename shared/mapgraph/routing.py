@@ -74,6 +74,18 @@ def plan_path(
     return paths[min(reachable)[1]] if reachable else []
 
 
+def metres_to(graph: MapGraph, node_id: int, limits: Limits = NO_LIMITS) -> dict[int, float]:
+    """Length of the shortest way from every node to one of them, metres; of those from which one leads.
+
+    Ways that experience speaks against count `SUSPENDED_M` more, slow ones by how much longer they take.
+    """
+
+    def length_m(edge: Edge) -> float:
+        return edge_length_m(graph, edge) + SUSPENDED_M * edge.suspended
+
+    return _to_targets(graph, {node_id: 0.0}, length_m, limits)[0]
+
+
 def _to_targets(
     graph: MapGraph, targets: Mapping[int, float], cost: EdgeCost, limits: Limits
 ) -> tuple[dict[int, float], dict[int, list[int]]]:

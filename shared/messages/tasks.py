@@ -46,6 +46,7 @@ class Task(Errand):
         for_battery: it brings a robot home that has little charge left.
         schedule: what made it, at `due_ns`; "" for a task that somebody asked for.
         by: who asked for it.
+        fleet: it is for whichever robot; `robot` is the one that has it now, or ANY while none has.
         created_ns, started_ns, ended_ns: by the clock of the map store.
     """
 
@@ -60,6 +61,7 @@ class Task(Errand):
     for_battery: bool = False
     schedule: str = Field(default="", pattern=r"^[a-z0-9_-]{0,40}$")
     by: str = Field(default="", max_length=64)
+    fleet: bool = False
     due_ns: Moment = 0
     created_ns: Moment = 0
     started_ns: Moment = 0
@@ -100,12 +102,14 @@ class Schedule(Part):
 
 
 class TaskRequest(Message):
-    """Read or change the queue and the schedules of one robot. Asked again, each is done once.
+    """Read or change queue and schedules of a robot, or the queue of the fleet. Asked again, it is done once.
 
     Attributes:
         action: read; add `task`; cancel a task that waits; prioritize one that waits; refuse one that waits,
             because the planner does; go_home: have the running task put back and `task` come first;
-            put_schedule, remove_schedule; make_due: make the task of schedule `name` for `due_ns`, or `skip`.
+            put_schedule, remove_schedule; make_due: make the task of schedule `name` for `due_ns`, or `skip`;
+            move: put a task of the fleet that waits in this queue into the queue `to`.
+        to: a robot's name, or ANY.
         ended: how many tasks that ended the answer shall have.
     """
 
@@ -122,6 +126,7 @@ class TaskRequest(Message):
         "put_schedule",
         "remove_schedule",
         "make_due",
+        "move",
     ]
     task_id: str = Field(default="", pattern=r"^[a-z0-9_.-]{0,56}$")
     task: Task | None = None
@@ -131,11 +136,14 @@ class TaskRequest(Message):
     name: str = Field(default="", pattern=r"^[a-z0-9_-]{0,40}$")
     due_ns: Moment = 0
     skip: bool = False
+    to: str = Field(default="", pattern=r"^[a-z0-9_-]{0,64}$")
     ended: int = Field(default=0, ge=0, le=200)
 
 
 class TaskReply(Message):
     """The queue after the request.
+
+    That of the fleet has every task that is for whichever robot, wherever it waits, runs or ended.
 
     Attributes:
         tasks: those that have not ended, the running one first, then in the order in which they will begin.
@@ -159,6 +167,8 @@ class TaskReply(Message):
 
 class QueueStatus(Message):
     """What the process that begins a robot's tasks is about, said once a second. Dispatch -> everyone.
+
+    The process that hands out the fleet's says the same of ANY; `running` is then "" always.
 
     Attributes:
         waiting: tasks in the queue.

@@ -4,7 +4,9 @@ import re
 
 NAME = re.compile(r"[a-z0-9_-]{1,64}\Z")
 """Names of robots, maps and services: without the signs that mean something in key expressions and paths."""
-RESERVED = ("alive", "features", "maps", "missions")
+ANY = "any"
+"""Whose queue is that of the fleet: tasks for whichever robot."""
+RESERVED = ("alive", ANY, "features", "maps", "missions")
 """No robots: topnav/missions/estop would stop one called missions and be the record of one called estop."""
 
 
@@ -23,6 +25,11 @@ def check_robot(name: str) -> str:
     return name
 
 
+def check_queue(name: str) -> str:
+    """Return the name of a queue of tasks, a robot's or ANY, as it is, or raise ValueError."""
+    return name if name == ANY else check_robot(name)
+
+
 def fill(template: str, names: dict[str, str]) -> str:
     """Put checked names into a key template."""
     for label, name in names.items():
@@ -30,6 +37,8 @@ def fill(template: str, names: dict[str, str]) -> str:
             continue
         if label == "robot":
             check_robot(name)
+        elif label == "queue":
+            check_queue(name)
         elif not NAME.match(name):
             raise ValueError(f"{label} must match [a-z0-9_-]{{1,64}}, got {name[:80]!r}")
     return template.format(**names)

@@ -423,6 +423,7 @@ def task() -> tasks.Task:
         for_battery=True,
         schedule="night",
         by="anna",
+        fleet=True,
         due_ns=STAMP_NS,
         created_ns=STAMP_NS + 1,
         started_ns=STAMP_NS + 2,
@@ -458,6 +459,7 @@ def queued() -> tuple[Message, ...]:
             name="night",
             due_ns=STAMP_NS,
             skip=True,
+            to="r2",
             ended=20,
         ),
         tasks.TaskReply(

@@ -23,6 +23,7 @@ MODULES = {
     "planner": "services.planner.settings",
     "drive": "services.drive.settings",
     "dispatch": "services.dispatch.settings",
+    "fleet": "services.fleet.settings",
     "gateway": "services.gateway.settings",
     "foxglove": "services.recorder.foxglove.live.settings",
 }

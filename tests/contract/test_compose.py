@@ -50,6 +50,7 @@ def stack(tmp_path):
         camera="osc://192.168.1.1",
         ros="deploy/robots/omni.yaml",
         foxglove=18765,
+        fleet=True,
     )
 
 
@@ -91,7 +92,7 @@ def test_the_schema_would_notice_a_misspelt_key(schema):
 def test_every_process_of_the_architecture_is_there():
     assert set(SERVICES) == {
         "router", "map-store", "simulator", "camera", "ros", "features", "signs", "planner", "drive",
-        "dispatch", "gateway", "foxglove",
+        "dispatch", "fleet", "gateway", "foxglove",
     }  # fmt: skip
 
 
@@ -160,6 +161,7 @@ def test_certificates_and_what_is_real_belong_to_profiles_and_no_service_needs_t
         "ros": ["ros"],
         "foxglove": ["foxglove"],
         "signs": ["signs"],
+        "fleet": ["fleet"],
     }
     for name, service in SERVICES.items():
         need = service["depends_on"]["certs"]

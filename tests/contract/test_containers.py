@@ -134,7 +134,7 @@ def test_no_image_of_a_stranger_is_taken_for_ours() -> None:
 
 def test_all_health_checks_together_take_a_twentieth_of_a_core() -> None:
     """One takes 0.07 s of processor time (`tests/unit/shared/test_health.py`)."""
-    beside = ("camera", "ros", "foxglove", "signs")  # they replace the simulator, or are asked for
+    beside = ("camera", "ros", "foxglove", "signs", "fleet")  # they replace the simulator, or are asked for
     together = {name: one for name, one in SERVICES.items() if name not in beside}
     checks = [service["healthcheck"] for service in together.values() if "healthcheck" in service]
     assert sum(0.07 / float(check["interval"].removesuffix("s")) for check in checks) <= 0.05

@@ -17,7 +17,7 @@ import yaml
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "deploy/k8s"
 COMPOSE = yaml.safe_load((ROOT / "docker-compose.yml").read_text(encoding="utf-8"))["services"]
-SERVICES = {"router", "map-store", "features", "planner", "drive", "dispatch", "gateway"}
+SERVICES = {"router", "map-store", "features", "planner", "drive", "dispatch", "fleet", "gateway"}
 VERSIONS = ("1.29", "1.33")
 """Of Kubernetes: an old one that is still met, and one of those in service."""
 OVERLAYS = ("open", "secure")

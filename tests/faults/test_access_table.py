@@ -48,7 +48,8 @@ def settle(session):
 def named(grantees, stream):
     """Sessions that the table means: those of r1, and of r2 where the key is not one robot's."""
     ours = {role.value for role in grantees}
-    return ours if "{robot}" in stream.template else ours | {f"{r.value}.r2" for r in grantees if has_r2(r)}
+    of_one = "{robot}" in stream.template or "{queue}" in stream.template
+    return ours if of_one else ours | {f"{r.value}.r2" for r in grantees if has_r2(r)}
 
 
 def has_r2(role):
@@ -57,7 +58,7 @@ def has_r2(role):
 
 @pytest.mark.parametrize("stream", STREAMS, ids=lambda stream: stream.template)
 def test_only_who_speaks_is_heard_and_only_by_who_may_hear(stream, sessions):
-    grant, key = STREAMS[stream], stream.template.format(robot="r1", map="flat")
+    grant, key = STREAMS[stream], stream.template.format(robot="r1", queue="r1", map="flat")
     heard = {name: [] for name in sessions}
     listening = [
         session.declare_subscriber(k, lambda sample, name=name: heard[name].append(bytes(sample.payload)))
@@ -94,11 +95,13 @@ def test_a_publisher_hears_of_those_who_subscribe_later_to_all_robots(stream, se
     grant = STREAMS[stream]
     watchers = [role.value for role in grant.hearers if not role.of_one_robot]
     for speaker in sorted(role.value for role in grant.speakers):
-        publisher = sessions[speaker].declare_publisher(stream.template.format(robot="r1", map="flat"))
+        publisher = sessions[speaker].declare_publisher(
+            stream.template.format(robot="r1", queue="r1", map="flat")
+        )
         settle(sessions[speaker])
         for name in watchers:
             arrived = threading.Event()
-            key = stream.template.format(robot="*", map="*")
+            key = stream.template.format(robot="*", queue="*", map="*")
             inbox = sessions[name].declare_subscriber(key, lambda _, arrived=arrived: arrived.set())
 
             def sent(publisher=publisher, arrived=arrived):
@@ -113,7 +116,7 @@ def test_a_publisher_hears_of_those_who_subscribe_later_to_all_robots(stream, se
 
 @pytest.mark.parametrize("question", QUESTIONS, ids=lambda question: question.template)
 def test_only_who_may_ask_is_answered_and_only_by_who_may_answer(question, sessions):
-    grant, key = QUESTIONS[question], question.template.format(robot="r1", map="flat")
+    grant, key = QUESTIONS[question], question.template.format(robot="r1", queue="r1", map="flat")
     declared = []
     for name, session in sessions.items():
 

@@ -14,6 +14,7 @@ from shared.topics import (
     CAMERA_STATE,
     ESTOP_STATE,
     EVENT,
+    FLEET_QUEUE,
     FRAME,
     HEADING,
     IMU,
@@ -86,6 +87,7 @@ class Bridge:
         self._alive = Alive(bus.wake)
         self._followed: dict[str, tuple[Inbox, ...]] = {}
         self._queued, self._telling = self._subscribed(QUEUED, "*"), self._subscribed(TELLING, "*")
+        self._queued += (bus.subscribe(FLEET_QUEUE).take_all,)
         self._follow(robot)
         bus.watch_alive(self._alive.change)
         self._thread = threading.Thread(target=self._run, name="bridge", daemon=True)

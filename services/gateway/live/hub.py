@@ -21,6 +21,7 @@ from shared.messages.missions import Event, MissionStatus
 from shared.messages.sensors import Frame, Ranges
 from shared.messages.simulation import Truth
 from shared.messages.tasks import QueueStatus
+from shared.transport.keys import ANY
 
 EVENTS_KEPT = 200
 """As many as the console's timeline shows at once."""
@@ -90,6 +91,9 @@ class Hub:
         metrics: what to count in.
         max_robots: further names are ignored.
         on_status: hears every status of a mission.
+
+    Attributes:
+        fleet: what was last said of the fleet's queue.
     """
 
     def __init__(
@@ -98,11 +102,15 @@ class Hub:
         self._metrics, self._max_robots, self._on_status = metrics, max_robots, on_status
         self.robots: dict[str, RobotView] = {}
         self.services: dict[str, int] = {}
+        self.fleet: QueueStatus | None = None
 
     def take(self, messages: Iterable[Message]) -> None:
         """Store what the bus brought, in the order it came."""
         for message in messages:
             robot = str(getattr(message, "robot", ""))
+            if isinstance(message, QueueStatus) and robot == ANY:
+                self.fleet = message
+                continue
             if not self._has_room(robot):
                 self._metrics.robots_ignored.inc()
                 continue

@@ -11,6 +11,7 @@ from shared.messages.missions import MissionKindsRequest
 from shared.messages.tasks import Errand, Schedule, Task, TaskReply, TaskRequest
 from shared.schedules.due_times import DueTimes, ScheduleError
 from shared.topics import MISSION_KINDS, TASKS
+from shared.transport.keys import ANY
 from shared.web.problems import ProblemError
 
 
@@ -32,6 +33,7 @@ class TaskAnswer(BaseModel):
     for_battery: bool
     schedule: str
     by: str
+    fleet: bool
     due: datetime | None
     created: datetime | None
     started: datetime | None
@@ -78,11 +80,11 @@ async def ask_queue(gateway: Gateway, robot: str, request: TaskRequest) -> TaskR
     Raises:
         ProblemError: 404 nobody heard of the robot, or no such task or schedule; else as `Asker.ask`.
     """
-    if robot != gateway.settings.robot:
+    if robot not in (gateway.settings.robot, ANY):
         known(gateway, robot)
     timeout_s = gateway.settings.ask_timeout_s
     try:
-        return await gateway.asker.ask("map_store", TASKS, request, timeout_s, robot=robot)
+        return await gateway.asker.ask("map_store", TASKS, request, timeout_s, queue=robot)
     except ProblemError as problem:
         if problem.members.get("reason") == "missing":
             got, next_step = str(problem.members["got"]), f"see /api/robots/{robot}/tasks and .../schedules"
@@ -95,10 +97,13 @@ async def ask_queue(gateway: Gateway, robot: str, request: TaskRequest) -> TaskR
 async def check_errand(gateway: Gateway, robot: str, errand: Errand) -> None:
     """Refuse what the robot's planner does not know; while it is away, it does so when the task begins.
 
+    For the whole fleet that of this gateway's own robot speaks.
+
     Raises:
         ProblemError: 422 unknown kind, or parameters that the kind does not have or lacks.
     """
     timeout_s = gateway.settings.ask_timeout_s
+    robot = gateway.settings.robot if robot == ANY else robot
     try:
         reply = await gateway.asker_for(robot).ask(
             "planner", MISSION_KINDS, MissionKindsRequest(), timeout_s, robot=robot

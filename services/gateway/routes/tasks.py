@@ -11,11 +11,12 @@ from services.gateway.auth.guard import person_of
 from services.gateway.http.bodies import json_body, read_json
 from services.gateway.routes.missions import AnyParameters, Seed, Steps
 from services.gateway.routes.queues import TaskAnswer, ask_queue, check_errand
-from services.gateway.state import Gateway, GatewayDep, RobotPath
+from services.gateway.state import Gateway, GatewayDep, QueuePath
 from shared.access.tokens import includes
 from shared.messages.missions import CONTROLS, MissionRequest
-from shared.messages.tasks import USUAL_PRIORITY, Errand, Task, TaskRequest
+from shared.messages.tasks import USUAL_PRIORITY, Errand, QueueStatus, Task, TaskRequest
 from shared.topics import MISSION
+from shared.transport.keys import ANY
 from shared.web.problems import ProblemError
 
 router = APIRouter(tags=["tasks"])
@@ -75,7 +76,8 @@ class QueueAnswer(BaseModel):
     """Tasks that have not ended, in the order in which they begin, and the newest of those that have.
 
     Attributes:
-        why: what the next task waits for, as the dispatch service says; "" for nothing, null if it is away.
+        why: what the next task waits for, as the service says that hands the tasks out, dispatch of a robot's
+            and fleet of any; "" for nothing, null if it is away.
         on_hold: the battery is low.
         alarm: what a person has to look after.
         damaged: records that cannot be read.
@@ -92,12 +94,11 @@ class QueueAnswer(BaseModel):
 
 @router.get("/api/robots/{robot}/tasks")
 async def list_tasks(
-    robot: RobotPath, gateway: GatewayDep, ended: Annotated[int, UrlQuery(ge=0, le=200)] = 20
+    robot: QueuePath, gateway: GatewayDep, ended: Annotated[int, UrlQuery(ge=0, le=200)] = 20
 ) -> QueueAnswer:
     """The robot's queue, and the newest tasks that ended."""
     reply = await ask_queue(gateway, robot, TaskRequest(action="read", ended=ended))
-    view = gateway.hub.robots.get(robot)
-    told = view.queue if view is not None and gateway.hub.services.get("dispatch") else None
+    told = _told(gateway, robot)
     return QueueAnswer(
         robot=robot,
         tasks=[TaskAnswer.of(task) for task in reply.tasks],
@@ -110,7 +111,7 @@ async def list_tasks(
 
 
 @router.post("/api/robots/{robot}/tasks", status_code=201, openapi_extra=json_body(AddTask))
-async def add_task(request: Request, robot: RobotPath, gateway: GatewayDep, response: Response) -> TaskAnswer:
+async def add_task(request: Request, robot: QueuePath, gateway: GatewayDep, response: Response) -> TaskAnswer:
     """Put a task into the robot's queue; it begins when those before it have ended."""
     wish = await read_json(request, AddTask, gateway.settings.upload_timeout_s)
     errand = wish.errand()
@@ -123,14 +124,14 @@ async def add_task(request: Request, robot: RobotPath, gateway: GatewayDep, resp
 
 
 @router.get("/api/robots/{robot}/tasks/{task_id}")
-async def show_task(robot: RobotPath, task_id: TaskPath, gateway: GatewayDep) -> TaskAnswer:
+async def show_task(robot: QueuePath, task_id: TaskPath, gateway: GatewayDep) -> TaskAnswer:
     """One task, also one of the last 200 that ended."""
     return await _about(gateway, robot, TaskRequest(action="read", task_id=task_id))
 
 
 @router.patch("/api/robots/{robot}/tasks/{task_id}", openapi_extra=json_body(ChangeTask))
 async def change_task(
-    request: Request, robot: RobotPath, task_id: TaskPath, gateway: GatewayDep
+    request: Request, robot: QueuePath, task_id: TaskPath, gateway: GatewayDep
 ) -> TaskAnswer:
     """Give a task that waits another priority."""
     wish = await read_json(request, ChangeTask, gateway.settings.upload_timeout_s)
@@ -141,7 +142,7 @@ async def change_task(
 
 @router.delete("/api/robots/{robot}/tasks/{task_id}")
 async def cancel_task(
-    request: Request, robot: RobotPath, task_id: TaskPath, gateway: GatewayDep
+    request: Request, robot: QueuePath, task_id: TaskPath, gateway: GatewayDep
 ) -> TaskAnswer:
     """Cancel a task that waits; one that runs is cancelled with its mission, by an operator."""
     token = person_of(request).token
@@ -156,8 +157,17 @@ async def cancel_task(
     if task.state != "running":
         return task
     wish = MissionRequest(action="cancel", map=task.map, mission_id=task.mission_id)
-    await gateway.asker_for(robot).ask("planner", MISSION, wish, gateway.settings.ask_timeout_s, robot=robot)
+    whose, timeout_s = task.robot, gateway.settings.ask_timeout_s
+    await gateway.asker_for(whose).ask("planner", MISSION, wish, timeout_s, robot=whose)
     return await _about(gateway, robot, TaskRequest(action="read", task_id=task_id))
+
+
+def _told(gateway: Gateway, robot: str) -> QueueStatus | None:
+    """What is said of a queue by the process that looks after it; None while that is away."""
+    if robot == ANY:
+        return gateway.hub.fleet if gateway.hub.services.get("fleet") else None
+    view = gateway.hub.robots.get(robot)
+    return view.queue if view is not None and gateway.hub.services.get("dispatch") else None
 
 
 async def _about(gateway: Gateway, robot: str, request: TaskRequest) -> TaskAnswer:

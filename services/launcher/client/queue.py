@@ -14,6 +14,7 @@ from shared.messages.tasks import Errand, Schedule, Task, TaskReply, TaskRequest
 from shared.queries import AbsentError
 from shared.schedules.due_times import DueTimes, ScheduleError
 from shared.topics import MISSION, MISSION_KINDS, TASKS
+from shared.transport.keys import ANY
 
 TIMEOUT_S = 10.0
 """Reading or writing a few records; chosen."""
@@ -27,7 +28,7 @@ class QueueClient:
 
     def ask(self, request: TaskRequest) -> TaskReply:
         """Ask the map store."""
-        return self._bus.ask(TASKS, request, TIMEOUT_S, robot=self._robot)
+        return self._bus.ask(TASKS, request, TIMEOUT_S, queue=self._robot)
 
     def check(self, errand: Errand) -> None:
         """Refuse a kind that the planner does not know, where one is there to say so.
@@ -35,6 +36,8 @@ class QueueClient:
         Raises:
             ExperimentError: it does not; the text names those that it knows.
         """
+        if self._robot == ANY:  # whose planner would know? the one that gets it says so
+            return
         try:
             kinds = self._bus.ask(MISSION_KINDS, MissionKindsRequest(), TIMEOUT_S, robot=self._robot).kinds
         except AbsentError:  # it says so when the task is to begin
@@ -49,13 +52,13 @@ class QueueClient:
         assert task is not None
         if task.state == "running":
             wish = MissionRequest(action="cancel", map=task.map, mission_id=task.mission_id)
-            self._bus.ask(MISSION, wish, TIMEOUT_S, robot=self._robot)
+            self._bus.ask(MISSION, wish, TIMEOUT_S, robot=task.robot)
         return task
 
 
 @contextmanager
 def open_queue(robot: str, data_dir: Path, endpoint: str | None) -> Iterator[QueueClient]:
-    """The queue of `robot` in the stack at `endpoint`, or the one that runs in `data_dir`.
+    """The queue of `robot`, or of ANY, in the stack at `endpoint`, or the one that runs in `data_dir`.
 
     Raises:
         ExperimentError: no stack runs there, or what its services report.

@@ -7,7 +7,7 @@ from services.launcher.compose.compose_file import Dependency, Service
 
 REAL = {"TOPNAV_CAMERA": "camera", "TOPNAV_ROS": "ros"}
 """Variables that name a real camera and a robot in ROS, and the profile of what runs then."""
-BESIDE = {"TOPNAV_FOXGLOVE": "foxglove", "TOPNAV_SIGNS": "signs"}
+BESIDE = {"TOPNAV_FOXGLOVE": "foxglove", "TOPNAV_SIGNS": "signs", "TOPNAV_FLEET": "fleet"}
 """Variables that ask for more, and the profile of what runs then beside all else."""
 SIMULATOR = ("-m", "simulator")
 """Command of the process that is camera and robot otherwise; a robot's own under that name is kept."""

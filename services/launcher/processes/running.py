@@ -68,6 +68,7 @@ def run_foreground(
         camera=settings.camera,
         ros=settings.ros,
         signs=settings.signs,
+        fleet=settings.fleet,
         told=told,
     )
     _log_to(launcher.logs / "launcher.jsonl")
@@ -178,4 +179,6 @@ def _arguments(settings: StackSettings, compose_file: Path, timeout_s: float) ->
         arguments.append("--lockstep" if settings.lockstep else "--no-lockstep")
     if settings.secure:
         arguments.append("--secure")
+    if settings.fleet:
+        arguments.append("--fleet")
     return arguments

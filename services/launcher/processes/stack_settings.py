@@ -56,6 +56,7 @@ class StackSettings:
         ros: file of a robot in ROS 2, deploy/ROBOTS.md: likewise.
         foxglove: port of the live view for Foxglove, which runs only where one is given.
         signs: signs are read as well, deploy/SIGNS.md.
+        fleet: the process that hands out tasks for whichever robot runs as well.
     """
 
     data_dir: Path
@@ -70,6 +71,7 @@ class StackSettings:
     ros: str | None = None
     foxglove: int | None = None
     signs: bool = False
+    fleet: bool = False
 
     @property
     def protocol(self) -> str:
@@ -97,6 +99,7 @@ class StackSettings:
             "TOPNAV_ROS": located(self.ros),
             "TOPNAV_FOXGLOVE": None if self.foxglove is None else str(self.foxglove),
             "TOPNAV_SIGNS": "true" if self.signs else None,
+            "TOPNAV_FLEET": "1" if self.fleet else None,
             **profile_variables(self.profile),
             "TOPNAV_BIND": HOST,
             "TOPNAV_BUS": self.protocol,

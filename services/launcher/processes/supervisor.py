@@ -51,6 +51,7 @@ class Launcher:
         camera: URL of a real camera, and ros: file of a robot in ROS 2, in place of the simulator.
         foxglove: port of the live view for Foxglove; None leaves it out.
         signs: signs are read as well.
+        fleet: hand out tasks for whichever robot, too.
         only: run these services and what they depend on.
         without: leave these services out.
         variables: what the Compose file interpolates, and services are told beside what it says; by default
@@ -83,12 +84,25 @@ class Launcher:
         ros: str | None = None,
         foxglove: int | None = None,
         signs: bool = False,
+        fleet: bool = False,
         told: Callable[[str], None] | None = None,
     ) -> None:
         folder = Path(data_dir).resolve()
         ports, environment = ports or Ports.free(), dict(environment or {})
         self.settings = StackSettings(
-            folder, world, lockstep, seed, profile, ports, environment, secure, camera, ros, foxglove, signs
+            folder,
+            world,
+            lockstep,
+            seed,
+            profile,
+            ports,
+            environment,
+            secure,
+            camera,
+            ros,
+            foxglove,
+            signs,
+            fleet,
         )
         self._root, self._timeout_s, self._watch = compose_file.resolve().parent, timeout_s, watch
         self._told = told

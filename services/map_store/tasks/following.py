@@ -10,6 +10,7 @@ from sqlalchemy import Connection, delete, select
 
 from services.map_store.errors import ConflictError
 from services.map_store.storage.tables import tasks
+from services.map_store.tasks.fleet import of_another
 from services.map_store.tasks.records import find_task, tasks_in, write_task
 from shared.messages.maps import MissionRecord
 from shared.messages.missions import Parameters
@@ -27,10 +28,12 @@ def follow(connection: Connection, before: MissionRecord, record: MissionRecord,
     """Have the robot's tasks say what `record` says of its mission; `before` is the record so far.
 
     Raises:
-        ConflictError: the mission is that of a task that is over.
+        ConflictError: the mission is that of a task that is over, or that another robot has by now.
     """
     task = find_task(connection, record.robot, task_id_of(record.mission_id))
-    if task is not None and record.action:
+    if task is None and record.action:
+        _refuse_lost(connection, record)
+    elif task is not None and record.action:
         _begin(connection, task, record.mission_id, now_ns)
     elif task is not None and task.state not in ENDED and task.mission_id == record.mission_id:
         same = before.mission_id == record.mission_id
@@ -63,6 +66,13 @@ def finish(
     for task_id in old.scalars().all():
         connection.execute(delete(tasks).where(tasks.c.robot == task.robot, tasks.c.task_id == task_id))
     return ended
+
+
+def _refuse_lost(connection: Connection, record: MissionRecord) -> None:
+    """A robot from which a task of the fleet was taken may have been about to begin it."""
+    task_id = task_id_of(record.mission_id)
+    if (task := of_another(connection, record.robot, task_id)) is not None:
+        raise ConflictError(f"task {task_id!r} is not with {record.robot} any more: {task.robot} has it")
 
 
 def _begin(connection: Connection, task: Task, mission_id: str, now_ns: int) -> None:

@@ -8,23 +8,20 @@ from sqlalchemy import Connection
 
 from services.map_store.errors import ConflictError, InvalidError, MapError, MissingError
 from services.map_store.storage.database import Database
-from services.map_store.tasks.following import ENDED, finish
-from services.map_store.tasks.records import (
-    find_task,
-    latest_begun,
-    newest_ended,
-    schedules_of,
-    tasks_in,
-    write_task,
-)
+from services.map_store.tasks.fleet import find_in_fleet, move, refuse_taken
+from services.map_store.tasks.following import finish
+from services.map_store.tasks.records import find_task, tasks_in, write_task
+from services.map_store.tasks.replies import reply_of
 from services.map_store.tasks.timetable import make_due, put_schedule, take_schedule
 from shared.messages.tasks import OPEN_STATES, Errand, Task, TaskReply, TaskRequest
-from shared.transport.keys import check_robot
+from shared.transport.keys import ANY, check_queue
 
 T = TypeVar("T")
 
 WAITING = 200
 """Tasks of one robot that may wait: more are days of work; chosen."""
+OF_THE_FLEET = ("read", "add", "cancel", "prioritize", "move")
+"""What can be asked of the fleet's queue: nobody goes home in it, nor does it make schedules due."""
 ERRAND_BYTES, ERRAND_VALUES = 8_000, 200
 """Longest parameters of a task: a patrol of 64 places has a third; an answer holds all tasks of a robot."""
 
@@ -42,16 +39,18 @@ class TaskStore:
     def answer(self, robot: str, request: TaskRequest) -> TaskReply:
         """Do what `request` asks of the queue of `robot`; raises MapError, and then nothing was changed."""
         try:
-            check_robot(robot)
+            check_queue(robot)
         except ValueError as error:
             raise InvalidError(str(error)) from None
+        if robot == ANY and request.action not in OF_THE_FLEET:
+            raise InvalidError(f"the fleet's queue knows {', '.join(OF_THE_FLEET)}, got {request.action}")
         if request.action == "read":
             with self._database.read() as connection:
-                about = find_task(connection, robot, request.task_id) if request.task_id else None
-                return _reply(connection, robot, about, request.ended)
+                about = _find(connection, robot, request.task_id) if request.task_id else None
+                return reply_of(connection, robot, about, request.ended)
         with self._database.write() as connection:
             about = self._change(connection, robot, request)
-            return _reply(connection, robot, about, request.ended)
+            return reply_of(connection, robot, about, request.ended)
 
     def _change(self, connection: Connection, robot: str, request: TaskRequest) -> Task | None:
         now_ns = self._now_ns()
@@ -76,42 +75,26 @@ class TaskStore:
                 take_schedule(connection, robot, request.name)
             case "make_due":
                 return make_due(connection, robot, request, now_ns)
+            case "move":
+                return move(connection, robot, request.task_id, request.to)
         return None
-
-
-def in_order(task: Task) -> tuple[bool, bool, int, int, str]:
-    """Sorts tasks that have not ended: what runs, the way home, then by priority and age."""
-    waits = task.state != "running"
-    return waits, not task.for_battery, -task.priority, task.created_ns, task.task_id
-
-
-def _reply(connection: Connection, robot: str, about: Task | None, ended: int) -> TaskReply:
-    tasks, damaged = tasks_in(connection, robot, OPEN_STATES)
-    timetable, torn = schedules_of(connection, robot)
-    return TaskReply(
-        robot=robot,
-        tasks=tuple(sorted(tasks, key=in_order)),
-        ended=tuple(newest_ended(connection, robot, ENDED, ended)) if ended else (),
-        latest=latest_begun(connection, robot),
-        task=about,
-        schedules=tuple(timetable),
-        damaged=damaged + torn,
-    )
 
 
 def _add(connection: Connection, robot: str, wanted: Task, now_ns: int) -> Task:
     """Put a task into the queue; the same one again is the one that is there."""
-    known = find_task(connection, robot, wanted.task_id)
+    known = _find(connection, robot, wanted.task_id)
     if known is not None:
         if any(getattr(known, name) != getattr(wanted, name) for name in ("kind", "map", "parameters")):
             raise ConflictError(f"there is another task {wanted.task_id!r} already: choose another id")
         return known
+    refuse_taken(connection, robot, wanted.task_id)
     _check_errand(wanted)
     waiting = len(tasks_in(connection, robot, ["queued"])[0])
     if waiting >= WAITING:
         raise ConflictError(f"{waiting} tasks wait for {robot}, and no more may: cancel some")
+    made = {"robot": robot, "fleet": robot == ANY, "by": wanted.by, "created_ns": now_ns}
     errand = {name: getattr(wanted, name) for name in Errand.model_fields}
-    task = Task(task_id=wanted.task_id, robot=robot, by=wanted.by, created_ns=now_ns, **errand)
+    task = Task.model_validate({"task_id": wanted.task_id, **made, **errand})
     return _written(connection, task)
 
 
@@ -160,10 +143,17 @@ def _values(value: object) -> int:
     return 1 + sum(map(_values, inner))
 
 
+def _find(connection: Connection, robot: str, task_id: str) -> Task | None:
+    """A task of this queue; of the fleet's also one that a robot has."""
+    if robot == ANY:
+        return find_in_fleet(connection, task_id)
+    return find_task(connection, robot, task_id)
+
+
 def _found(connection: Connection, robot: str, task_id: str) -> Task:
-    task = find_task(connection, robot, task_id)
+    task = _find(connection, robot, task_id)
     if task is None:
-        raise MissingError(f"{robot} has no task {task_id!r}")
+        raise MissingError(f"{'the fleet' if robot == ANY else robot} has no task {task_id!r}")
     return task
 
 

@@ -11,6 +11,7 @@ from services.map_store.storage.blobs import checksum
 from services.map_store.storage.tables import schedules, tasks
 from shared.messages.base import Part
 from shared.messages.tasks import Schedule, Task, TaskState
+from shared.transport.keys import ANY
 
 P = TypeVar("P", bound=Part)
 
@@ -53,6 +54,18 @@ def newest_ended(connection: Connection, robot: str, states: Sequence[TaskState]
     chosen = select(tasks).where(tasks.c.robot == robot, tasks.c.state.in_(states))
     newest = chosen.order_by(tasks.c.ended_ns.desc(), tasks.c.task_id).limit(most)
     return _readable(connection.execute(newest).all())[0]
+
+
+def of_the_fleet(connection: Connection, states: Iterable[TaskState]) -> tuple[list[Task], int]:
+    """Tasks for whichever robot in one of these states, and how many records of ANY are damaged."""
+    rows = connection.execute(select(tasks).where(tasks.c.state.in_(tuple(states)))).all()
+    damaged = sum(row.robot == ANY and task_of(row) is None for row in rows)
+    return [task for task in _readable(rows)[0] if task.fleet], damaged
+
+
+def find_anywhere(connection: Connection, task_id: str) -> list[Task]:
+    """The tasks of that id, of whichever robot."""
+    return _readable(connection.execute(select(tasks).where(tasks.c.task_id == task_id)).all())[0]
 
 
 def latest_begun(connection: Connection, robot: str) -> Task | None:

@@ -32,7 +32,7 @@ class Queue:
 
     def ask(self, action: str, **fields: object) -> TaskReply:
         request = TaskRequest.model_validate({"action": action, **fields})
-        return self._bus.ask(TASKS, request, ANSWER_S, robot="r1")
+        return self._bus.ask(TASKS, request, ANSWER_S, queue="r1")
 
     def add(self, task_id: str, kind: str = "count", **parameters: object) -> None:
         task = Task(task_id=task_id, robot="r1", kind=kind, map="flat", parameters=parameters)

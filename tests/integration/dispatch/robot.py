@@ -24,16 +24,17 @@ class Robot:
 
     Args:
         drives: says how the emergency stop stands as well, where no drive service does.
+        name: of the robot.
     """
 
-    def __init__(self, bus: Bus, drives: bool = True) -> None:
-        self._bus, self._frames, self._drives = bus, count(1), drives
-        self._features, self._ranges = bus.publisher(FEATURES, robot="r1"), bus.publisher(RANGES, robot="r1")
+    def __init__(self, bus: Bus, drives: bool = True, name: str = "r1") -> None:
+        self._name, self._frames, self._drives = name, count(1), drives
+        self._features, self._ranges = bus.publisher(FEATURES, robot=name), bus.publisher(RANGES, robot=name)
         self._stops, self._batteries = (
-            bus.publisher(ESTOP_STATE, robot="r1"),
-            bus.publisher(BATTERY, robot="r1"),
+            bus.publisher(ESTOP_STATE, robot=name),
+            bus.publisher(BATTERY, robot=name),
         )
-        self._matches = bus.requests(MATCH, robot="r1")
+        self._matches = bus.requests(MATCH, robot=name)
         self.stopped, self._stop_count = False, 1
         self.charge: float | None = None
         self._end, self._said = threading.Event(), threading.Event()
@@ -58,16 +59,16 @@ class Robot:
             self._look()
             if self._drives:
                 state = {"engaged": self.stopped, "who": "anna", "why": "a child"}
-                self._stops.put(EStopState(robot="r1", seq=self._stop_count, **state))
+                self._stops.put(EStopState(robot=self._name, seq=self._stop_count, **state))
             self._said.set()
             if self.charge is not None:
-                self._batteries.put(Battery(robot="r1", share=self.charge))
+                self._batteries.put(Battery(robot=self._name, share=self.charge))
             while (question := self._matches.take()) is not None:
                 asked = question.message
                 question.reply(MatchReply(seq=asked.seq, map=asked.map, pipeline="x", max_similarity=150))
 
     def _look(self) -> None:
-        now = {"seq": next(self._frames), "stamp_ns": time.time_ns(), "robot": "r1"}
+        now = {"seq": next(self._frames), "stamp_ns": time.time_ns(), "robot": self._name}
         lonlat, scores, descriptors = NUMBERS
         angles = tuple(k * 0.5 for k in range(12))
         self._ranges.put(Ranges(**now, angles_rad=angles, distances_m=(4.0,) * 12, max_range_m=4.0))

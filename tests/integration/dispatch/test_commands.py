@@ -43,6 +43,17 @@ def test_tasks_are_added_listed_moved_and_cancelled(topnav, queue: Queue):
     assert "sooner" in topnav("task", "list")
 
 
+def test_tasks_for_whichever_robot_are_added_listed_and_cancelled(topnav, queue: Queue):
+    assert queue
+    assert topnav("task", "add", "count", "--robot", "any", "--id", "ours").startswith("ours: count in flat")
+    (listed,) = json.loads(topnav("task", "list", "--robot", "any", "--json", "--ended", "0"))
+    assert (listed["task_id"], listed["robot"], listed["fleet"]) == ("ours", "any", True)
+    assert "any" in topnav("task", "list", "--robot", "any")
+    assert topnav("task", "cancel", "ours", "--robot", "any") == "ours: cancelled\n"
+    with pytest.raises(ExperimentError, match="the fleet has no task 'none'"):
+        topnav("task", "cancel", "none", "--robot", "any")
+
+
 def test_schedules_are_set_listed_and_removed(topnav):
     said = topnav("schedule", "set", "night", "0 22 * * *", "count", "--zone", "Europe/Zurich")
     assert said.startswith("night: count in flat, next ")

@@ -13,14 +13,16 @@ from services.map_store.tasks.queue import TaskStore
 from shared.bus import Bus, wait_until
 from shared.messages.maps import MissionRecord
 from shared.messages.missions import MissionStatus
-from shared.messages.tasks import QueueStatus
-from shared.topics import QUEUE, TASKS
+from shared.messages.tasks import QueueStatus, TaskRequest
+from shared.topics import FLEET_QUEUE, QUEUE, TASKS
+from shared.transport.keys import ANY
 from tests.integration.gateway.conftest import serve_gateway
 from tests.integration.gateway.gateway_process import WAIT_S, sees
 from tests.integration.gateway.keys import bearer, write_file
 from tests.integration.gateway.standins import Peer, Planner
 
 TASKS_URL, SCHEDULES_URL = "/api/robots/r1/tasks", "/api/robots/r1/schedules"
+FLEET_URL = "/api/robots/any/tasks"
 ERRAND = {"kind": "goto", "map": "flat", "parameters": {"place": "kitchen"}}
 NIGHT = {"cron": "30 22 * * MON-FRI", "time_zone": "Europe/Zurich", "task": ERRAND}
 
@@ -35,7 +37,7 @@ class Store:
         self.missions = MissionStore(self.database)
 
     def setup(self, bus: Bus) -> Callable[[], None]:
-        requests = bus.requests(TASKS, robot="*")
+        requests = bus.requests(TASKS, queue="*")
 
         def turn() -> None:
             while (asked := requests.take()) is not None:
@@ -45,6 +47,10 @@ class Store:
                     asked.refuse(str(error), error.code)
 
         return turn
+
+    def hand_over(self, task_id: str) -> None:
+        """What the fleet service does with a task for whichever robot."""
+        self._tasks.answer(ANY, TaskRequest(action="move", task_id=task_id, to="r1"))
 
     def begin(self, task_id: str) -> None:
         """What the planner saves when the mission of a task begins."""
@@ -181,6 +187,49 @@ def test_what_keeps_the_queue_is_told_as_the_dispatch_service_says_it(
     with Peer(endpoint, "dispatch", setup):
         assert wait_until(lambda: sees(gateway, ["dispatch"]), WAIT_S)
         assert wait_until(heard, WAIT_S)
+
+
+def test_a_task_of_the_fleet_is_found_moved_and_cancelled_whoever_has_it(
+    http: httpx.Client, store: Store, planner: Planner
+):
+    added = http.post(FLEET_URL, json={**ERRAND, "task_id": "ours"})
+    assert (added.status_code, added.headers["location"]) == (201, f"{FLEET_URL}/ours")
+    assert (added.json()["robot"], added.json()["fleet"]) == ("any", True)
+    assert http.get(TASKS_URL).json()["tasks"] == []
+    store.hand_over("ours")
+    (listed,) = http.get(FLEET_URL).json()["tasks"]
+    assert [listed] == http.get(TASKS_URL).json()["tasks"]
+    assert listed["robot"] == "r1"
+    assert http.patch(f"{FLEET_URL}/ours", json={"priority": 9}).json()["priority"] == 9
+    store.begin("ours")
+    asked = len(planner.asked)
+    assert http.delete(f"{FLEET_URL}/ours").status_code == 200
+    assert [(wish.action, wish.mission_id) for wish in planner.asked[asked:]] == [("cancel", "ours")]
+
+
+@pytest.mark.usefixtures("store")
+def test_the_fleet_is_no_robot(http: httpx.Client):
+    assert http.post(FLEET_URL, json={**ERRAND, "kind": "fly"}).status_code == 422
+    assert http.post("/api/robots/any/missions", json={"action": "explore", "map": "flat"}).status_code == 422
+    assert http.put("/api/robots/any/schedules/night", json=NIGHT).status_code == 422
+    assert http.get("/api/robots/maps/tasks").status_code == 422
+
+
+@pytest.mark.usefixtures("store")
+def test_what_the_fleets_tasks_wait_for_is_told_as_the_fleet_service_says_it(
+    http: httpx.Client, endpoint: str, gateway: str
+):
+    def setup(bus: Bus) -> Callable[[], None]:
+        said = bus.publisher(FLEET_QUEUE)
+        return lambda: said.put(QueueStatus(robot=ANY, why="r1: anna drives by hand"))
+
+    assert http.get(FLEET_URL).json()["why"] is None
+    with Peer(endpoint, "fleet", setup):
+        assert wait_until(lambda: sees(gateway, ["fleet"]), WAIT_S)
+        assert wait_until(
+            lambda: bool(http.get(FLEET_URL).json()["why"] == "r1: anna drives by hand"), WAIT_S
+        )
+    assert "any" not in [robot["robot"] for robot in http.get("/api/robots").json()]
 
 
 def test_an_agent_cancels_what_waits_and_not_what_runs(

@@ -10,7 +10,7 @@ from axe_playwright_python.sync_playwright import Axe
 from shared.bus import wait_until
 from tests.browser import WAIT_MS, listen, needs_chromium
 from tests.integration.gateway.gateway_process import WAIT_S
-from tests.integration.gateway.test_tasks import ERRAND, SCHEDULES_URL, TASKS_URL, Store
+from tests.integration.gateway.test_tasks import ERRAND, FLEET_URL, SCHEDULES_URL, TASKS_URL, Store
 from tests.integration.gateway.test_tasks import store as store
 
 pytestmark = needs_chromium
@@ -58,6 +58,25 @@ def test_a_task_is_moved_and_cancelled(page: Any, http: httpx.Client, store: Sto
     page.wait_for_selector("#task-list span.state:text-is('running')", timeout=WAIT_MS)
     page.click("#task-list button")
     page.click("#confirm-yes")
+
+
+def test_a_task_for_any_robot_is_queued_shown_with_the_one_that_has_it_and_cancelled(
+    page: Any, http: httpx.Client, store: Store
+):
+    http.post(TASKS_URL, json={**ERRAND, "task_id": "own"})
+    page.check("#whole-fleet")
+    page.wait_for_selector("#queue-why:text('no fleet service')", timeout=WAIT_MS)
+    page.click("#queue-it")
+    page.wait_for_selector("#task-list td:has-text('explore in flat')", timeout=WAIT_MS)
+    (task,) = http.get(FLEET_URL).json()["tasks"]
+    assert (task["kind"], task["robot"]) == ("explore", "any")
+    store.hand_over(task["task_id"])
+    page.wait_for_selector("#task-list td:has-text('explore in flat, r1')", timeout=WAIT_MS)
+    page.click("#task-list button")
+    page.wait_for_selector("#ended-tasks span.cancelled", timeout=WAIT_MS)
+    page.uncheck("#whole-fleet")
+    page.wait_for_selector("#task-list td:has-text('goto in flat')", timeout=WAIT_MS)
+    assert states(http)["own"] == "queued"
 
 
 def test_a_schedule_is_set_turned_off_and_removed(page: Any, http: httpx.Client):

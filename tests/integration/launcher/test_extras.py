@@ -24,6 +24,7 @@ SERVICES = {
     "planner": "services.planner",
     "drive": "services.drive",
     "dispatch": "services.dispatch",
+    "fleet": "services.fleet",
     "gateway": "services.gateway",
     "ros": "services.ros",
     "recorder": "services.recorder",

@@ -94,6 +94,7 @@ SERVICES = (
     "dispatch",
     "drive",
     "features",
+    "fleet",
     "gateway",
     "map_store",
     "planner",

@@ -18,6 +18,7 @@ export class Queue {
     $("queue-it").addEventListener("click", () => this.add());
     $("schedule-form").addEventListener("submit", (event) => { event.preventDefault(); this.schedule(); });
     $("schedule-zone").value = Intl.DateTimeFormat().resolvedOptions().timeZone || "UTC";
+    $("whole-fleet").addEventListener("change", () => this.clear());
     setInterval(() => !document.hidden && shown() && this.show(), PERIOD_MS);
   }
 
@@ -28,18 +29,24 @@ export class Queue {
     if (this.shown()) this.show();
   }
 
+  /** Tasks are those of the robot, or of the whole fleet; schedules are a robot's. */
   url(path) {
-    return `/api/robots/${this.where().robot}/${path}`;
+    const robot = this.ofFleet() && path.startsWith("tasks") ? "any" : this.where().robot;
+    return `/api/robots/${robot}/${path}`;
+  }
+
+  ofFleet() {
+    return $("whole-fleet").checked;
   }
 
   async show() {
-    const robot = this.where().robot;
+    const [robot, ofFleet] = [this.where().robot, this.ofFleet()];
     if (!robot) return;
     try {
       const [queue, schedules] = await Promise.all([get(this.url("tasks?ended=8")), get(this.url("schedules"))]);
       const seen = JSON.stringify([queue, schedules]);
       const busy = document.activeElement?.closest("#task-list select");
-      if (robot !== this.where().robot || seen === this.seen || busy) return;
+      if (robot !== this.where().robot || ofFleet !== this.ofFleet() || seen === this.seen || busy) return;
       this.seen = seen;
       this.list(queue);
       this.listSchedules(schedules);
@@ -60,7 +67,7 @@ export class Queue {
   }
 
   what(task) {
-    return html("span", { title: `${task.task_id}${task.by ? `, ${task.by}` : ""}` }, TEXT.task(task));
+    return html("span", { title: `${task.task_id}${task.by ? `, ${task.by}` : ""}` }, TEXT.task(task) + (this.ofFleet() ? TEXT.taskOf(task) : ""));
   }
 
   state(task) {

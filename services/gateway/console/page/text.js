@@ -144,12 +144,13 @@ export const TEXT = {
   noTasks: "Nothing waits. Describe a mission and queue it.",
   noSchedules: "No schedule. Describe a mission, then say when.",
   queueWhy: (queue) =>
-    queue.alarm || (queue.why === null ? "no dispatch service: nothing begins" : queue.why && queue.tasks.length ? `waits: ${queue.why}` : ""),
+    queue.alarm || (queue.why === null ? (queue.robot === "any" ? "no fleet service: no robot gets any" : "no dispatch service: nothing begins") : queue.why && queue.tasks.length ? `waits: ${queue.why}` : ""),
   task: (task) => {
     const words = Object.values(task.parameters).flat().filter((value) => typeof value !== "object");
     const from = task.schedule ? `, by schedule ${task.schedule}` : task.for_battery ? ", as the battery is low" : "";
     return `${task.kind} in ${task.map}${words.length ? `: ${words.join(", ")}` : ""}${from}`;
   },
+  taskOf: ({ robot }) => (robot === "any" ? "" : `, ${robot}`),
   taskColumns: ["task", "state", "priority", ""],
   endedColumns: ["ended", "", "when", "why"],
   priorityOf: (task) => `Priority of ${task.kind} in ${task.map}`,

@@ -15,6 +15,7 @@ TaskId = Annotated[str, typer.Argument(help="As 'topnav task list' shows it.")]
 NewId = Annotated[str, typer.Option("--id", help="Of your choice: added again, it is not added twice.")]
 Ended = Annotated[int, typer.Option(min=0, max=200, help="Show so many that ended as well.")]
 Priority = Annotated[int, typer.Option(min=0, max=9, help="Higher first; of the same, older first.")]
+Whose = Annotated[str, typer.Option("--robot", help="Name of a robot; any: whichever is free and nearest.")]
 NewPriority = Annotated[int, typer.Argument(min=0, max=9, help="Higher first.")]
 
 
@@ -27,7 +28,7 @@ def add(
     task_id: NewId = "",
     seed: options.Seed = 0,
     max_steps: options.MaxSteps = 20_000,
-    robot: options.Robot = "r1",
+    robot: Whose = "r1",
     data_dir: options.DataDir = options.DATA_DIR,
     endpoint: options.Endpoint = None,
 ) -> None:
@@ -57,7 +58,7 @@ def add(
 @app.command("list")
 def list_tasks(
     ended: Ended = 5,
-    robot: options.Robot = "r1",
+    robot: Whose = "r1",
     data_dir: options.DataDir = options.DATA_DIR,
     endpoint: options.Endpoint = None,
     as_json: options.AsJson = False,
@@ -76,6 +77,7 @@ def list_tasks(
     rows = [
         {
             "task": task.task_id,
+            "robot": task.robot,
             "does": f"{task.kind} in {task.map}",
             "priority": task.priority,
             "state": f"{task.state} {task.failure}".strip(),
@@ -90,7 +92,7 @@ def list_tasks(
 @app.command("cancel")
 def cancel(
     task_id: TaskId,
-    robot: options.Robot = "r1",
+    robot: Whose = "r1",
     data_dir: options.DataDir = options.DATA_DIR,
     endpoint: options.Endpoint = None,
 ) -> None:
@@ -106,7 +108,7 @@ def cancel(
 def prioritize(
     task_id: TaskId,
     priority: NewPriority,
-    robot: options.Robot = "r1",
+    robot: Whose = "r1",
     data_dir: options.DataDir = options.DATA_DIR,
     endpoint: options.Endpoint = None,
 ) -> None:

@@ -31,6 +31,9 @@ def up(
         int | None, typer.Option(min=1, max=65535, help="Port of a live view for Foxglove, as 8765.")
     ] = None,
     signs: Signs = False,
+    fleet: Annotated[
+        bool, typer.Option("--fleet", help="Hand out tasks for whichever robot as well.")
+    ] = False,
     profile: Annotated[
         str | None, typer.Option(help="Rules of planner and drive: default or thesis.")
     ] = None,
@@ -57,7 +60,7 @@ def up(
     from services.launcher.terminal.services import Changes, status_table
 
     choices: dict[str, Any] = {"world": world, "lockstep": lockstep, "seed": seed, "profile": profile}
-    choices |= {"camera": camera, "ros": ros, "foxglove": foxglove, "signs": signs}
+    choices |= {"camera": camera, "ros": ros, "foxglove": foxglove, "signs": signs, "fleet": fleet}
     settings = StackSettings(data_dir.resolve(), **choices, secure=secure)
     compose_file, console = (file or COMPOSE_FILE).resolve(), Console()
     if detach:

@@ -2,9 +2,10 @@
 
 import pytest
 
-from services.dispatch.core import Limits, Seen, Step, next_step
+from services.dispatch.core import Limits, Step, next_step
 from shared.messages.missions import MissionStatus
 from shared.messages.tasks import Task, TaskReply
+from shared.robots.seen import Seen
 
 LIMITS = Limits(low=0.2, resume=0.8)
 

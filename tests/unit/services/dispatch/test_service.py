@@ -57,7 +57,7 @@ class Bus:
     def put(self, status):
         self.said.append(status)
 
-    def ask(self, _query, request, _timeout_s, robot):
+    def ask(self, _query, request, _timeout_s, robot="", queue=""):
         if isinstance(request, MissionRequest):
             self.missions.append(request)
             if self.refusal is not None:
@@ -65,7 +65,8 @@ class Bus:
             return MissionStatus(robot=robot)
         if request.action != "read":
             self.asked.append(request)
-        return TaskReply(robot=robot, tasks=self.tasks, schedules=self.schedules)
+        assert queue == "r1"
+        return TaskReply(robot=queue, tasks=self.tasks, schedules=self.schedules)
 
 
 class Stage:

@@ -15,6 +15,8 @@ FOLDERS = {
     "services/map_store": Role.MAP_STORE,
     "services/planner": Role.PLANNER,
     "services/drive": Role.DRIVE,
+    "services/dispatch": Role.DISPATCH,
+    "services/fleet": Role.FLEET,
     "services/gateway": Role.GATEWAY,
     "services/ros": Role.ROBOT,
     "services/launcher": Role.OPERATOR,

@@ -76,6 +76,14 @@ def test_a_live_view_is_beside_the_simulator_where_a_port_is_given():
     assert list(active_services(with_chosen(services, given))) == ["simulator", "foxglove", "a"]
 
 
+def test_who_hands_out_the_tasks_of_a_fleet_is_beside_the_simulator_where_it_is_asked_for():
+    simulator = Service(command=("python", "-m", "simulator"))
+    services = {"simulator": simulator, "fleet": service(profiles=("fleet",)), "a": service()}
+    assert list(active_services(with_chosen(services, {"TOPNAV_FLEET": ""}))) == ["simulator", "a"]
+    given = {"TOPNAV_FLEET": "1"}
+    assert list(active_services(with_chosen(services, given))) == ["simulator", "fleet", "a"]
+
+
 def test_a_robot_in_ros_does_so_with_a_camera_of_its_own_or_of_topnav():
     simulator = Service(command=("python", "-m", "simulator"))
     services = {

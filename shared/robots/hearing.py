@@ -1,7 +1,7 @@
 """What the robot's other services said lately: mission, emergency stop, driver, battery."""
 
-from services.dispatch.core import Seen
 from shared.bus import Bus
+from shared.robots.seen import Seen
 from shared.topics import BATTERY, ESTOP_STATE, MANUAL, STATUS
 
 LATELY_S = 5.0
