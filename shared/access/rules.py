@@ -122,8 +122,9 @@ STREAMS: dict[Topic[Any], Grant] = {
     topics.QUEUE: _grant([Role.DISPATCH], [Role.FLEET, *WATCHERS]),
     topics.FLEET_QUEUE: _grant([Role.FLEET], WATCHERS),
     topics.EVENT: _grant([Role.PLANNER], WATCHERS),
-    # Only evaluation may know where the robot really is.
-    topics.TRUTH: _grant([Role.SIMULATOR], [*PEOPLE, Role.RECORDER]),
+    # Only evaluation may know where the robot really is; simulators show each other's robots (on an open bus:
+    # here each hears of its own).
+    topics.TRUTH: _grant([Role.SIMULATOR], [Role.SIMULATOR, *PEOPLE, Role.RECORDER]),
     topics.MAP_DELTA: _grant(
         [Role.MAP_STORE], [Role.FEATURES, Role.PLANNER, Role.SIGNS, Role.FLEET, *WATCHERS]
     ),
