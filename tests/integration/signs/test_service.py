@@ -8,6 +8,8 @@ import pytest
 import zenoh
 
 from services.launcher.processes.free_ports import free_ports
+from services.signs.keeping import keep
+from services.signs.reading import Reading
 from services.signs.recognition import Line
 from services.signs.service import run
 from services.signs.settings import SignsSettings
@@ -103,3 +105,20 @@ def test_the_sign_at_a_new_node_becomes_part_of_the_map(buses: tuple[Bus, Bus]) 
     (sighting,) = store.signs["214"].sightings
     assert (sighting.node, store.refused) == (4, 1)
     assert sighting.bearing_rad == pytest.approx(2 * np.pi * (256 - 190) / WIDTH, abs=0.02)
+
+
+def test_a_write_that_somebody_else_came_before_is_made_again_on_top_of_theirs(
+    buses: tuple[Bus, Bus],
+) -> None:
+    own, others = buses
+    store, stop = StandInStore(others), threading.Event()
+    thread = threading.Thread(target=store.serve, args=(stop,))
+    thread.start()
+    try:
+        reading = Reading("214", 0.99, (1.0, 0.0, 0.0), 0.1)
+        assert keep(own, "flat", 4, [reading], WAIT_S)
+        assert not keep(own, "flat", 5, [reading], WAIT_S), "a node that is gone meanwhile"
+    finally:
+        stop.set()
+        thread.join()
+    assert (store.refused, [one.node for one in store.signs["214"].sightings]) == (1, [4])

@@ -11,6 +11,7 @@ from shared.topics import QUERIES, TOPICS
 
 FOLDERS = {
     "simulator": Role.SIMULATOR,
+    "services/signs": Role.SIGNS,
     "services/features": Role.FEATURES,
     "services/map_store": Role.MAP_STORE,
     "services/planner": Role.PLANNER,
@@ -108,8 +109,8 @@ def test_nobody_who_decides_may_know_the_true_pose():
     assert not STREAMS[topics.TRUTH].hearers & {Role.PLANNER, Role.FEATURES, Role.DRIVE, Role.MAP_STORE}
 
 
-def test_maps_are_written_by_the_planner_and_by_people_only():
-    assert QUESTIONS[topics.MAP].hearers == {Role.PLANNER, *PEOPLE}
+def test_maps_are_written_by_the_planner_by_who_reads_signs_and_by_people_only():
+    assert QUESTIONS[topics.MAP].hearers == {Role.PLANNER, Role.SIGNS, *PEOPLE}
     assert QUESTIONS[topics.MAP].speakers == QUESTIONS[topics.MAP_READ].speakers == {Role.MAP_STORE}
 
 

@@ -118,13 +118,14 @@ def brute(before: Graph, after: Graph) -> dict[str, object]:
     """The same comparison, one possible node and edge after the other."""
     found: dict[str, list] = {
         f"{thing}_{how}": []
-        for thing in ("nodes", "edges", "places", "rules", "routes")
+        for thing in ("nodes", "edges", "places", "rules", "routes", "signs")
         for how in ("added", "removed", "changed")
     }
     for name in NAMES:
         _note(found, "places", name, before.places.get(name), after.places.get(name))
         _note(found, "rules", name, before.rules.get(name), after.rules.get(name))
         _note(found, "routes", name, before.routes.get(name), after.routes.get(name))
+        _note(found, "signs", name, before.signs.get(name), after.signs.get(name))
     for number in range(10):
         _note(found, "nodes", number, before.nodes.get(number), after.nodes.get(number))
     for key in product(range(10), repeat=2):
