@@ -190,5 +190,5 @@ def test_the_one_shot_of_the_compose_file_may_run_again_and_starts_in_empty_volu
         )
         for _ in range(2)
     )
-    assert first.stdout.startswith("22 made, 0 kept")
-    assert second.stdout.startswith("0 made, 22 kept")
+    assert first.stdout.startswith("23 made, 0 kept")
+    assert second.stdout.startswith("0 made, 23 kept")
