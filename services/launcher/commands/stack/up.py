@@ -13,6 +13,10 @@ if TYPE_CHECKING:
 
 app = typer.Typer()
 
+Foxglove = Annotated[
+    int | None, typer.Option(min=1, max=65535, help="Port of a live view for Foxglove, as 8765.")
+]
+Fleet = Annotated[bool, typer.Option("--fleet", help="Hand out tasks for whichever robot as well.")]
 Signs = Annotated[bool, typer.Option("--signs", help="Read signs while exploring; see 'topnav signs'.")]
 
 
@@ -27,13 +31,9 @@ def up(
     seed: Annotated[int | None, typer.Option(help="Of every random draw.")] = None,
     camera: Annotated[str | None, typer.Option(help="A real camera's URL; no simulator runs then.")] = None,
     ros: Annotated[str | None, typer.Option(help="A ROS 2 robot's file; no simulator runs then.")] = None,
-    foxglove: Annotated[
-        int | None, typer.Option(min=1, max=65535, help="Port of a live view for Foxglove, as 8765.")
-    ] = None,
+    foxglove: Foxglove = None,
     signs: Signs = False,
-    fleet: Annotated[
-        bool, typer.Option("--fleet", help="Hand out tasks for whichever robot as well.")
-    ] = False,
+    fleet: Fleet = False,
     profile: Annotated[
         str | None, typer.Option(help="Rules of planner and drive: default or thesis.")
     ] = None,
