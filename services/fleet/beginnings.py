@@ -3,6 +3,7 @@
 from pydantic import JsonValue
 
 from shared.mapgraph.graph import MapGraph
+from shared.mapgraph.marks import sign_called
 from shared.messages.places import key_of
 from shared.messages.tasks import Errand
 
@@ -21,6 +22,9 @@ def first_node(errand: Errand, graph: MapGraph) -> int | None:
         known = graph.routes.get(_key(route))
         nodes = () if known is None else known.nodes
         nodes = nodes[::-1] if given.get("reverse") else nodes
+    elif isinstance(text := given.get("sign"), str):
+        sign = sign_called(text, graph.signs)
+        nodes = () if isinstance(sign, str) else tuple(one.node for one in sign.sightings)
     elif (place := _first_place(errand)) is not None:
         there = graph.places.get(_key(place))
         nodes = () if there is None else there.nodes

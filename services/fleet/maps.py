@@ -51,4 +51,4 @@ class Maps:
             reply = self._bus.ask(MAP_READ, MapRequest(action="read"), self._timeout_s, map=name)
         except RefusedError:  # missing, or damaged: its tasks are given away all the same
             return MapGraph()
-        return MapGraph(reply.nodes, reply.edges, reply.places, reply.rules, reply.routes)
+        return MapGraph(reply.nodes, reply.edges, reply.places, reply.rules, reply.routes, reply.signs)
