@@ -42,6 +42,10 @@ class Gateway:
         """Routes of the map, with their gaps."""
         return await self._ask.list(f"{self._map}/routes", params={"search": search})
 
+    async def signs(self, search: str) -> list[Facts]:
+        """Signs that were read in the map."""
+        return await self._ask.list(f"{self._map}/signs", params={"search": search})
+
     async def name_place(self, name: str, node: int) -> Facts:
         """Give a node a name."""
         return await self._ask.json("PUT", f"{self._map}/places", json={"name": name, "nodes": [node]})

@@ -12,6 +12,22 @@ class NamedPlace(BaseModel):
     nodes: list[int]
 
 
+class ReadSign(BaseModel):
+    """Text that stands somewhere, written by whoever put it there.
+
+    Attributes:
+        nodes: of the map, from which it was read, the best first.
+    """
+
+    name: str
+    nodes: list[int]
+
+    @classmethod
+    def of(cls, told: dict[str, Any]) -> Self:
+        """From the gateway's answer."""
+        return cls(name=told["name"], nodes=[sighting["node"] for sighting in told["sightings"]])
+
+
 class SeenPlace(BaseModel):
     """Nodes of the map that show one place, and how many matches speak for it."""
 

@@ -14,6 +14,7 @@ from services.mcp.tools.photos import Photo, picture_of
 SENDS = ToolAnnotations(read_only_hint=False, destructive_hint=False, idempotent_hint=False)
 
 PlaceName = Annotated[str, Field(max_length=64, description="as `list_places` has it")]
+Sign = Annotated[str, Field(max_length=64, description="what it says, as `room 214`")]
 PlaceNames = Annotated[
     list[PlaceName], Field(min_length=1, max_length=64, description="in the order of visits")
 ]
@@ -31,14 +32,19 @@ def add_sending(server: MCPServer[Any], gateway: Gateway) -> None:
 
     @server.tool(annotations=SENDS)
     async def go_to(
-        place: PlaceName = "", node: Node = None, photo: Photo = "", max_steps: Steps = 1500, seed: Seed = 0
+        place: PlaceName = "",
+        sign: Sign = "",
+        node: Node = None,
+        photo: Photo = "",
+        max_steps: Steps = 1500,
+        seed: Seed = 0,
     ) -> Mission:
-        """Start driving to a named place, a node or where a panorama or photo was taken; then `wait`."""
-        if [bool(place), node is not None, bool(photo)].count(True) != 1:
-            raise ToolError("say where to by one of place, node and photo")
+        """Start driving to a place, a sign, a node or where a panorama or photo was taken; then `wait`."""
+        if [bool(place), bool(sign), node is not None, bool(photo)].count(True) != 1:
+            raise ToolError("say where to by one of place, sign, node and photo")
         if photo:
             return Mission.of(await gateway.goto_photo(picture_of(photo), seed, max_steps))
-        where = {"place": place} if place else {"goal_node": node}
+        where = {"place": place} if place else {"sign": sign} if sign else {"goal_node": node}
         return Mission.of(await gateway.start("goto", where, seed, max_steps))
 
     @server.tool(annotations=SENDS)

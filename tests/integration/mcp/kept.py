@@ -9,7 +9,7 @@ from services.map_store.store import MapStore
 from shared.bus import Bus
 from shared.messages.inspections import Inspection, Region
 from shared.messages.maps import Edge, PutEdge, PutRoute
-from shared.messages.places import Route
+from shared.messages.places import PutSign, Route, Sighting, Sign
 from tests.integration.gateway import standins
 from tests.integration.gateway.test_tasks import Store as QueueStore
 from tests.unit.services.map_store.conftest import add, app_of
@@ -31,6 +31,8 @@ class Kept:
         maps.transact("flat", [add(node) for node in range(5)], author="planner")
         maps.transact("flat", [PutEdge(edge=edge) for edge in edges], author="planner")
         maps.transact("flat", [PutRoute(route=Route(name="tour", nodes=(0, 1, 2)))], author="planner")
+        seen = tuple(Sighting(node=node, bearing_rad=1.0, height_rad=0.1, confidence=0.99) for node in (3, 1))
+        maps.transact("flat", [PutSign(sign=Sign(name="214", sightings=seen))], author="signs")
         self._inspected(InspectionStore(self.queue.database))
         self.app = app_of(maps)
 

@@ -19,7 +19,7 @@ from tests.integration.mcp.kept import Kept
 
 TOOLS = {
     *("look", "where_am_i", "locate", "how_is_it"),
-    *("list_places", "name_place", "list_routes", "what_changed"),
+    *("list_places", "list_signs", "name_place", "list_routes", "what_changed"),
     *("go_to", "explore", "patrol", "follow_route", "wait", "cancel", "stop"),
     *("list_kinds", "list_tasks", "add_task", "cancel_task", "list_schedules"),
 }
@@ -88,6 +88,19 @@ def test_an_agent_follows_a_route_that_it_finds(served: str, planner: Planner) -
     assert (off["action"], off["ended"]) == ("route", False)
     wish = [wish for wish in planner.asked if wish.action == "route"][-1]
     assert (wish.map, wish.parameters) == ("flat", {"route": "tour", "reverse": True, "rounds": 2})
+
+
+def test_an_agent_drives_to_a_sign_that_was_read(served: str, planner: Planner) -> None:
+    async def errand(client: Client) -> Any:
+        found = (await client.call_tool("list_signs", {"search": "21"})).structured_content["result"]
+        off = await client.call_tool("go_to", {"sign": "room 214"})
+        await client.call_tool("cancel", {})
+        return found, off.structured_content
+
+    found, off = during(ByHttp(served, "agent"), errand)
+    assert found == [{"name": "214", "nodes": [3, 1]}]
+    assert (off["action"], off["ended"]) == ("goto", False)
+    assert [wish for wish in planner.asked if wish.action == "goto"][-1].parameters == {"sign": "room 214"}
 
 
 def test_an_agent_hears_what_changed_and_sees_both_pictures(served: str) -> None:

@@ -19,6 +19,9 @@ ARGUMENTS: list[tuple[str, dict[str, Any]]] = [
     ("go_to", {"node": 3, "photo": "aGVsbG8="}),
     ("go_to", {"node": -1}),
     ("go_to", {"place": "x" * 65}),
+    ("go_to", {"sign": "x" * 65}),
+    ("go_to", {"place": "kitchen", "sign": "214"}),
+    ("list_signs", {"search": "x" * 65}),
     ("name_place", {"name": "x" * 65, "node": 1}),
     ("name_place", {"name": "", "node": 1}),
     ("name_place", {"name": "home", "node": "the dock"}),
@@ -96,7 +99,7 @@ def test_hostile_calls_move_nothing(guarded: str, planner: Planner) -> None:
 
 
 UNKNOWN: list[tuple[str, dict[str, Any], str]] = [
-    ("go_to", {"node": 3, "speed": 2.0}, "go_to has no argument 'speed'; it takes place, node, photo,"),
+    ("go_to", {"node": 3, "speed": 2.0}, "go_to has no argument 'speed'; it takes place, sign, node,"),
     ("explore", {"maxsteps": 5, "map": "x"}, "no argument 'map', 'maxsteps'; it takes max_steps, seed"),
     ("stop", {"why": "fire", "clear": True}, "no argument 'clear'; it takes why"),
     ("where_am_i", {"robot": "r2"}, "no argument 'robot'; it takes none"),
