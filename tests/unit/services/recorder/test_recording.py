@@ -116,7 +116,8 @@ def test_a_recording_that_is_not_there_is_no_damaged_one(tmp_path):
 
 def test_every_topic_is_found_by_its_key():
     for topic in TOPICS:
-        names = {"robot": "r1"} if "{robot}" in topic.template else {"map": "flat"}
+        given = {"robot": "r1", "map": "flat"}
+        names = {name: value for name, value in given.items() if f"{{{name}}}" in topic.template}
         assert topic_of(topic.key(**names)) == (topic, names)
     assert topic_of("topnav/r1/unknown") is None
     assert topic_of("topnav/R1/frame") is None

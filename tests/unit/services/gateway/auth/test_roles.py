@@ -35,6 +35,7 @@ OPERATOR = {
     ("DELETE", "/api/maps/{map_name}/places"),
     ("PUT", "/api/maps/{map_name}/routes"),
     ("DELETE", "/api/maps/{map_name}/routes"),
+    ("DELETE", "/api/maps/{map_name}/signs"),
     ("POST", "/api/robots/{robot}/drive"),
     ("DELETE", "/api/robots/{robot}/estop"),
     ("PATCH", "/api/robots/{robot}/tasks/{task_id}"),

@@ -209,7 +209,7 @@ def test_every_writing_route_is_guarded(store: MapStore):
     writes = [
         (m, p) for p, methods in paths.items() for m in methods if m in {"post", "put", "patch", "delete"}
     ]
-    assert len(writes) == 16
+    assert len(writes) == 17
     for method, path in writes:
         filled = path.format(map="flat", node_id=0, a=0, b=1)
         problem(client.request(method, filled, json={"name": "x"}), 401)
@@ -239,5 +239,5 @@ def test_a_fault_inside_is_a_problem_without_its_innards(client: TestClient, mon
 
 def test_openapi_describes_every_route(client: TestClient):
     described = client.get("/openapi.json").json()
-    assert len(described["paths"]) == 27
+    assert len(described["paths"]) == 29
     assert described["paths"]["/maps/import"]["post"]["requestBody"]["content"].keys() == {"application/zip"}

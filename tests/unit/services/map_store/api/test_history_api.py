@@ -58,6 +58,9 @@ def test_a_comparison_tells_what_changed_between_two_revisions(client: TestClien
         "routes_added": [],
         "routes_removed": [],
         "routes_changed": [],
+        "signs_added": [],
+        "signs_removed": [],
+        "signs_changed": [],
     }
     back = client.get("/maps/flat/compare?from=4&to=2").json()
     assert (back["from"], back["to"]) == (4, 2)
