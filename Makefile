@@ -14,6 +14,8 @@ PYTEST_ARGS ?=
 WORKERS ?= 4
 # The matrices are small: more threads only wait for each other, and tests run side by side.
 export OPENBLAS_NUM_THREADS = 1
+# Hundreds of processes start in a run of the tests: without bytecode on disk each compiles for two seconds.
+unexport PYTHONDONTWRITEBYTECODE
 FUZZ_ARGS ?= --seconds 60 --json runs/fuzz/report.json
 
 BIN := $(VENV)/bin
