@@ -67,6 +67,6 @@ def test_two_robots_in_one_flat(tmp_path, keep):
                 "reached": sum(run.status.state == "succeeded" for run in ends),
                 "of": len(ends),
                 "why": [run.status.failure for run in ends if run.status.state != "succeeded"],
-                "collisions": [collisions(each.client.trail) for each in robots],
+                "collisions": [collisions(each.client.trail.truths) for each in robots],
             }
         )
