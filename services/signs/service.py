@@ -5,17 +5,15 @@ import threading
 from queue import Empty, Full, Queue
 
 import cv2
-import numpy as np
 
 from services.signs.keeping import keep
 from services.signs.new_nodes import NewNode, NewNodes
 from services.signs.reading import Read, signs_in
-from services.signs.recognition import Image
 from services.signs.settings import SignsSettings
 from shared.bus import Bus
-from shared.jpeg import BadPictureError, jpeg_size, require_whole
+from shared.frames.decoding import decode_picture
+from shared.jpeg import BadPictureError
 from shared.messages.maps import AddNode
-from shared.messages.sensors import Frame
 from shared.queries import QueryError
 from shared.topics import FRAME, MAP_DELTA
 from shared.wire import WireError
@@ -75,28 +73,6 @@ def _read_all(
 
 
 def _read_one(settings: SignsSettings, read: Read, bus: Bus, node: NewNode) -> None:
-    found = signs_in(decoded(node.frame), decoded(node.beside), read, settings.least_confidence)
+    found = signs_in(decode_picture(node.frame), decode_picture(node.beside), read, settings.least_confidence)
     if found and keep(bus, node.map, node.node_id, found, settings.map_timeout_s):
         log.info("map %r, node %d: %s", node.map, node.node_id, ", ".join(repr(one.text) for one in found))
-
-
-def decoded(frame: Frame) -> Image:
-    """A frame as (height, width, 3) BGR.
-
-    Raises:
-        BadPictureError: not a JPEG, cut short, or of another size than announced.
-    """
-    if frame.encoding == "bgr8":
-        return np.frombuffer(frame.data, np.uint8).reshape(frame.height_px, frame.width_px, 3)
-    if jpeg_size(frame.data) != (frame.width_px, frame.height_px):
-        raise BadPictureError(f"JPEG must be {frame.width_px} x {frame.height_px}, as announced")
-    require_whole(frame.data)
-    try:
-        picture = cv2.imdecode(
-            np.frombuffer(frame.data, np.uint8), cv2.IMREAD_COLOR | cv2.IMREAD_IGNORE_ORIENTATION
-        )
-    except cv2.error as error:
-        raise BadPictureError(f"JPEG cannot be decoded: {str(error)[:120]}") from error
-    if picture is None or picture.shape != (frame.height_px, frame.width_px, 3):
-        raise BadPictureError("JPEG cannot be decoded: its data are damaged")
-    return np.asarray(picture, np.uint8)

@@ -7,9 +7,9 @@ import numpy as np
 
 from services.features.changes.comparison import changed_regions
 from services.features.matching.verification import Candidate, feature_set, verify
-from services.features.pipeline.decoding import decode_picture
 from services.features.pipeline.interfaces import Image
 from services.features.pipeline.pipeline import Pipeline
+from shared.frames.decoding import decode_picture
 from shared.jpeg import BadPictureError, jpeg_size
 from shared.messages.features import Features
 from shared.messages.inspections import CompareReply

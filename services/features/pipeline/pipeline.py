@@ -4,11 +4,11 @@ import cv2
 import numpy as np
 
 from services.features.matching.verification import two_view_settings
-from services.features.pipeline.decoding import decode_picture
 from services.features.pipeline.extraction import extract
 from services.features.pipeline.interfaces import Image, Profile, Runtime
 from services.features.pipeline.photograph import extract_photo
 from services.features.pipeline.plugins import create_extractor, create_matcher, create_representation
+from shared.frames.decoding import decode_picture
 from shared.messages.features import Features, Photo
 from shared.messages.sensors import Frame
 

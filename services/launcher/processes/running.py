@@ -174,11 +174,7 @@ def _arguments(settings: StackSettings, compose_file: Path, timeout_s: float) ->
         value = getattr(settings, name)
         value = located(value) if name in ("world", "ros") else value
         arguments += [f"--{name}", str(value)] if value is not None else []
-    arguments += ["--signs"] if settings.signs else []
     if settings.lockstep is not None:
         arguments.append("--lockstep" if settings.lockstep else "--no-lockstep")
-    if settings.secure:
-        arguments.append("--secure")
-    if settings.fleet:
-        arguments.append("--fleet")
+    arguments += [f"--{name}" for name in ("secure", "signs", "fleet") if getattr(settings, name)]
     return arguments

@@ -12,7 +12,7 @@ import pytest
 from PIL import ExifTags, Image
 
 from experiments.phone_photos.taking import LONG_PX, SHORT_PX, Shot, taken
-from services.features.pipeline.decoding import decode_picture
+from shared.frames.decoding import decode_picture
 from shared.geometry.photo.plane import USUAL_RAD
 from shared.messages.simulation import Pose
 from tests.e2e.near_node import hiding_place_near_a_node

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 from PIL import ExifTags, Image
 
-from services.features.pipeline.decoding import decode_picture
 from services.gateway.uploads.photo import decode_photo, is_photo
 from services.gateway.uploads.picture import check_file, check_header, decode_bgr
 from services.gateway.uploads.picture_header import HeaderError, read_header
+from shared.frames.decoding import decode_picture
 from shared.jpeg import BadPictureError
 from shared.messages.sensors import Frame
 from shared.web.problems import ProblemError

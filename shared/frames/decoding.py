@@ -2,10 +2,12 @@
 
 import cv2
 import numpy as np
+import numpy.typing as npt
 
-from services.features.pipeline.interfaces import Image
 from shared.jpeg import BadPictureError, jpeg_size, require_whole
 from shared.messages.sensors import Frame
+
+Image = npt.NDArray[np.uint8]
 
 MAX_PIXELS = 64_000_000
 """Largest picture decoded; chosen: more than 360-degree cameras give, 192 MB of colours."""

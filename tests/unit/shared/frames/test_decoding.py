@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from services.features.pipeline.decoding import decode_picture
+from shared.frames.decoding import decode_picture
 from shared.jpeg import BadPictureError, jpeg_size
 from shared.messages.sensors import Frame
 
