@@ -16,6 +16,8 @@ DATA, MODELS = Path("data/training/pairs"), Path("data/training")
 RecipeFile = Annotated[
     Path | None, typer.Option("--recipe", help="JSON with values that replace the recipe's.")
 ]
+Device = Annotated[str, typer.Option(help="cpu or cuda.")]
+Export = Annotated[Path | None, typer.Option(help="Write the trained weights alone into this file.")]
 Jobs = Annotated[int, typer.Option(min=1, help="Worlds at a time.")]
 
 
@@ -100,6 +102,49 @@ def residual(
             until,
         )
     print_figures("residual", {"folder": str(into), "pairs": len(samples), "steps": reached})
+
+
+@app.command("keypoints")
+def keypoints(
+    pairs: Annotated[Path, typer.Option(help="Folder of shards of 'topnav train data'.")] = DATA,
+    into: Annotated[Path, typer.Option(help="Folder of checkpoints and log.")] = MODELS / "keypoints",
+    recipe: RecipeFile = None,
+    until: Annotated[int | None, typer.Option(min=1, help="Stop early after this step.")] = None,
+    device: Device = "cpu",
+    export: Export = None,
+    jobs: Jobs = 1,
+) -> None:
+    """Detector and descriptor in one pass; goes on from the last checkpoint."""
+    from experiments.training.detector.recipe import KeypointsRecipe
+    from experiments.training.detector.training import train
+    from experiments.training.recipe import recipe_from
+    from services.launcher.terminal.output import print_figures
+
+    chosen = recipe_from(KeypointsRecipe, recipe)
+    print_figures("keypoints", train(pairs, into, chosen, device, until, export, jobs))
+
+
+@app.command("matcher")
+def matcher(
+    pairs: Annotated[Path, typer.Option(help="Folder of shards of 'topnav train data'.")] = DATA,
+    into: Annotated[Path, typer.Option(help="Folder of checkpoints and log.")] = MODELS / "matcher",
+    detector: Annotated[
+        Path, typer.Option(help="Folder of 'topnav train keypoints', for a recipe with features own.")
+    ] = MODELS / "keypoints",
+    recipe: RecipeFile = None,
+    until: Annotated[int | None, typer.Option(min=1, help="Stop early after this step.")] = None,
+    device: Device = "cpu",
+    export: Export = None,
+    jobs: Jobs = 1,
+) -> None:
+    """Attention over the keypoints of two pictures; goes on from the last checkpoint."""
+    from experiments.training.matcher.recipe import MatcherRecipe
+    from experiments.training.matcher.training import train
+    from experiments.training.recipe import recipe_from
+    from services.launcher.terminal.output import print_figures
+
+    chosen = recipe_from(MatcherRecipe, recipe)
+    print_figures("matcher", train(pairs, into, detector, chosen, device, until, export, jobs))
 
 
 @app.command("evaluate")

@@ -11,10 +11,10 @@ import torch
 from experiments.training.learning.checkpoints import SUFFIX, resume
 from experiments.training.learning.running import RECIPE
 from experiments.training.recipe import recipe_from
-from experiments.training.residual.network import context_of
 from experiments.training.residual.recipe import ResidualRecipe, network_of
 from experiments.training.sealed import sealed_files
 from experiments.training.sights import Image
+from services.features.networks.keypoint_context import context_of
 from services.features.networks.runtime import WeightsError, unit_descriptors
 from services.features.pipeline.extraction import extract
 from services.features.pipeline.interfaces import FeatureSet

@@ -14,9 +14,9 @@ REMEDY = "delete it to begin from the one before, or anew where there is none"
 
 def keep(folder: Path, step: int, network: torch.nn.Module, optimiser: torch.optim.Optimizer) -> Path:
     """Write the checkpoint of a step; the one before stays, in case this one breaks."""
-    tensors = {f"network.{name}": value.contiguous() for name, value in network.state_dict().items()}
+    tensors = {f"network.{name}": value.cpu().contiguous() for name, value in network.state_dict().items()}
     for number, moments in optimiser.state_dict()["state"].items():
-        tensors |= {f"optimiser.{number}.{name}": value.contiguous() for name, value in moments.items()}
+        tensors |= {f"optimiser.{number}.{name}": value.cpu().contiguous() for name, value in moments.items()}
     path = write_sealed(folder, f"step-{step:08d}", SUFFIX, save(tensors))
     for older in sealed_files(folder, "step-*", SUFFIX)[:-2]:
         older.unlink()

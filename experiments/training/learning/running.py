@@ -25,6 +25,8 @@ class Schedule(Recipe):
         seed: of the network's first parameters and of every batch.
         steps: batches in all.
         rate: of Adam at first; it falls to 0 along half a cosine.
+        warmup: steps in which the rate rises to that.
+        clip: most norm of all gradients together; None: whatever they are.
         kept_every: steps between checkpoints and lines of the log.
         threads: cores; another number may round otherwise. Every step waits for the slowest of
             them, which others may use, too.
@@ -33,12 +35,15 @@ class Schedule(Recipe):
     seed: NonNegativeInt = 1
     steps: PositiveInt = 2000
     rate: PositiveFloat = 1e-3
+    warmup: NonNegativeInt = 0
+    clip: PositiveFloat | None = None
     kept_every: PositiveInt = 100
     threads: PositiveInt = 1
 
     def rate_at(self, step: int) -> float:
         """Adam's rate for the batch after so many steps."""
-        return 0.5 * self.rate * (1.0 + math.cos(math.pi * step / self.steps))
+        rising = min(1.0, (step + 1) / (self.warmup + 1))
+        return rising * 0.5 * self.rate * (1.0 + math.cos(math.pi * step / self.steps))
 
 
 def run(
@@ -72,13 +77,17 @@ def run(
     optimiser = torch.optim.Adam(network.parameters(), lr=schedule.rate)
     step, began = resume(folder, network, optimiser), time.monotonic()
     last = min(schedule.steps, until if until is not None else schedule.steps)
+    losses: list[torch.Tensor] = []
     while step < last:
         for group in optimiser.param_groups:
             group["lr"] = schedule.rate_at(step)
         optimiser.zero_grad()
         loss = loss_of(network, np.random.default_rng([schedule.seed, step]))
         loss.backward()
+        if schedule.clip is not None:
+            torch.nn.utils.clip_grad_norm_(network.parameters(), schedule.clip)
         optimiser.step()
+        losses.append(loss.detach())
         step += 1
         if tick is not None:
             tick(step)
@@ -86,11 +95,12 @@ def run(
             keep(folder, step, network, optimiser)
             line = {
                 "step": step,
-                "loss": round(float(loss.detach()), 6),
+                "loss": round(float(torch.stack(losses).mean()), 6),
                 "time_s": round(time.monotonic() - began, 1),
             }
             with (folder / LOG).open("a", encoding="utf-8") as log:
                 log.write(json.dumps(line) + "\n")
+            losses.clear()
     return step
 
 

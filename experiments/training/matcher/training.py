@@ -1,0 +1,70 @@
+"""`topnav train matcher` from shards to weights."""
+
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from experiments.training.data.shards import shard_files
+from experiments.training.detector.recipe import KeypointsRecipe
+from experiments.training.detector.recipe import beginning as detector_beginning
+from experiments.training.learning.checkpoints import resume
+from experiments.training.learning.running import RECIPE, require_same_shards
+from experiments.training.learning.session import trained, written
+from experiments.training.matcher.features import FeatureTable, extracted, found_by
+from experiments.training.matcher.recipe import MatcherRecipe, batch_loss, beginning
+from experiments.training.panoramas.drawing import Pairs
+from experiments.training.panoramas.store import Panoramas, load_panoramas
+from experiments.training.recipe import recipe_from
+from services.features.networks.runtime import device_named
+from services.launcher.client.failure import ExperimentError
+
+OWN = "own"
+"""Instead of a pipeline's name: the keypoints of our own detector."""
+
+
+def train(
+    pairs: Path,
+    into: Path,
+    detector: Path,
+    recipe: MatcherRecipe,
+    device: str,
+    until: int | None,
+    export: Path | None,
+    jobs: int,
+) -> dict[str, Any]:
+    """Train from the last checkpoint on.
+
+    Raises:
+        ExperimentError: no shards, a corrupted one, no detector, or a folder of another training.
+        ValueError: no such device or pipeline.
+    """
+    where = device_named(device)
+    files = shard_files(pairs)
+    require_same_shards(files, into)
+    own = recipe.features == OWN
+    ready = None if own else extracted(files, recipe.features, recipe.keypoints, jobs)
+    panoramas = load_panoramas(files, where, jobs)
+    table = ready.to(where) if ready is not None else _of_own(detector, panoramas, recipe.keypoints)
+    drawn = Pairs(panoramas, recipe.overlap, recipe.apart_m)
+    network = beginning(recipe, table.descriptors.shape[-1]).to(where)
+    steps = trained(
+        network,
+        lambda net, rng: batch_loss(net, panoramas, table, drawn, recipe, rng),
+        recipe.schedule,
+        recipe,
+        into,
+        until,
+    )
+    figures = {"folder": str(into), "panoramas": len(panoramas), "pairs": len(drawn), "steps": steps}
+    return figures | written(network, export, recipe, steps)
+
+
+def _of_own(folder: Path, panoramas: Panoramas, keypoints: int) -> FeatureTable:
+    recipe = recipe_from(KeypointsRecipe, folder / RECIPE)
+    network = detector_beginning(recipe).to(panoramas.device)
+    if resume(folder, network, torch.optim.Adam(network.parameters())) == 0:
+        raise ExperimentError(
+            f"no checkpoint in {folder}: train one with 'topnav train keypoints --into {folder}'"
+        )
+    return found_by(network.network.eval(), panoramas, keypoints)

@@ -1,0 +1,41 @@
+"""Pairs of panoramas for a step of training, every two of one shard a possible pair."""
+
+import numpy as np
+import numpy.typing as npt
+import torch
+
+from experiments.training.panoramas.store import Panoramas
+
+Numbers = npt.NDArray[np.int64]
+
+
+class Pairs:
+    """Draws pairs that see the same things, and others."""
+
+    def __init__(self, panoramas: Panoramas, least: float, apart_m: float) -> None:
+        """Find those that can be had.
+
+        Args:
+            panoramas: of all shards.
+            least: overlap of either that makes a pair.
+            apart_m: most distance of a pair.
+        """
+        overlap = panoramas.overlap.float()
+        here, there = torch.nonzero((overlap >= least) & (least <= overlap.T)).T.cpu()
+        positions = panoramas.positions_m.cpu()
+        near = ((positions[here] - positions[there]).norm(dim=-1) <= apart_m) & (here != there)
+        self._pairs: Numbers = torch.stack([here[near], there[near]], dim=1).numpy()
+        self._shard: Numbers = panoramas.shard.cpu().numpy()
+
+    def __len__(self) -> int:
+        return len(self._pairs)
+
+    def draw(self, count: int, rng: np.random.Generator, others: float = 0.0) -> Numbers:
+        """(count, 2) numbers of panoramas; a share `others` of them any two of one shard, or of any."""
+        pairs = self._pairs[rng.integers(len(self._pairs), size=count)]
+        for row in np.flatnonzero(rng.random(count) < others):
+            here = int(rng.integers(len(self._shard)))
+            beside = np.flatnonzero(self._shard == self._shard[here])
+            pool = beside if rng.random() < 0.7 else np.arange(len(self._shard))
+            pairs[row] = here, int(rng.choice(pool))
+        return pairs

@@ -1,0 +1,222 @@
+"""Matching by attention over the keypoints of two panoramas, as in LightGlue (Lindenberger et al. 2023).
+
+Keypoints of one picture see where the others are by a rotary encoding of their bearings: longitudes in whole
+numbers of turns, so that turning a camera changes nothing, and latitudes. Plain torch modules.
+"""
+
+from dataclasses import dataclass
+
+import torch
+from torch import nn
+from torch.nn import functional
+
+from services.features.networks.keypoint_context import CONTEXT
+
+ANSWERS = 3
+"""Of a pair: logit of the same place, logit of the overlap, logarithm of the metres between them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Keypoints:
+    """A batch of pictures with N keypoints each.
+
+    Attributes:
+        lonlat_rad: (B, N, 2).
+        descriptors: (B, N, D) unit vectors.
+        context: (B, N, CONTEXT).
+        present: (B, N) False for those that only fill up; None where there are none.
+    """
+
+    lonlat_rad: torch.Tensor
+    descriptors: torch.Tensor
+    context: torch.Tensor
+    present: torch.Tensor | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Assignment:
+    """What a layer says of a batch of pairs.
+
+    Attributes:
+        log_right: (B, N, M) logarithm of the probability that both are the same point.
+        matchable: two of (B, N) and (B, M), logits: the point is found in the other picture.
+        pair: (B, ANSWERS).
+    """
+
+    log_right: torch.Tensor
+    matchable: tuple[torch.Tensor, torch.Tensor]
+    pair: torch.Tensor
+
+
+class Attention(nn.Module):  # type: ignore[misc] # torch is not followed, see pyproject.toml
+    """Layers of attention within each picture and between both."""
+
+    def __init__(self, dimension: int, width: int = 64, heads: int = 2, layers: int = 3) -> None:
+        super().__init__()
+        self.width, self.heads = width, heads
+        self.enter = nn.Linear(dimension + CONTEXT, width)
+        self.layers = nn.ModuleList(Layer(width, heads) for _ in range(layers))
+        self.heads_out = nn.ModuleList(Answer(width) for _ in range(layers))
+        pairs = width // heads // 2
+        turns = torch.arange(pairs) % (pairs // 2)
+        self.register_buffer("of_longitude", torch.arange(pairs) < pairs // 2, persistent=False)
+        self.register_buffer("turns", torch.round(1.7 ** turns.float()), persistent=False)
+
+    def forward(self, one: Keypoints, other: Keypoints) -> list[Assignment]:
+        """The answers of all layers, the last one last."""
+        first, second = self.entered(one), self.entered(other)
+        turned, turned_other = self.rotary(one.lonlat_rad), self.rotary(other.lonlat_rad)
+        answers = []
+        for layer, answer in zip(self.layers, self.heads_out, strict=True):
+            first, second = layer(first, second, turned, turned_other, one.present, other.present)
+            answers.append(answer(first, second, one.present, other.present))
+        return answers
+
+    def last(self, one: Keypoints, other: Keypoints, hopeless: float) -> Assignment | None:
+        """The last layer's answer of a batch of one; None where one before finds the place another.
+
+        Args:
+            one: keypoints of one picture.
+            other: those of the other.
+            hopeless: probability of the same place below which layers stop.
+        """
+        first, second = self.entered(one), self.entered(other)
+        turned, turned_other = self.rotary(one.lonlat_rad), self.rotary(other.lonlat_rad)
+        for number, layer in enumerate(self.layers):
+            first, second = layer(first, second, turned, turned_other, one.present, other.present)
+            if number % 2 and number + 1 < len(self.layers):
+                pair = self.heads_out[number].of_pair(first, second, one.present, other.present)
+                if float(torch.sigmoid(pair[0, 0])) < hopeless:
+                    return None
+        answer: Assignment = self.heads_out[-1](first, second, one.present, other.present)
+        return answer
+
+    def entered(self, points: Keypoints) -> torch.Tensor:
+        """(B, N, width) what the first layer gets."""
+        scaled = points.descriptors * points.descriptors.shape[-1] ** 0.5
+        return self.enter(torch.cat([scaled, points.context], dim=-1))
+
+    def rotary(self, lonlat_rad: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+        """Cosine and sine (B, 1, N, width / heads / 2) by which queries and keys are turned."""
+        angle = torch.where(self.of_longitude, lonlat_rad[..., :1], lonlat_rad[..., 1:]) * self.turns
+        return torch.cos(angle)[:, None], torch.sin(angle)[:, None]
+
+
+Turned = tuple[torch.Tensor, torch.Tensor]
+
+
+class Layer(nn.Module):  # type: ignore[misc]
+    """Attention within each picture, then from each to the other."""
+
+    def __init__(self, width: int, heads: int) -> None:
+        super().__init__()
+        self.heads = heads
+        self.within, self.within_out = nn.Linear(width, 3 * width), nn.Linear(width, width)
+        self.within_mix = _mix(width)
+        self.across, self.across_out = nn.Linear(width, 2 * width), nn.Linear(width, width)
+        self.across_mix = _mix(width)
+
+    def forward(
+        self,
+        one: torch.Tensor,
+        other: torch.Tensor,
+        turned: Turned,
+        turned_other: Turned,
+        present: torch.Tensor | None,
+        present_other: torch.Tensor | None,
+    ) -> tuple[torch.Tensor, torch.Tensor]:
+        """Both pictures' keypoints, (B, N, width) and (B, M, width), knowing more."""
+        one, other = self._inside(one, turned, present), self._inside(other, turned_other, present_other)
+        key, value = self._split(self.across(one), 2)
+        key_other, value_other = self._split(self.across(other), 2)
+        from_other = self._gathered(key, key_other, value_other, present_other)
+        from_one = self._gathered(key_other, key, value, present)
+        return (
+            one + self.across_mix(torch.cat([one, self.across_out(from_other)], dim=-1)),
+            other + self.across_mix(torch.cat([other, self.across_out(from_one)], dim=-1)),
+        )
+
+    def _inside(self, points: torch.Tensor, turned: Turned, present: torch.Tensor | None) -> torch.Tensor:
+        query, key, value = self._split(self.within(points), 3)
+        seen = self._gathered(_turn(query, turned), _turn(key, turned), value, present)
+        return points + self.within_mix(torch.cat([points, self.within_out(seen)], dim=-1))
+
+    def _split(self, joined: torch.Tensor, parts: int) -> tuple[torch.Tensor, ...]:
+        batch, count, _ = joined.shape
+        return joined.reshape(batch, count, parts, self.heads, -1).permute(2, 0, 3, 1, 4).unbind(0)
+
+    @staticmethod
+    def _gathered(
+        query: torch.Tensor, key: torch.Tensor, value: torch.Tensor, present: torch.Tensor | None
+    ) -> torch.Tensor:
+        mask = None if present is None else present[:, None, None, :]
+        seen = functional.scaled_dot_product_attention(query, key, value, attn_mask=mask)
+        return seen.transpose(1, 2).flatten(2)
+
+
+class Answer(nn.Module):  # type: ignore[misc]
+    """What the keypoints say after a layer."""
+
+    def __init__(self, width: int) -> None:
+        super().__init__()
+        self.project, self.matchable = nn.Linear(width, width), nn.Linear(width, 1)
+        self.pair = nn.Sequential(nn.Linear(2 * width, width), nn.GELU(), nn.Linear(width, ANSWERS))
+
+    def forward(
+        self,
+        one: torch.Tensor,
+        other: torch.Tensor,
+        present: torch.Tensor | None,
+        present_other: torch.Tensor | None,
+    ) -> Assignment:
+        """Double softmax of similarities, times that both are matchable at all."""
+        likeness = self.project(one) @ self.project(other).transpose(1, 2) / one.shape[-1] ** 0.5
+        likeness = likeness.float()
+        if present is not None:
+            likeness = likeness.masked_fill(~present[:, :, None], -1e4)
+        if present_other is not None:
+            likeness = likeness.masked_fill(~present_other[:, None, :], -1e4)
+        first, second = self.matchable(one)[..., 0].float(), self.matchable(other)[..., 0].float()
+        log_right = (
+            torch.log_softmax(likeness, 2)
+            + torch.log_softmax(likeness, 1)
+            + functional.logsigmoid(first)[:, :, None]
+            + functional.logsigmoid(second)[:, None, :]
+        )
+        return Assignment(log_right, (first, second), self.of_pair(one, other, present, present_other))
+
+    def of_pair(
+        self,
+        one: torch.Tensor,
+        other: torch.Tensor,
+        present: torch.Tensor | None,
+        present_other: torch.Tensor | None,
+    ) -> torch.Tensor:
+        """(B, ANSWERS), the same whichever picture comes first."""
+        both = _mean(one, present), _mean(other, present_other)
+        joined = torch.cat([both[0] + both[1], (both[0] - both[1]).abs()], dim=-1)
+        found: torch.Tensor = self.pair(joined).float()
+        return found
+
+
+def _mean(points: torch.Tensor, present: torch.Tensor | None) -> torch.Tensor:
+    if present is None:
+        return points.mean(1)
+    weight = present[..., None].to(points.dtype)
+    return (points * weight).sum(1) / weight.sum(1).clamp(min=1.0)
+
+
+def _mix(width: int) -> nn.Module:
+    return nn.Sequential(
+        nn.Linear(2 * width, 2 * width), nn.LayerNorm(2 * width), nn.GELU(), nn.Linear(2 * width, width)
+    )
+
+
+def _turn(vectors: torch.Tensor, turned: Turned) -> torch.Tensor:
+    cosine, sine = turned
+    even, odd = vectors[..., ::2], vectors[..., 1::2]
+    return (
+        torch.stack([even * cosine - odd * sine, even * sine + odd * cosine], dim=-1)
+        .flatten(-2)
+        .to(vectors.dtype)
+    )
