@@ -147,6 +147,36 @@ def matcher(
     print_figures("matcher", train(pairs, into, detector, chosen, device, until, export, jobs))
 
 
+@app.command("patch")
+def patch(
+    shape: Annotated[str | None, typer.Option(help="hardnet, sosnet or slim; default: the recipe's.")] = None,
+    pairs: Annotated[Path, typer.Option(help="Folder of shards of 'topnav train data'.")] = DATA,
+    into: Annotated[Path, typer.Option(help="Folder of checkpoints and log.")] = MODELS / "patch",
+    recipe: RecipeFile = None,
+    until: Annotated[int | None, typer.Option(min=1, help="Stop early after this step.")] = None,
+    device: Annotated[str, typer.Option(help="cpu or cuda.")] = "cpu",
+    jobs: Annotated[int, typer.Option(min=1, help="Shards read at a time.")] = 1,
+    export: Annotated[Path | None, typer.Option(help="Write the weights alone to this file.")] = None,
+) -> None:
+    """A descriptor of patches; goes on from the last checkpoint, on the CPU to the same bits."""
+    from experiments.training.data.shards import shard_files
+    from experiments.training.learning.export import exported
+    from experiments.training.patch.recipe import PatchRecipe
+    from experiments.training.patch.training import about, read, train
+    from experiments.training.recipe import recipe_from
+    from services.features.networks.runtime import device_named
+    from services.launcher.terminal.output import print_figures
+
+    chosen = recipe_from(PatchRecipe, recipe, shape=shape)
+    place, files = device_named(device), shard_files(pairs)
+    patches = read(files, into, chosen, jobs)
+    network, reached = train(patches, chosen, into, place, until)
+    figures = {"folder": str(into), "pairs of patches": len(patches), "steps": reached}
+    if export is not None:
+        figures["exported bytes"] = exported(network, export, about(chosen, reached, files))
+    print_figures("patch", figures)
+
+
 @app.command("evaluate")
 def evaluate(
     trained: Annotated[Path, typer.Option(help="Folder of 'topnav train residual'.")] = MODELS / "residual",

@@ -19,7 +19,7 @@ from shared.geometry.sphere import EquirectGrid
 
 CELL_PX = 8
 RIGHT_RAD = 0.0123
-"""A keypoint this near to the true place is the same point: 0.7 degrees, as far off as verification allows."""
+"""A keypoint this near to the true place is the same point: 0.7 degrees, as verification allows."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ def pair_losses(
     looking = _Looking(network, maps, shifts, panoramas, pairs)
     drawn = draw_keypoints(scores, keypoints, generator)
     vectors = looking.descriptors(drawn.pixels)
-    expected, visible, known = looking.expected(drawn.pixels[:count])
+    expected, visible, _ = looking.expected(drawn.pixels[:count])
     cosine = expected @ looking.bearings(drawn.pixels, slice(count, None)).transpose(1, 2)
     right = (cosine >= torch.cos(torch.tensor(RIGHT_RAD))) & visible[..., None]
     log_same = _dual_softmax(vectors[:count], vectors[count:], temperature)
@@ -94,7 +94,7 @@ def pair_losses(
     return {
         "points": _points_loss(looking, asked, temperature),
         "keypoints": -_mean(log_same, right & (cosine == cosine.amax(1, keepdim=True))),
-        **_score_losses(drawn, matched, visible, _seen(looking, drawn, count), count),
+        **_score_losses(drawn, matched, visible, _seen(looking, drawn, count)),
     }
 
 
@@ -186,7 +186,7 @@ def _seen(looking: _Looking, drawn: Drawn, count: int) -> torch.Tensor:
 
 
 def _score_losses(
-    drawn: Drawn, matched: torch.Tensor, visible: torch.Tensor, visible_back: torch.Tensor, count: int
+    drawn: Drawn, matched: torch.Tensor, visible: torch.Tensor, visible_back: torch.Tensor
 ) -> dict[str, torch.Tensor]:
     """Scores learn the share of right matches; choices that led to more than others did gain."""
     found = torch.cat([matched.sum(2), matched.sum(1)]).clamp(0.0, 1.0)

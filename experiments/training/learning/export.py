@@ -1,38 +1,49 @@
-"""Trained weights alone, as they come with topnav: safetensors in half precision, with what they are."""
+"""What is given away of a training: the network alone, in half precision, with where it is from."""
 
 from collections.abc import Mapping
 from pathlib import Path
 
 import torch
-from safetensors.torch import save_file
+from safetensors.torch import save
 
 from services.launcher.client.failure import ExperimentError
 
 MOST_BYTES = 4_000_000
-"""Of a file that is to come with topnav."""
+"""Chosen: weights travel in the repository."""
 
 
-def export(network: torch.nn.Module, path: Path, about: Mapping[str, str]) -> int:
-    """Write a network's parameters and buffers.
+def exported(network: torch.nn.Module, path: Path, about: Mapping[str, str]) -> int:
+    """Write the parameters and statistics of a network as float16 in one file of safetensors.
 
     Args:
-        network: whose state is written.
+        network: any; what it counts stays whole numbers.
         path: of the file.
-        about: recipe, data and steps, kept in the file's header.
+        about: name, recipe, steps, seeds, licence: what the file says of itself.
 
     Returns:
-        Its size in bytes.
+        Size of the file, bytes.
 
     Raises:
-        ExperimentError: it would be too large to come with topnav.
+        ExperimentError: a value is beyond what float16 holds, or the file is too large to be given away.
     """
-    halves = {
-        name: (value.half() if value.is_floating_point() else value).detach().cpu().contiguous()
-        for name, value in network.state_dict().items()
-    }
-    size = sum(value.numel() * value.element_size() for value in halves.values())
-    if size > MOST_BYTES:
-        raise ExperimentError(f"weights of {size} bytes are too large for {path}: at most {MOST_BYTES}")
+    tensors = {name: _halved(name, value) for name, value in network.state_dict().items()}
+    data = save(tensors, dict(about))
+    if len(data) > MOST_BYTES:
+        raise ExperimentError(
+            f"the weights take {len(data)} bytes, at most {MOST_BYTES} are given away: choose a smaller shape"
+        )
     path.parent.mkdir(parents=True, exist_ok=True)
-    save_file(halves, path, metadata={**about, "licence": "Apache-2.0"})
-    return path.stat().st_size
+    new = path.with_name(path.name + ".new")
+    new.write_bytes(data)
+    new.replace(path)
+    return len(data)
+
+
+def _halved(name: str, value: torch.Tensor) -> torch.Tensor:
+    value = value.detach().cpu().contiguous()
+    if not value.is_floating_point():
+        return value
+    half = value.half()
+    if not bool(torch.isfinite(half).all()):
+        raise ExperimentError(f"{name} does not fit into half precision: training has diverged")
+    return half

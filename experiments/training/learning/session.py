@@ -8,7 +8,7 @@ import numpy as np
 import torch
 from rich.progress import Progress
 
-from experiments.training.learning.export import export
+from experiments.training.learning.export import exported
 from experiments.training.learning.running import Schedule, run
 from experiments.training.recipe import Recipe
 from services.launcher.terminal.output import wide_console
@@ -40,5 +40,7 @@ def written(network: torch.nn.Module, path: Path | None, recipe: Recipe, steps: 
     """Figures of the file of weights; none where none is asked for."""
     if path is None:
         return {}
-    size = export(network, path, {"recipe": recipe.model_dump_json(), "steps": str(steps)})
+    size = exported(
+        network, path, {"recipe": recipe.model_dump_json(), "steps": str(steps), "licence": "Apache-2.0"}
+    )
     return {"weights": str(path), "bytes": size}

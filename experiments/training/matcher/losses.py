@@ -35,7 +35,8 @@ class Truth:
 def truth_of(panoramas: Panoramas, pairs: torch.Tensor, one: Keypoints, other: Keypoints) -> Truth:
     """Of the pairs (P, 2) and the keypoints of both sides."""
     here, there = pairs.T
-    assert one.present is not None and other.present is not None, "a table says which are there"
+    assert one.present is not None, "a table says which are there"
+    assert other.present is not None, "a table says which are there"
     off, visible = _off(panoramas, here, there, one, other)
     off_back, visible_back = _off(panoramas, there, here, other, one)
     both = torch.maximum(off, off_back.transpose(1, 2))
@@ -90,7 +91,8 @@ def _off(
     """(P, N, M) angle between where a keypoint here is there and those there; (P, N) whether it is seen."""
     seen, visible, _ = panoramas.seen_from(one.lonlat_rad, here, there)
     cosine = seen @ bearings(other.lonlat_rad).transpose(1, 2)
-    assert one.present is not None and other.present is not None
+    assert one.present is not None
+    assert other.present is not None
     off = torch.acos(cosine.clamp(-1.0, 1.0)).masked_fill(~other.present[:, None, :], torch.inf)
     return off, visible & one.present
 

@@ -3,10 +3,13 @@
 import json
 
 import pytest
+from safetensors import safe_open
 from typer.testing import CliRunner
 
 from experiments.commands.train import app
+from experiments.training.worlds import first_worlds
 from services.launcher.client.failure import ExperimentError
+from tests.unit.experiments.training.patch.painted import painted_pair, write_painted
 
 
 def call(*words):
@@ -20,6 +23,28 @@ def test_worlds_that_judge_are_refused_before_anything_is_drawn(tmp_path):
     with pytest.raises(ExperimentError, match="of the validation split"):
         call("data", "--into", tmp_path / "pairs", "--only", "flat-0-small")
     assert not (tmp_path / "pairs").exists()
+
+
+def test_patches_are_learned_in_two_goes_and_the_weights_given_away(tmp_path):
+    (world,) = first_worlds("development", 1)
+    write_painted(tmp_path / "pairs", world, [painted_pair()])
+    short, into, weights = tmp_path / "short.json", tmp_path / "slim", tmp_path / "slim.safetensors"
+    sampling, schedule = {"keypoints": 100, "per_pair": 60}, {"steps": 4, "kept_every": 2}
+    short.write_text(json.dumps({"batch": 16, "sampling": sampling, "schedule": schedule}))
+    training = ("patch", "--shape", "slim", "--pairs", tmp_path / "pairs", "--into", into, "--recipe", short)
+    call(*training, "--until", 3)
+    assert not weights.exists()
+    assert "exported bytes" in call(*training, "--export", weights)
+    steps = [json.loads(line)["step"] for line in (into / "log.jsonl").read_text().splitlines()]
+    assert steps == [2, 3, 4]
+    with safe_open(weights, "pt") as file:
+        about = file.metadata()
+    assert {name: about[name] for name in ("name", "licence", "steps", "data_seed")} == {
+        "name": "topnav-slim", "licence": "Apache-2.0", "steps": "4", "data_seed": "7",
+    }  # fmt: skip
+    assert json.loads(about["recipe"])["batch"] == 16
+    with pytest.raises(ExperimentError, match="another recipe"):
+        call(*training, "--shape", "sosnet")
 
 
 @pytest.mark.render
