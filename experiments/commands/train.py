@@ -12,6 +12,7 @@ app = typer.Typer(
 )
 
 WORLDS, SHARDS, PAIRS = 40, 4, 64  # 10,240 pairs, some 10 GB
+JUDGED = "sift,aliked-t16,aliked-n16,sift/equirectangular/topnav-attention,topnav-slim"
 DATA, MODELS = Path("data/training/pairs"), Path("data/training")
 RecipeFile = Annotated[
     Path | None, typer.Option("--recipe", help="JSON with values that replace the recipe's.")
@@ -179,8 +180,13 @@ def patch(
 
 @app.command("evaluate")
 def evaluate(
-    trained: Annotated[Path, typer.Option(help="Folder of 'topnav train residual'.")] = MODELS / "residual",
-    against: Annotated[str, typer.Option(help="Pipelines to compare with.")] = "sift,aliked-t16,aliked-n16",
+    models: Annotated[str, typer.Option(help="Pipelines to judge.")] = JUDGED,
+    trained: Annotated[
+        Path | None, typer.Option(help="A folder of 'topnav train residual' to judge, too.")
+    ] = None,
+    photographs: Annotated[
+        Path | None, typer.Option(help="Folder of tours to judge on as well, see deploy/PHOTOGRAPHS.md.")
+    ] = None,
     into: Annotated[Path, typer.Option(help="Folder of the pairs it is judged on.")] = MODELS / "judged",
     worlds: Annotated[int, typer.Option(min=1, help="Validation worlds, kinds and sizes in turn.")] = 10,
     pairs: Annotated[int, typer.Option(min=1, help="Per world, 0.3 to 6 m apart.")] = 20,
@@ -189,22 +195,36 @@ def evaluate(
     json_file: options.JsonFile = None,
 ) -> None:
     """Ours and others on the same pairs of validation worlds, as the simulated camera takes them."""
+    from experiments.photographs.tours import read_tours
     from experiments.training.data.drawn import make_missing, plan_shards
     from experiments.training.data.recipe import DataRecipe
     from experiments.training.data.shards import read_shard
-    from experiments.training.evaluation.measure import judge
+    from experiments.training.evaluation.measure import as_written, judge
     from experiments.training.evaluation.models import available, trained_residual
+    from experiments.training.evaluation.photographs import judge_photographs
     from experiments.training.worlds import first_worlds
     from services.launcher.terminal.output import print_rows, write_json
 
-    ours = trained_residual(trained)
-    others, absent = available([name.strip() for name in against.split(",") if name.strip()])
+    ours = [trained_residual(trained)] if trained is not None else []
+    found, absent = available([name.strip() for name in models.split(",") if name.strip()])
+    tours = read_tours(photographs) if photographs is not None else []
     recipe = DataRecipe.plain(seed, (0.3, 6.0))
     plans = plan_shards(first_worlds("validation", worlds), "validation", 1, pairs, recipe, into)
     make_missing(plans, jobs)
     judged = [pair for plan in plans if plan.done is not None for pair in read_shard(plan.done).pairs]
-    rows = [judge(model, judged) for model in (*others, ours)]
-    write_json(json_file, {"pairs": len(judged), "seed": seed, "models": rows, "without_weights": absent})
+    rows = [judge(model, judged) for model in (*found, *ours)]
+    taken = {model.name: judge_photographs(model.name, tours, seed, jobs) for model in found if tours}
+    write_json(
+        json_file,
+        {
+            "pairs": len(judged),
+            "seed": seed,
+            "models": [as_written(row, taken.get(row["name"])) for row in rows],
+            "without_weights": absent,
+        },
+    )
     print_rows("on validation worlds", rows)
+    if taken:
+        print_rows("on photographs", [{"name": name} | row for name, row in taken.items()])
     if absent:
         print_rows("without weights", [{"name": name, "why": why} for name, why in absent.items()])

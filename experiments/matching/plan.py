@@ -23,6 +23,7 @@ DESCRIPTORS = (
     "beblid",
     "tfeat",
     "mkd",
+    "topnav-slim",
     "aliked-t16",
     "hardnet",
     "hardnet8",

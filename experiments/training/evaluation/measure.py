@@ -46,6 +46,15 @@ def judge(model: Model, pairs: Sequence[Pair]) -> Row:
     }
 
 
+def as_written(row: Row, photographs: Row | None) -> Row:
+    """The entry of a model as `topnav train evaluate --json` writes it: figures by what they were taken on."""
+    of_model = ("name", "bytes", "ms_frame", "ms_pair")
+    return {key: row[key] for key in of_model} | {
+        "renderings": {key: value for key, value in row.items() if key not in of_model},
+        "photographs": photographs,
+    }
+
+
 def summary(answers: Sequence[Row]) -> Row:
     """Figures of pairs of the same place, and how many of other places were answered."""
     same = [row for row in answers if row["same"]]

@@ -14,10 +14,12 @@ from experiments.training.recipe import recipe_from
 from experiments.training.residual.recipe import ResidualRecipe, network_of
 from experiments.training.sealed import sealed_files
 from experiments.training.sights import Image
+from services.features.networks.catalogue import MODELS
 from services.features.networks.keypoint_context import context_of
+from services.features.networks.loaders import PARTS
 from services.features.networks.runtime import WeightsError, unit_descriptors
 from services.features.pipeline.extraction import extract
-from services.features.pipeline.interfaces import FeatureSet
+from services.features.pipeline.interfaces import FeatureSet, Profile
 from services.features.pipeline.named_pipelines import find_profile
 from services.features.pipeline.pipeline import Pipeline
 from services.launcher.client.failure import ExperimentError
@@ -31,7 +33,7 @@ class Model:
 
     Attributes:
         name: of it.
-        size_bytes: of its weights; 0 for none of ours.
+        size_bytes: of its weights, as far as the catalogue knows; 0 without any.
         pipeline: whose matcher and verification answer.
         features: of a panorama.
     """
@@ -58,7 +60,8 @@ def available(names: Sequence[str]) -> tuple[list[Model], dict[str, str]]:
         except WeightsError as error:
             absent[name] = str(error)
         else:
-            models.append(Model(name, 0, pipeline, partial(_extracted, pipeline=pipeline)))
+            features = partial(_extracted, pipeline=pipeline)
+            models.append(Model(name, _weights_bytes(pipeline.profile), pipeline, features))
     return models, absent
 
 
@@ -87,6 +90,13 @@ def trained_residual(folder: Path) -> Model:
 
     size = sum(4 * value.numel() for value in network.state_dict().values())
     return Model(OURS, size, pipeline, features)
+
+
+def _weights_bytes(profile: Profile) -> int:
+    plugins = {profile.extractor, profile.matcher}
+    return sum(
+        model.size_bytes for model in MODELS if plugins & {*model.pipelines} and model.name not in PARTS
+    )
 
 
 def _extracted(picture: Image, pipeline: Pipeline) -> FeatureSet:

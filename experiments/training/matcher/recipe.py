@@ -12,6 +12,9 @@ from experiments.training.panoramas.store import Panoramas
 from experiments.training.recipe import Recipe
 from services.features.networks.attention import Attention, Keypoints
 
+COUNTS = 6
+"""Numbers of keypoints that are met: each is another size of all tensors, which costs time on a GPU."""
+
 
 class MatcherRecipe(Recipe):
     """How the matcher is trained.
@@ -64,7 +67,7 @@ def batch_loss(
     device = panoramas.device
     chosen = torch.from_numpy(pairs.draw(recipe.batch, rng, recipe.others)).to(device)
     generator = torch.Generator(device).manual_seed(int(rng.integers(2**62)))
-    kept = int(recipe.keypoints * rng.uniform(recipe.fewest, 1.0))
+    kept = round(recipe.keypoints * float(np.linspace(recipe.fewest, 1.0, COUNTS)[rng.integers(COUNTS)]))
     one, other = (_thinned(table.of(side), kept, generator) for side in chosen.T)
     truth = truth_of(panoramas, chosen, one, other)
     with torch.autocast(device.type, torch.bfloat16, enabled=device.type == "cuda"):
@@ -79,9 +82,11 @@ def _thinned(points: Keypoints, kept: int, generator: torch.Generator) -> Keypoi
     assert points.present is not None
     luck = torch.rand(points.present.shape, generator=generator, device=points.present.device)
     rows = (luck + points.present).topk(min(kept, luck.shape[1]), dim=1).indices
-    parts = points.lonlat_rad, points.descriptors, points.context
-    taken = (part.gather(1, rows[..., None].expand(-1, -1, part.shape[-1])) for part in parts)
-    return Keypoints(*taken, points.present.gather(1, rows))
+    lonlat_rad, descriptors, context = (
+        part.gather(1, rows[..., None].expand(-1, -1, part.shape[-1]))
+        for part in (points.lonlat_rad, points.descriptors, points.context)
+    )
+    return Keypoints(lonlat_rad, descriptors, context, points.present.gather(1, rows))
 
 
 def _shaken(points: Keypoints, sigma_rad: float, generator: torch.Generator) -> Keypoints:

@@ -7,9 +7,9 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, PositiveInt
 from experiments.training.learning.running import Schedule
 from experiments.training.patch.batches import draw_batch
 from experiments.training.patch.loss import hardest_in_batch, second_order
-from experiments.training.patch.network import Shape, network_named
 from experiments.training.patch.samples import Patches, Sampling
 from experiments.training.recipe import Recipe
+from services.features.networks.patch_shapes import Shape, network_named
 
 
 class PatchRecipe(Recipe):

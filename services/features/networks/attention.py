@@ -143,7 +143,8 @@ class Layer(nn.Module):  # type: ignore[misc]
 
     def _split(self, joined: torch.Tensor, parts: int) -> tuple[torch.Tensor, ...]:
         batch, count, _ = joined.shape
-        return joined.reshape(batch, count, parts, self.heads, -1).permute(2, 0, 3, 1, 4).unbind(0)
+        apart = joined.reshape(batch, count, parts, self.heads, -1).permute(2, 0, 3, 1, 4)
+        return tuple(apart[part] for part in range(parts))
 
     @staticmethod
     def _gathered(

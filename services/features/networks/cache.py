@@ -9,6 +9,9 @@ from services.features.networks.catalogue import TrainedModel
 
 State = Literal["absent", "verified", "unpinned", "broken"]
 
+OWN_FOLDER = Path(__file__).resolve().parents[1] / "weights"
+"""Of what was trained here and comes with the code."""
+
 
 def cache_folder() -> Path:
     """Where kornia keeps its files: $TORCH_HOME/hub/checkpoints."""
@@ -26,6 +29,8 @@ def path_of(model: TrainedModel) -> Path:
     """File or folder of a model, whether or not it is there."""
     if model.source == "transformers":
         return hub_folder() / f"models--{model.file.replace('/', '--')}"
+    if model.source == "topnav":
+        return OWN_FOLDER / model.file
     return cache_folder() / model.file
 
 

@@ -1,7 +1,8 @@
 """Trained weights that the learned plugins load: where they come from and under which licence. Pure data.
 
-Files are downloaded by kornia and transformers themselves, into their own caches. A checksum is given where
-we have held the file in our hands; the others are checked by their libraries alone.
+Files are downloaded by kornia and transformers themselves, into their own caches; what was trained here comes
+with the code. A checksum is given where we have held the file in our hands; the others are checked by
+their libraries alone.
 """
 
 from dataclasses import dataclass
@@ -9,7 +10,7 @@ from typing import Literal
 
 from services.features.pipeline.plugins import PATCH_NETWORKS
 
-Source = Literal["kornia", "transformers"]
+Source = Literal["kornia", "transformers", "topnav"]
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class TrainedModel:
         size_bytes: size of the file; 0 where not known.
         sha256: checksum; empty where not known.
         commercial: False where the licence forbids commercial use.
-        source: library that downloads it.
+        source: library that downloads it; `topnav` where it comes with the code.
     """
 
     name: str
@@ -73,6 +74,13 @@ def _repository(name: str, repository: str, origin: str, pipeline: str) -> Train
     )
 
 
+def _own(name: str, plugin: str, size_bytes: int, sha256: str) -> TrainedModel:
+    """A file in services/features/weights, see deploy/TRAINING.md."""
+    file, origin = f"{name}.safetensors", "trained here"
+    return TrainedModel(name, file, "Apache-2.0", origin, (plugin,), size_bytes, sha256, source="topnav")
+
+
+OWN: tuple[TrainedModel, ...] = ()
 MODELS: tuple[TrainedModel, ...] = (
     _file("aliked-t16", "aliked-t16.pth", "BSD-3-Clause", "Shiaoming/ALIKED"),
     _file("aliked-n16", "aliked-n16.pth", "BSD-3-Clause", "Shiaoming/ALIKED"),
@@ -99,6 +107,7 @@ MODELS: tuple[TrainedModel, ...] = (
     _repository("superpoint", "superpoint", "SuperPointPretrainedNetwork", "superpoint"),
     _repository("superglue-indoor", "superglue_indoor", "SuperGluePretrainedNetwork", "superglue"),
     _repository("superglue-outdoor", "superglue_outdoor", "SuperGluePretrainedNetwork", "superglue-outdoor"),
+    *OWN,
 )
 
 

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import kornia.feature as kf
 
 from services.features.networks.catalogue import TrainedModel
+from services.features.networks.own_weights import own_weights
 from services.features.pipeline.interfaces import Profile, Runtime
 from services.features.pipeline.plugins import create_extractor, create_matcher
 
@@ -28,7 +29,9 @@ def load(model: TrainedModel) -> None:
         WeightsError: it is not to be had.
         ValueError: its licence needs consent.
     """
-    if model.name in PARTS:
+    if model.source == "topnav":
+        own_weights(model.name)
+    elif model.name in PARTS:
         PARTS[model.name]()
     elif model.name in LIGHTGLUE_EXTRACTORS:
         profile = Profile(LIGHTGLUE_EXTRACTORS[model.name], matcher="lightglue")

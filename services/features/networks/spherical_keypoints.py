@@ -106,7 +106,7 @@ def network_of(shape: Shape) -> KeypointNet:
 
 def described(maps: Maps, strides: tuple[int, ...], pixels: torch.Tensor) -> torch.Tensor:
     """Unit descriptors (B, N, D) at (B, N, 2) continuous pixels, the centre of the first at 0.5."""
-    total = 0.0
+    total = torch.zeros((), device=pixels.device)
     for map_, stride in zip(maps, strides, strict=True):
         size = torch.tensor(map_.shape[:-3:-1], device=pixels.device, dtype=pixels.dtype)
         places = (2.0 * pixels / (stride * size) - 1.0)[:, None].to(map_.dtype)

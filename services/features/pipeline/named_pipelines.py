@@ -45,6 +45,10 @@ LIGHTGLUE = {
 """Extractors for which somebody trained a LightGlue -> kornia's name of those weights."""
 
 
+ATTENTION = {"sift": "topnav-attention-sift"}
+"""Extractors for whose keypoints our matcher was trained -> its weights."""
+
+
 def find_profile(name: str) -> Profile:
     """Return a named profile, or one put together as extractor[/representation[/matcher]].
 
@@ -77,5 +81,7 @@ def combined(extractor: str, representation: str, matcher: str) -> Profile:
         raise ValueError(f"matcher {matcher} was trained for superpoint alone, not for {extractor}")
     if matcher == "lightglue" and extractor not in LIGHTGLUE:
         raise ValueError(f"there is no lightglue for {extractor}, only for {', '.join(LIGHTGLUE)}")
+    if matcher == "topnav-attention" and extractor not in ATTENTION:
+        raise ValueError(f"there is no topnav-attention for {extractor}, only for {', '.join(ATTENTION)}")
     resize = None if representation == "tangent" else (400, 800)
     return Profile(extractor, representation, matcher, resize=resize)

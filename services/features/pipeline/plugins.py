@@ -19,6 +19,7 @@ PATCH_NETWORKS = {
     "hardnet8": "HardNet8",
     "sosnet": "SosNet",
     "mkd": "Mkd",
+    "topnav-slim": "Slim",
 }
 KEYPOINT_NETWORKS = {
     "aliked-t16": "Aliked",
@@ -30,11 +31,14 @@ KEYPOINT_NETWORKS = {
     "dedode": "DeDoDe",
     "superpoint": "SuperPoint",
 }
+OWN_MATCHERS = {"topnav-attention": "AttentionMatcher"}
+"""Trained here, as are the extractors whose names begin with topnav: nobody is to take one for another's."""
 CLASSIC_MATCHERS = {"mutual_ratio": "MutualRatio", "brute_force": "BruteForce"}
 PLUGINS = {
     "extractor": CLASSIC | PATCH_NETWORKS | KEYPOINT_NETWORKS,
     "representation": {"equirectangular": "Equirectangular", "tangent": "Tangent", "planar": "Planar"},
     "matcher": CLASSIC_MATCHERS
+    | OWN_MATCHERS
     | {"lightglue": "LightGlue", "superglue": "SuperGlue", "superglue-outdoor": "SuperGlue"},
 }
 """Kind -> name -> class. A file in the kind's folder has the plugin's name, without what follows a dash."""

@@ -64,9 +64,10 @@ def test_pairs_are_drawn_learned_from_and_judged(tmp_path):
     steps = [json.loads(line)["step"] for line in (into / "log.jsonl").read_text().splitlines()]
     assert steps == [2, 3, 4, 6]
     judged = ("--into", tmp_path / "judged", "--worlds", 1, "--pairs", 2, "--json", figures)
-    call("evaluate", "--trained", into, "--against", "sift", *judged)
+    call("evaluate", "--trained", into, "--models", "sift", *judged)
     written = json.loads(figures.read_text())
     assert [row["name"] for row in written["models"]] == ["sift", "residual"]
-    assert all(row["pairs"] + row["other_places"] == 2 for row in written["models"])
+    found = [row["renderings"] for row in written["models"]]
+    assert all(row["pairs"] + row["other_places"] == 2 for row in found)
     with pytest.raises(ExperimentError, match="pairs of a shard 4, now 5"):
         call(*drawn, "--pairs", 5)

@@ -7,7 +7,7 @@ from safetensors import safe_open
 from safetensors.torch import load_file
 
 from experiments.training.learning.export import exported
-from experiments.training.patch.network import network_named
+from services.features.networks.patch_shapes import network_named
 from services.launcher.client.failure import ExperimentError
 
 

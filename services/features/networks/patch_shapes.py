@@ -1,7 +1,7 @@
 """Networks that describe 32 x 32 patches, with the names of parameters that kornia's modules have.
 
-What is trained here is loaded by `kornia.feature.HardNet` and `SOSNet`, which the feature service builds:
-the machine that trains needs no kornia.
+What is trained in these shapes is loaded by `kornia.feature.HardNet` and `SOSNet`, too; a machine that trains
+needs no kornia.
 """
 
 from typing import Literal

@@ -4,7 +4,7 @@ import kornia.feature as kf
 import pytest
 import torch
 
-from experiments.training.patch.network import network_named
+from services.features.networks.patch_shapes import network_named
 
 
 def patches(count: int) -> torch.Tensor:
