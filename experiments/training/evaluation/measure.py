@@ -47,7 +47,7 @@ def judge(model: Model, pairs: Sequence[Pair]) -> Row:
 
 
 def as_written(row: Row, photographs: Row | None) -> Row:
-    """The entry of a model as `topnav train evaluate --json` writes it: figures by what they were taken on."""
+    """A model's entry as `topnav train evaluate --json` writes it: figures by what they were taken on."""
     of_model = ("name", "bytes", "ms_frame", "ms_pair")
     return {key: row[key] for key in of_model} | {
         "renderings": {key: value for key, value in row.items() if key not in of_model},
