@@ -2,6 +2,7 @@
 
 import torch
 
+from services.features.networks.folding import folded
 from services.features.networks.own_weights import own_weights
 from services.features.networks.patch_network import PatchNetwork
 from services.features.networks.patch_shapes import network_named
@@ -14,4 +15,4 @@ class Slim(PatchNetwork):
         network = network_named("slim")
         if trained:
             network.load_state_dict(own_weights("topnav-slim")[0])
-        return network
+        return folded(network.eval())

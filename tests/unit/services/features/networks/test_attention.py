@@ -1,0 +1,95 @@
+"""The matcher's network: what turning a camera, changing the order or filling up must not change."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+torch = pytest.importorskip("torch")
+
+from services.features.networks.attention import ANSWERS, Attention, Keypoints  # noqa: E402
+
+
+@pytest.fixture(scope="module")
+def network():
+    torch.manual_seed(3)
+    return Attention(8, width=32).eval()
+
+
+def some(count: int, seed: int) -> Keypoints:
+    rng = torch.Generator().manual_seed(seed)
+    lonlat = (torch.rand(1, count, 2, generator=rng) - 0.5) * torch.tensor([6.28, 2.0])
+    vectors = torch.nn.functional.normalize(torch.randn(1, count, 8, generator=rng), dim=-1)
+    return Keypoints(lonlat, vectors, torch.randn(1, count, 4, generator=rng))
+
+
+def last(network, one: Keypoints, other: Keypoints):
+    with torch.inference_mode():
+        return network(one, other)[-1]
+
+
+def changed(points: Keypoints, **parts) -> Keypoints:
+    return Keypoints(**{**points.__dict__, **parts})
+
+
+def test_turning_a_camera_changes_no_answer(network):
+    one, other = some(20, 1), some(30, 2)
+    turned = changed(one, lonlat_rad=one.lonlat_rad + torch.tensor([1.234, 0.0]))
+    plain, found = last(network, one, other), last(network, turned, other)
+    assert_allclose(found.log_right.numpy(), plain.log_right.numpy(), atol=1e-4)
+    assert_allclose(found.pair.numpy(), plain.pair.numpy(), atol=1e-5)
+
+
+def test_where_a_keypoint_is_among_the_others_does_matter(network):
+    one, other = some(20, 1), some(30, 2)
+    moved = one.lonlat_rad.clone()
+    moved[0, 0, 0] += 1.0
+    found = last(network, changed(one, lonlat_rad=moved), other)
+    assert (found.log_right - last(network, one, other).log_right).abs().max() > 1e-3
+
+
+def test_the_order_of_keypoints_is_the_order_of_the_answer_and_nothing_else(network):
+    one, other, order = (
+        some(20, 1),
+        some(30, 2),
+        torch.randperm(20, generator=torch.Generator().manual_seed(1)),
+    )
+    shuffled = Keypoints(one.lonlat_rad[:, order], one.descriptors[:, order], one.context[:, order])
+    found = last(network, shuffled, other).log_right
+    assert_allclose(found.numpy(), last(network, one, other).log_right[:, order].numpy(), atol=1e-4)
+
+
+def test_which_picture_comes_first_changes_no_answer(network):
+    one, other = some(20, 1), some(30, 2)
+    plain, found = last(network, one, other), last(network, other, one)
+    assert_allclose(found.log_right.numpy(), plain.log_right.transpose(1, 2).numpy(), atol=1e-4)
+    assert_allclose(found.pair.numpy(), plain.pair.numpy(), atol=1e-5)
+
+
+def test_keypoints_that_only_fill_up_change_nothing_and_are_nobodys_partner(network):
+    one, other = some(20, 1), some(30, 2)
+    filled = Keypoints(
+        *(torch.cat([part, torch.ones_like(part[:, :5])], dim=1) for part in
+          (one.lonlat_rad, one.descriptors, one.context)),
+        torch.arange(25)[None] < 20,
+    )  # fmt: skip
+    found, plain = last(network, filled, other), last(network, one, other)
+    assert_allclose(found.log_right[:, :20].numpy(), plain.log_right.numpy(), atol=1e-4)
+    assert found.log_right[:, 20:].exp().max() < 1e-6
+    assert_allclose(found.pair.numpy(), plain.pair.numpy(), atol=1e-5)
+
+
+def test_a_partner_is_shared_by_probabilities_that_sum_to_one_at_most(network):
+    right = last(network, some(20, 1), some(30, 2)).log_right.exp()
+    assert right.sum(2).max() <= 1.0 + 1e-6
+    assert right.sum(1).max() <= 1.0 + 1e-6
+
+
+def test_the_last_answer_alone_is_that_of_all_layers_unless_the_place_is_another(network):
+    one, other = some(20, 1), some(30, 2)
+    with torch.inference_mode():
+        found = network.last(one, other, hopeless=0.0)
+        assert network.last(one, other, hopeless=1.0) is None
+    plain = last(network, one, other)
+    assert found.pair.shape == (1, ANSWERS)
+    assert_allclose(found.log_right.numpy(), plain.log_right.numpy(), atol=1e-5)
+    assert np.isfinite(found.log_right.numpy()).all()
