@@ -1,5 +1,6 @@
 """Fixtures that any test may use."""
 
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from services.launcher.processes.free_ports import free_ports
 from shared.transport import session_config as bus_config
 from shared.transport.router_config import router_config
 from tests import patient
+from tests.plane_exploration import Explorations
 from tests.postgres import PostgresServer, missing
 from tests.traced_memory import TracedCall, tracing_process
 
@@ -45,6 +47,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def repository() -> Path:
     """Folder of the whole project."""
     return REPOSITORY
+
+
+@pytest.fixture(scope="session")
+def explorations(tmp_path_factory: pytest.TempPathFactory) -> Explorations:
+    """The apartment explored on the true floor plan, by seed; the workers of a run share what one made."""
+    own = tmp_path_factory.getbasetemp()
+    return Explorations(own.parent if "PYTEST_XDIST_WORKER" in os.environ else own)
 
 
 @pytest.fixture

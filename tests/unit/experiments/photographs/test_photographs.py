@@ -33,6 +33,7 @@ def test_the_command_measures_a_tour_and_draws_what_went_wrong(example, tmp_path
     files = {name: str(tmp_path / name) for name in ("f.json", "f.png", "failures", "data")}
     options = ["--json", files["f.json"], "--plot", files["f.png"], "--failures", files["failures"]]
     asked = ["--tours", str(example), *options, "--data-dir", files["data"], "--quick", "--jobs", "1"]
+    asked += ["--pipeline", "fast"]
     ran = CliRunner().invoke(app, asked, catch_exceptions=False)
     assert ran.exit_code == 0
     found = json.loads((tmp_path / "f.json").read_text())

@@ -8,7 +8,6 @@ import pytest
 
 from services.drive.limits import DriveLimits
 from services.planner.mission_kinds import MissionContext, MissionError
-from services.planner.missions.explore import FrontierExploration
 from services.planner.missions.goto import KIND
 from services.planner.profiles import DEFAULT
 from shared.geometry.perspective import rotation_z
@@ -17,7 +16,7 @@ from shared.geometry.sphere import lonlat_from_bearings
 from shared.messages.features import PhotoView
 from shared.messages.matching import NodeMatch
 from shared.messages.places import KeepOut, Place, PutPlace, PutRule
-from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, picture, run
+from tests.plane_world import PlaneMap, PlaneMatcher, picture, run
 from tests.unit.shared.geometry.photo.photo_scene import Shot, on_plane
 
 START, SPOT = (2.6, 1.3, 0.0), (1.1, 3.6)
@@ -66,11 +65,9 @@ class PhotoMatcher(PlaneMatcher):
 
 
 @pytest.fixture(scope="module")
-def mapped():
-    world, maps = PlaneWorld(START, np.random.default_rng(2)), SeenMap()
-    matcher = PlaneMatcher(world, maps)
-    run(world, FrontierExploration(DEFAULT, maps, matcher, np.random.default_rng(2)), DriveLimits(), 5000)
-    return world, maps
+def mapped(explorations):
+    found = explorations(2)
+    return found.world, SeenMap(found.maps.graph, found.maps.poses)
 
 
 def goto(maps, matcher):

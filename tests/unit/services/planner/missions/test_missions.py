@@ -15,22 +15,14 @@ from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, picture, run
 START = (2.6, 1.3, 0.0)
 
 
-def explore(seed):
-    world = PlaneWorld(START, np.random.default_rng(seed))
-    maps = PlaneMap()
-    matcher = PlaneMatcher(world, maps)
-    mission = FrontierExploration(DEFAULT, maps, matcher, np.random.default_rng(seed))
-    decision, steps = run(world, mission, DriveLimits(), 5000)
-    return world, maps, matcher, decision, steps
-
-
 @pytest.fixture(scope="module")
-def explored():
-    return explore(seed=2)
+def explored(explorations):
+    found = explorations(2)
+    return found.world, found.maps, PlaneMatcher(found.world, found.maps), found.decision
 
 
 def test_exploration_ends_by_itself_with_one_map_of_the_whole_floor(explored):
-    world, maps, _, decision, _ = explored
+    world, maps, _, decision = explored
     centres = world.space.centres_m()
     nodes = np.array([pose[:2] for pose in maps.poses.values()])
     distance_m = np.hypot(*(centres[:, None, :] - nodes[None, :, :]).transpose(2, 0, 1)).min(axis=1)
@@ -41,7 +33,7 @@ def test_exploration_ends_by_itself_with_one_map_of_the_whole_floor(explored):
 
 
 def test_stored_headings_point_to_the_neighbour_from_both_ends(explored):
-    _, maps, _, _, _ = explored
+    _, maps, _, _ = explored
     errors = []
     for (a, b), edge in maps.graph.edges.items():
         for near, far, heading in ((a, b, edge.heading_ab_rad), (b, a, edge.heading_ba_rad)):
@@ -52,7 +44,7 @@ def test_stored_headings_point_to_the_neighbour_from_both_ends(explored):
 
 
 def test_goals_anywhere_in_the_map_are_reached_without_collision(explored):
-    world, maps, matcher, _, _ = explored
+    world, maps, matcher, _ = explored
     rng = np.random.default_rng(5)
     for _ in range(6):
         goal = world.space.random_pose(rng, 0.1)
@@ -63,14 +55,14 @@ def test_goals_anywhere_in_the_map_are_reached_without_collision(explored):
 
 
 def test_goal_that_resembles_nothing_is_refused_by_name(explored):
-    world, maps, matcher, _, _ = explored
+    world, maps, matcher, _ = explored
     mission = Goto(DEFAULT, maps, matcher, picture((40.0, 40.0, 0.0)))
     decision = mission.decide(world.observe())
     assert (decision.outcome, decision.failure) == ("failed", "goal_not_in_map")
 
 
 def test_kidnapped_robot_finds_the_goal_all_the_same(explored):
-    world, maps, matcher, _, _ = explored
+    world, maps, matcher, _ = explored
     goal = (6.0, 2.0, 1.0)
     mission = Goto(DEFAULT, maps, matcher, picture(goal))
     world.pose = (-0.2, -2.5, 0.0)

@@ -9,12 +9,11 @@ import pytest
 
 from services.drive.limits import DriveLimits
 from services.planner.mission_kinds import MissionContext, MissionError, mission_kinds
-from services.planner.missions.explore import FrontierExploration
 from services.planner.missions.patrol import TOLD, Checkpoint, Patrol, PatrolParameters
 from services.planner.ports import Decision, Progress
 from services.planner.profiles import DEFAULT
 from shared.messages.places import KeepOut, Place, PutPlace, PutRule
-from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, picture, run
+from tests.plane_world import PlaneMatcher, picture, run
 
 PLACES = ("kitchen", "bath", "door")
 
@@ -22,11 +21,10 @@ PLACES = ("kitchen", "bath", "door")
 class Flat:
     """A robot in the explored apartment with three places far apart."""
 
-    def __init__(self):
-        self.world, self.maps = PlaneWorld((2.6, 1.3, 0.0), np.random.default_rng(3)), PlaneMap()
+    def __init__(self, explored):
+        assert explored.decision.outcome == "succeeded"
+        self.world, self.maps = explored.world, explored.maps
         self.matcher = PlaneMatcher(self.world, self.maps)
-        mission = FrontierExploration(DEFAULT, self.maps, self.matcher, np.random.default_rng(3))
-        assert run(self.world, mission, DriveLimits(), 5000)[0].outcome == "succeeded"
         chosen = [next(iter(self.maps.graph.nodes))]
         while len(chosen) < len(PLACES):
             chosen.append(max(self.maps.graph.nodes, key=lambda n: min(self._apart(n, c) for c in chosen)))
@@ -50,8 +48,8 @@ class Flat:
 
 
 @pytest.fixture(scope="module")
-def flat():
-    return Flat()
+def flat(explorations):
+    return Flat(explorations(3))
 
 
 @pytest.fixture

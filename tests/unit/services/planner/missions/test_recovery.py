@@ -8,7 +8,6 @@ import pytest
 
 from services.drive.limits import DriveLimits
 from services.planner.goals.destination import GoalDestination
-from services.planner.missions.explore import FrontierExploration
 from services.planner.missions.goto import Goto
 from services.planner.profiles import DEFAULT
 from services.planner.travel.destination import Setback
@@ -18,7 +17,7 @@ from shared.mapgraph.routing import GOAL
 from shared.messages.matching import NodeMatch
 from simulator.scene.parts import Material
 from simulator.scene.shapes import box
-from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, Walker, picture, run
+from tests.plane_world import PlaneMatcher, PlaneWorld, Walker, picture, run
 
 START = (2.6, 1.3, 0.0)
 HALL = (-0.2, -3.0, 0.0)
@@ -27,21 +26,14 @@ DOOR = box((0.9, 2.4), (-0.14, -0.02), (0.0, 2.0), Material("lacquer"))
 """Shuts the only opening between living room and corridor."""
 
 
-def map_by(seed):
-    world, maps = PlaneWorld(START, np.random.default_rng(seed)), PlaneMap()
-    matcher = PlaneMatcher(world, maps)
-    run(world, FrontierExploration(DEFAULT, maps, matcher, np.random.default_rng(seed)), DriveLimits(), 5000)
-    return maps
-
-
 def in_lounge(mapped):
     world, maps = PlaneWorld(LOUNGE, np.random.default_rng(2)), copy.deepcopy(mapped)
     return world, maps, PlaneMatcher(world, maps)
 
 
 @pytest.fixture(scope="module")
-def mapped():
-    return map_by(2)
+def mapped(explorations):
+    return explorations(2).maps
 
 
 @pytest.fixture
@@ -70,11 +62,11 @@ def test_a_closed_door_is_a_typed_failure_and_an_open_one_is_used_again(explored
 
 @pytest.mark.slow
 @pytest.mark.timeout(600)
-def test_a_closed_door_is_given_up_soon(mapped):
+def test_a_closed_door_is_given_up_soon(explorations):
     """How many edges lead through it, and by how many legs they are tried, is chance: so three maps."""
     steps = []
-    for maps in (mapped, *(map_by(seed) for seed in (3, 4))):
-        at_door = in_lounge(maps)
+    for seed in (2, 3, 4):
+        at_door = in_lounge(explorations(seed).maps)
         at_door[0].put(DOOR)
         decision, taken = go(at_door, HALL)
         assert decision.failure == "blocked", decision.why
@@ -170,13 +162,13 @@ def test_people_who_walk_about_are_passed_without_touching_them(explored):
         Walker(((4.4, 0.9), (4.4, 5.0)), speed_mps=0.7),
     ]
     ends = []
-    for seed in range(8):
+    for seed in range(5):
         world.pose, rng = LOUNGE, np.random.default_rng(seed)
         for _ in range(4):
             goal = world.space.random_pose(rng, 0.1)
             decision, _ = run(world, Goto(DEFAULT, maps, matcher, picture(goal)), DriveLimits(), 2500)
             ends.append(decision.outcome)
-    assert ends.count("succeeded") >= 30, ends
+    assert ends.count("succeeded") >= 19, ends
     assert world.collisions == 0
 
 

@@ -20,11 +20,9 @@ HALL = (-0.2, -3.0, 0.0)
 
 
 @pytest.fixture(scope="module")
-def mapped():
-    world, maps = PlaneWorld(START, np.random.default_rng(2)), PlaneMap()
-    matcher = PlaneMatcher(world, maps)
-    run(world, FrontierExploration(DEFAULT, maps, matcher, np.random.default_rng(2)), DriveLimits(), 5000)
-    return world, maps
+def mapped(explorations):
+    found = explorations(2)
+    return found.world, found.maps
 
 
 def states_of(mission, world, steps, before=lambda _step: None):
