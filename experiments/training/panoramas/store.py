@@ -16,7 +16,7 @@ from services.features.representations.strip import cropped_strip
 
 CROP_DEG, RESIZE = 25.0, (400, 800)
 """What the networks see of a panorama: the same strip as in the pipelines that use them."""
-CHECKED = (16, 48)
+CHECKED = (12, 36)
 """Rows and columns of directions by which overlap is measured."""
 
 
