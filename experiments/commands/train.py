@@ -70,39 +70,12 @@ def residual(
     until: Annotated[int | None, typer.Option(min=1, help="Stop early after this step.")] = None,
 ) -> None:
     """A residual on root SIFT; goes on from the last checkpoint to the same result as if never cut off."""
-    from dataclasses import replace
-
-    from rich.progress import Progress
-
-    from experiments.training.data.shards import shard_files
-    from experiments.training.learning.running import require_same_shards, run
     from experiments.training.recipe import recipe_from
-    from experiments.training.residual.recipe import ResidualRecipe, batch_loss, network_of
-    from experiments.training.residual.samples import samples_of
-    from services.features.pipeline.named_pipelines import find_profile
-    from services.features.pipeline.pipeline import Pipeline
-    from services.launcher.client.failure import ExperimentError
-    from services.launcher.terminal.output import print_figures, wide_console
+    from experiments.training.residual.recipe import ResidualRecipe
+    from experiments.training.residual.training import train
+    from services.launcher.terminal.output import print_figures
 
-    chosen = recipe_from(ResidualRecipe, recipe)
-    pipeline = Pipeline(replace(find_profile("sift"), keypoints=chosen.keypoints))
-    files = shard_files(pairs)
-    require_same_shards(files, into)
-    samples = samples_of(files, pipeline)
-    if not samples:
-        raise ExperimentError(f"no pair in {pairs} has enough common keypoints: draw more pairs")
-    with Progress(console=wide_console(stderr=True), transient=True) as progress:
-        task = progress.add_task("steps", total=chosen.schedule.steps)
-        reached = run(
-            network_of(chosen),
-            lambda network, rng: batch_loss(network, samples, chosen, rng),
-            chosen.schedule,
-            chosen,
-            into,
-            lambda step: progress.update(task, completed=step),
-            until,
-        )
-    print_figures("residual", {"folder": str(into), "pairs": len(samples), "steps": reached})
+    print_figures("residual", train(pairs, into, recipe_from(ResidualRecipe, recipe), until))
 
 
 @app.command("keypoints")

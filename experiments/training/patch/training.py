@@ -7,7 +7,8 @@ import torch
 from rich.progress import Progress
 
 from experiments.training.data.shards import about_shard
-from experiments.training.learning.running import require_same_shards, run
+from experiments.training.learning.running import require_same_shards
+from experiments.training.learning.session import trained
 from experiments.training.patch.reading import read_patches
 from experiments.training.patch.recipe import PatchRecipe, batch_loss, network_of
 from experiments.training.patch.samples import Patches
@@ -49,17 +50,14 @@ def train(
         The network, and the step that was reached.
     """
     network = network_of(recipe).to(device)
-    with Progress(console=wide_console(stderr=True), transient=True) as progress:
-        task = progress.add_task("steps", total=recipe.schedule.steps)
-        reached = run(
-            network,
-            lambda net, rng: batch_loss(net, patches, recipe, rng),
-            recipe.schedule,
-            recipe,
-            into,
-            lambda step: progress.update(task, completed=step),
-            until,
-        )
+    reached = trained(
+        network,
+        lambda net, rng: batch_loss(net, patches, recipe, rng),
+        recipe.schedule,
+        recipe,
+        into,
+        until,
+    )
     return network, reached
 
 
