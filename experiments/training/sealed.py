@@ -3,7 +3,7 @@
 import hashlib
 import io
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -70,6 +70,21 @@ def unpacked(data: bytes) -> dict[str, npt.NDArray[Any]]:
     """The arrays that `packed` put in."""
     with np.load(io.BytesIO(data), allow_pickle=False) as kept:
         return {name: kept[name] for name in kept.files if name != "about"}
+
+
+def computed_once(
+    folder: Path, stem: str, make: Callable[[], dict[str, npt.NDArray[Any]]]
+) -> dict[str, npt.NDArray[Any]]:
+    """Arrays that take minutes to compute: those that an earlier run kept in a folder, or new ones, kept.
+
+    Raises:
+        ExperimentError: what was kept is not what was written.
+    """
+    for path in sealed_files(folder, stem, ".npz"):
+        return unpacked(read_sealed(path, stem, "delete it, which computes it again"))
+    made = make()
+    write_sealed(folder, stem, ".npz", packed(made, {}))
+    return made
 
 
 def description(data: bytes) -> dict[str, Any]:

@@ -30,7 +30,7 @@ def train(
     where = device_named(device)
     files = shard_files(pairs)
     require_same_shards(files, into)
-    panoramas = load_panoramas(files, where, jobs)
+    panoramas = load_panoramas(files, where, jobs, into)
     drawn = Pairs(panoramas, recipe.overlap, recipe.apart_m)
     network = beginning(recipe).to(where)
     steps = trained(

@@ -1,8 +1,10 @@
 """`topnav train matcher` from shards to weights."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import torch
 
 from experiments.training.data.shards import shard_files
@@ -16,6 +18,7 @@ from experiments.training.matcher.recipe import MatcherRecipe, batch_loss, begin
 from experiments.training.panoramas.drawing import Pairs
 from experiments.training.panoramas.store import Panoramas, load_panoramas
 from experiments.training.recipe import recipe_from
+from experiments.training.sealed import computed_once
 from services.features.networks.runtime import device_named
 from services.launcher.client.failure import ExperimentError
 
@@ -43,8 +46,8 @@ def train(
     files = shard_files(pairs)
     require_same_shards(files, into)
     own = recipe.features == OWN
-    ready = None if own else extracted(files, recipe.features, recipe.keypoints, jobs)
-    panoramas = load_panoramas(files, where, jobs)
+    ready = None if own else _extracted(files, recipe, jobs, into)
+    panoramas = load_panoramas(files, where, jobs, into)
     table = ready.to(where) if ready is not None else _of_own(detector, panoramas, recipe.keypoints)
     drawn = Pairs(panoramas, recipe.overlap, recipe.apart_m)
     network = beginning(recipe, table.descriptors.shape[-1]).to(where)
@@ -58,6 +61,17 @@ def train(
     )
     figures = {"folder": str(into), "panoramas": len(panoramas), "pairs": len(drawn), "steps": steps}
     return figures | written(network, export, recipe, steps)
+
+
+def _extracted(files: Sequence[Path], recipe: MatcherRecipe, jobs: int, kept: Path) -> FeatureTable:
+    """Keypoints of a pipeline, kept beside the checkpoints: each piece of a training begins with them."""
+
+    def make() -> dict[str, np.ndarray]:
+        found = extracted(files, recipe.features, recipe.keypoints, jobs)
+        return {name: part.numpy() for name, part in vars(found).items()}
+
+    arrays = computed_once(kept, f"keypoints-{recipe.keypoints}", make)
+    return FeatureTable(**{name: torch.from_numpy(part) for name, part in arrays.items()})
 
 
 def _of_own(folder: Path, panoramas: Panoramas, keypoints: int) -> FeatureTable:

@@ -11,6 +11,7 @@ import numpy as np
 import torch
 
 from experiments.training.data.shards import trainable
+from experiments.training.sealed import computed_once
 from experiments.training.sights import BAND_RAD, SAME_M, SAME_SHARE, Sight
 from services.features.representations.strip import cropped_strip
 
@@ -86,8 +87,16 @@ class Panoramas:
         return row, column
 
 
-def load_panoramas(paths: Sequence[Path], device: torch.device, threads: int = 2) -> Panoramas:
+def load_panoramas(
+    paths: Sequence[Path], device: torch.device, threads: int = 2, kept: Path | None = None
+) -> Panoramas:
     """Read shards, a few at a time.
+
+    Args:
+        paths: of the shards.
+        device: where all of them are to be.
+        threads: shards read at a time.
+        kept: folder in which the overlaps of these shards are kept once they are known.
 
     Raises:
         ExperimentError: a shard is corrupted, or of a world by which training is judged.
@@ -107,7 +116,11 @@ def load_panoramas(paths: Sequence[Path], device: torch.device, threads: int = 2
         torch.tensor(shards, device=device),
         torch.zeros(len(shards), len(shards), dtype=torch.float16, device=device),
     )
-    _measure_overlap(whole)
+    if kept is None:
+        _measure_overlap(whole)
+        return whole
+    known = computed_once(kept, "overlap", lambda: {"overlap": _measure_overlap(whole).cpu().numpy()})
+    whole.overlap.copy_(torch.from_numpy(known["overlap"]))
     return whole
 
 
@@ -141,8 +154,8 @@ def _strip(sight: Sight) -> np.ndarray:
     return cropped_strip(gray, CROP_DEG, RESIZE)[0]
 
 
-def _measure_overlap(whole: Panoramas) -> None:
-    """Fill in the table of overlaps, a row of a shard at a time."""
+def _measure_overlap(whole: Panoramas) -> torch.Tensor:
+    """Fill in the table of overlaps, a row of a shard at a time, and return it."""
     rows, columns = CHECKED
     device = whole.device
     height = torch.sin(torch.tensor(BAND_RAD)) * (2.0 * (torch.arange(rows) + 0.5) / rows - 1.0)
@@ -154,3 +167,4 @@ def _measure_overlap(whole: Panoramas) -> None:
             asked = directions.to(device).expand(len(inside), -1, -1)
             _, visible, _ = whole.seen_from(asked, here.expand(len(inside)), inside)
             whole.overlap[here, inside] = visible.float().mean(1).half()
+    return whole.overlap
