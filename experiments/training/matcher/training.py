@@ -1,5 +1,6 @@
 """`topnav train matcher` from shards to weights."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from experiments.training.panoramas.drawing import Pairs
 from experiments.training.panoramas.store import Panoramas, load_panoramas
 from experiments.training.recipe import recipe_from
 from services.features.networks.runtime import device_named
+from services.features.networks.spherical_keypoints import KeypointNet
 from services.launcher.client.failure import ExperimentError
 
 OWN = "own"
@@ -42,10 +44,7 @@ def train(
     where = device_named(device)
     files = shard_files(pairs)
     require_same_shards(files, into)
-    own = recipe.features == OWN
-    ready = None if own else extracted(files, recipe.features, recipe.keypoints, jobs)
-    panoramas = load_panoramas(files, where, jobs)
-    table = ready.to(where) if ready is not None else _of_own(detector, panoramas, recipe.keypoints)
+    panoramas, table = _read(files, detector, recipe, where, jobs)
     drawn = Pairs(panoramas, recipe.overlap, recipe.apart_m)
     network = beginning(recipe, table.descriptors.shape[-1]).to(where)
     steps = trained(
@@ -60,11 +59,24 @@ def train(
     return figures | written(network, export, recipe, steps)
 
 
-def _of_own(folder: Path, panoramas: Panoramas, keypoints: int) -> FeatureTable:
-    recipe = recipe_from(KeypointsRecipe, folder / RECIPE)
-    network = detector_beginning(recipe).to(panoramas.device)
-    if resume(folder, network, torch.optim.Adam(network.parameters())) == 0:
+def _read(
+    files: Sequence[Path], detector: Path, recipe: MatcherRecipe, where: torch.device, jobs: int
+) -> tuple[Panoramas, FeatureTable]:
+    if recipe.features == OWN:
+        finder = _trained_detector(detector).to(where)  # before hours of reading end there
+        panoramas = load_panoramas(files, where, jobs)
+        return panoramas, found_by(finder, panoramas, recipe.keypoints)
+    table = extracted(files, recipe.features, recipe.keypoints, jobs)
+    return load_panoramas(files, where, jobs), table.to(where)
+
+
+def _trained_detector(folder: Path) -> KeypointNet:
+    """As its last checkpoint has it."""
+    file = folder / RECIPE
+    network = detector_beginning(recipe_from(KeypointsRecipe, file)) if file.exists() else None
+    if network is None or resume(folder, network, torch.optim.Adam(network.parameters())) == 0:
         raise ExperimentError(
             f"no checkpoint in {folder}: train one with 'topnav train keypoints --into {folder}'"
         )
-    return found_by(network.network.eval(), panoramas, keypoints)
+    found: KeypointNet = network.network.eval()
+    return found
