@@ -5,6 +5,7 @@ import numpy.typing as npt
 import torch
 
 from experiments.training.panoramas.store import Panoramas
+from services.launcher.client.failure import ExperimentError
 
 Numbers = npt.NDArray[np.int64]
 
@@ -19,6 +20,9 @@ class Pairs:
             panoramas: of all shards.
             least: overlap of either that makes a pair.
             apart_m: most distance of a pair.
+
+        Raises:
+            ExperimentError: there is none.
         """
         overlap = panoramas.overlap.float()
         here, there = torch.nonzero((overlap >= least) & (least <= overlap.T)).T.cpu()
@@ -26,6 +30,11 @@ class Pairs:
         near = ((positions[here] - positions[there]).norm(dim=-1) <= apart_m) & (here != there)
         self._pairs: Numbers = torch.stack([here[near], there[near]], dim=1).numpy()
         self._shard: Numbers = panoramas.shard.cpu().numpy()
+        if not len(self._pairs):
+            raise ExperimentError(
+                f"of {len(panoramas)} panoramas no two within {apart_m:g} m see {least:.0%} of one another: "
+                "draw more pairs with 'topnav train data', or choose a recipe with a smaller overlap"
+            )
 
     def __len__(self) -> int:
         return len(self._pairs)
@@ -35,7 +44,8 @@ class Pairs:
         pairs = self._pairs[rng.integers(len(self._pairs), size=count)]
         for row in np.flatnonzero(rng.random(count) < others):
             here = int(rng.integers(len(self._shard)))
-            beside = np.flatnonzero(self._shard == self._shard[here])
-            pool = beside if rng.random() < 0.7 else np.arange(len(self._shard))
-            pairs[row] = here, int(rng.choice(pool))
+            pool = np.arange(len(self._shard)) != here
+            if rng.random() < 0.7:
+                pool &= self._shard == self._shard[here]
+            pairs[row] = here, int(rng.choice(np.flatnonzero(pool)))
         return pairs
