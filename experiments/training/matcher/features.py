@@ -1,7 +1,7 @@
 """The keypoints of all panoramas as tensors: of a pipeline without a network, or of our own detector."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +20,7 @@ from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.named_pipelines import find_profile
 from services.features.pipeline.pipeline import Pipeline
 from services.features.representations.equirectangular import PAD_COLUMNS
+from services.launcher.client.failure import ExperimentError
 
 BATCH = 32
 """Panoramas that a network sees at a time."""
@@ -60,11 +61,14 @@ def extracted(paths: Sequence[Path], pipeline: str, keypoints: int, jobs: int) -
     """Keypoints of all panoramas of shards, by a pipeline's name.
 
     Raises:
-        ExperimentError: a shard is corrupted, or of a world by which training is judged.
+        ExperimentError: a shard is corrupted, or of a world by which training is judged, or all are empty.
     """
     with workers(jobs, None) as pool:
         parts = list(pool.map(_of_shard, paths, [pipeline] * len(paths), [keypoints] * len(paths)))
-    return FeatureTable(*(torch.from_numpy(np.concatenate(column)) for column in zip(*parts, strict=True)))
+    filled = [part for part in parts if part]
+    if not filled:
+        raise ExperimentError(f"no pair in any of {len(paths)} shards: draw more with 'topnav train data'")
+    return FeatureTable(*(torch.from_numpy(np.concatenate(column)) for column in zip(*filled, strict=True)))
 
 
 def found_by(network: KeypointNet, panoramas: Panoramas, keypoints: int) -> FeatureTable:
@@ -98,7 +102,8 @@ def _by_network(
 
 
 def _of_shard(path: Path, name: str, keypoints: int) -> tuple[np.ndarray, ...]:
-    pipeline = Pipeline(find_profile(name))
+    """Columns of a table; none of a shard whose world had no room."""
+    pipeline = Pipeline(replace(find_profile(name), keypoints=keypoints))
     rows = []
     for pair in trainable(path).pairs:
         for sight in (pair.here, pair.there):

@@ -14,6 +14,7 @@ from experiments.training.data.shards import trainable
 from experiments.training.sealed import computed_once
 from experiments.training.sights import BAND_RAD, SAME_M, SAME_SHARE, Sight
 from services.features.representations.strip import cropped_strip
+from services.launcher.client.failure import ExperimentError
 
 CROP_DEG, RESIZE = 25.0, (400, 800)
 """What the networks see of a panorama: the same strip as in the pipelines that use them."""
@@ -99,15 +100,19 @@ def load_panoramas(
         kept: folder in which the overlaps of these shards are kept once they are known.
 
     Raises:
-        ExperimentError: a shard is corrupted, or of a world by which training is judged.
+        ExperimentError: a shard is corrupted, or of a world by which training is judged, or all are empty.
     """
     strips, ranges, positions, rotations, shards = [], [], [], [], []
     for number, sights in enumerate(_read(paths, threads)):
+        if not sights:  # its world had no room
+            continue
         strips.append(torch.from_numpy(np.stack([_strip(sight) for sight in sights])).to(device))
         ranges.append(torch.from_numpy(np.stack([s.ranges_m for s in sights]).astype(np.float16)).to(device))
         positions += [sight.pose.position_m for sight in sights]
         rotations += [sight.pose.rotation for sight in sights]
         shards += [number] * len(sights)
+    if not shards:
+        raise ExperimentError(f"no pair in any of {len(paths)} shards: draw more with 'topnav train data'")
     whole = Panoramas(
         torch.cat(strips),
         torch.cat(ranges),
