@@ -78,10 +78,23 @@ def pair_losses(
         keypoints: of each picture.
         generator: draws points and keypoints.
     """
-    count = len(pairs)
     scores, maps = network(functional.pad(grays, (PAD_COLUMNS, PAD_COLUMNS, 0, 0), mode="circular"))
     scores = scores[:, :, PAD_COLUMNS:-PAD_COLUMNS].float()
-    looking = _Looking(network, maps, shifts, panoramas, pairs)
+    maps = tuple(map_.float() for map_ in maps)
+    with torch.autocast(grays.device.type, enabled=False):  # to bfloat16, 3 degrees are no angle at all
+        looking = _Looking(network, maps, shifts, panoramas, pairs)
+        return _losses(looking, scores, temperature, points, keypoints, generator)
+
+
+def _losses(
+    looking: "_Looking",
+    scores: torch.Tensor,
+    temperature: torch.Tensor,
+    points: int,
+    keypoints: int,
+    generator: torch.Generator,
+) -> dict[str, torch.Tensor]:
+    count = len(scores) // 2
     drawn = draw_keypoints(scores, keypoints, generator)
     vectors = looking.descriptors(drawn.pixels)
     expected, visible, _ = looking.expected(drawn.pixels[:count])
@@ -89,8 +102,8 @@ def pair_losses(
     right = (cosine >= torch.cos(torch.tensor(RIGHT_RAD))) & visible[..., None]
     log_same = _dual_softmax(vectors[:count], vectors[count:], temperature)
     matched = torch.where(right, log_same.detach().exp(), 0.0)
-    asked = torch.rand(count, points, 2, generator=generator, device=grays.device)
-    asked = asked * torch.tensor([scores.shape[-1], scores.shape[-2]], device=grays.device)
+    asked = torch.rand(count, points, 2, generator=generator, device=scores.device)
+    asked = asked * torch.tensor([scores.shape[-1], scores.shape[-2]], device=scores.device)
     return {
         "points": _points_loss(looking, asked, temperature),
         "keypoints": -_mean(log_same, right & (cosine == cosine.amax(1, keepdim=True))),
