@@ -37,21 +37,21 @@ def truth_of(panoramas: Panoramas, pairs: torch.Tensor, one: Keypoints, other: K
     here, there = pairs.T
     assert one.present is not None, "a table says which are there"
     assert other.present is not None, "a table says which are there"
-    off, visible = _off(panoramas, here, there, one, other)
-    off_back, visible_back = _off(panoramas, there, here, other, one)
+    off, visible, known = _off(panoramas, here, there, one, other)
+    off_back, visible_back, known_back = _off(panoramas, there, here, other, one)
     both = torch.maximum(off, off_back.transpose(1, 2))
     seen = visible[:, :, None] & visible_back[:, None, :]
     near = torch.where(seen, both, torch.inf)
-    mutual = (near == near.amin(2, keepdim=True)) & (near == near.amin(1, keepdim=True))
+    first, second = near.argmin(1)[:, None, :], near.argmin(2)[:, :, None]  # of equal ones the first
+    rows, columns = (torch.arange(size, device=near.device) for size in near.shape[1:])
+    mutual = (first == rows[:, None]) & (second == columns)
     same = panoramas.shard[here] == panoramas.shard[there]
     partners = mutual & (near <= RIGHT_RAD) & same[:, None, None]
-    alone = (
-        one.present & ((~visible & ~_unknown(panoramas, here, there, one)) | (off.amin(2) > APART_RAD)),
-        other.present
-        & ((~visible_back & ~_unknown(panoramas, there, here, other)) | (off_back.amin(2) > APART_RAD)),
-    )
     elsewhere = ~same[:, None]
-    alone = (one.present & (alone[0] | elsewhere), other.present & (alone[1] | elsewhere))
+    alone = (
+        one.present & (elsewhere | (known & (~visible | (off.amin(2) > APART_RAD)))),
+        other.present & (elsewhere | (known_back & (~visible_back | (off_back.amin(2) > APART_RAD)))),
+    )
     overlap = torch.minimum(panoramas.overlap[here, there], panoramas.overlap[there, here]).float()
     distance = (panoramas.positions_m[here] - panoramas.positions_m[there]).norm(dim=-1)
     return Truth(partners, alone, overlap, distance.clamp(min=0.1).log())
@@ -87,17 +87,11 @@ def _by_pair(values: torch.Tensor, where: torch.Tensor) -> torch.Tensor:
 
 def _off(
     panoramas: Panoramas, here: torch.Tensor, there: torch.Tensor, one: Keypoints, other: Keypoints
-) -> tuple[torch.Tensor, torch.Tensor]:
-    """(P, N, M) angle between where a keypoint here is there and those there; (P, N) whether it is seen."""
-    seen, visible, _ = panoramas.seen_from(one.lonlat_rad, here, there)
+) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+    """(P, N, M) angle between where a keypoint here is there and those there; (P, N) seen, and known."""
+    seen, visible, known = panoramas.seen_from(one.lonlat_rad, here, there)
     cosine = seen @ bearings(other.lonlat_rad).transpose(1, 2)
     assert one.present is not None
     assert other.present is not None
     off = torch.acos(cosine.clamp(-1.0, 1.0)).masked_fill(~other.present[:, None, :], torch.inf)
-    return off, visible & one.present
-
-
-def _unknown(
-    panoramas: Panoramas, here: torch.Tensor, there: torch.Tensor, points: Keypoints
-) -> torch.Tensor:
-    return ~panoramas.seen_from(points.lonlat_rad, here, there)[2]
+    return off, visible & one.present, known
