@@ -20,6 +20,7 @@ from experiments.training.panoramas.store import Panoramas, load_panoramas
 from experiments.training.recipe import recipe_from
 from experiments.training.sealed import computed_once
 from services.features.networks.runtime import device_named
+from services.features.networks.spherical_keypoints import KeypointNet
 from services.launcher.client.failure import ExperimentError
 
 OWN = "own"
@@ -45,10 +46,7 @@ def train(
     where = device_named(device)
     files = shard_files(pairs)
     require_same_shards(files, into)
-    own = recipe.features == OWN
-    ready = None if own else _extracted(files, recipe, jobs, into)
-    panoramas = load_panoramas(files, where, jobs, into)
-    table = ready.to(where) if ready is not None else _of_own(detector, panoramas, recipe.keypoints)
+    panoramas, table = _read(files, detector, recipe, where, jobs, into)
     drawn = Pairs(panoramas, recipe.overlap, recipe.apart_m)
     network = beginning(recipe, table.descriptors.shape[-1]).to(where)
     steps = trained(
@@ -74,11 +72,24 @@ def _extracted(files: Sequence[Path], recipe: MatcherRecipe, jobs: int, kept: Pa
     return FeatureTable(**{name: torch.from_numpy(part) for name, part in arrays.items()})
 
 
-def _of_own(folder: Path, panoramas: Panoramas, keypoints: int) -> FeatureTable:
-    recipe = recipe_from(KeypointsRecipe, folder / RECIPE)
-    network = detector_beginning(recipe).to(panoramas.device)
-    if resume(folder, network, torch.optim.Adam(network.parameters())) == 0:
+def _read(
+    files: Sequence[Path], detector: Path, recipe: MatcherRecipe, where: torch.device, jobs: int, kept: Path
+) -> tuple[Panoramas, FeatureTable]:
+    if recipe.features == OWN:
+        finder = _trained_detector(detector).to(where)  # before hours of reading end there
+        panoramas = load_panoramas(files, where, jobs, kept)
+        return panoramas, found_by(finder, panoramas, recipe.keypoints)
+    table = _extracted(files, recipe, jobs, kept)
+    return load_panoramas(files, where, jobs, kept), table.to(where)
+
+
+def _trained_detector(folder: Path) -> KeypointNet:
+    """As its last checkpoint has it."""
+    file = folder / RECIPE
+    network = detector_beginning(recipe_from(KeypointsRecipe, file)) if file.exists() else None
+    if network is None or resume(folder, network, torch.optim.Adam(network.parameters())) == 0:
         raise ExperimentError(
             f"no checkpoint in {folder}: train one with 'topnav train keypoints --into {folder}'"
         )
-    return found_by(network.network.eval(), panoramas, keypoints)
+    found: KeypointNet = network.network.eval()
+    return found
