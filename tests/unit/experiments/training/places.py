@@ -1,5 +1,8 @@
 """Two painted places, as training reads them: four panoramas of one shard, two of another."""
 
+from collections.abc import Iterator
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,3 +40,11 @@ def written_places(folder: Path) -> Places:
     pairs = [pair for file in files for pair in trainable(file).pairs]
     sights = [sight for pair in pairs for sight in (pair.here, pair.there)]
     return Places(files, sights, load_panoramas(files, CPU))
+
+
+@contextmanager
+def in_this_process(jobs: int, cluster: str | None) -> Iterator[Executor]:
+    """In place of `workers`, whose processes take seconds to begin."""
+    assert cluster is None
+    with ThreadPoolExecutor(jobs) as pool:
+        yield pool
