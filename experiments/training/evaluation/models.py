@@ -14,8 +14,8 @@ from experiments.training.recipe import recipe_from
 from experiments.training.residual.recipe import ResidualRecipe, network_of
 from experiments.training.sealed import sealed_files
 from experiments.training.sights import Image
+from services.features.networks.attention import context_of
 from services.features.networks.catalogue import MODELS
-from services.features.networks.keypoint_context import context_of
 from services.features.networks.loaders import PARTS
 from services.features.networks.runtime import WeightsError, unit_descriptors
 from services.features.pipeline.extraction import extract

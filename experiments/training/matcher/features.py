@@ -12,8 +12,7 @@ from experiments.training.data.shards import trainable
 from experiments.training.detector.losses import grid_of
 from experiments.training.panoramas.store import Panoramas
 from experiments.work.workers import workers
-from services.features.networks.attention import Keypoints
-from services.features.networks.keypoint_context import context_of
+from services.features.networks.attention import Keypoints, context_of
 from services.features.networks.spherical_keypoints import KeypointNet, described, strongest
 from services.features.pipeline.extraction import extract
 from services.features.pipeline.interfaces import FeatureSet

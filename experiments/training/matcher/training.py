@@ -61,17 +61,6 @@ def train(
     return figures | written(network, export, recipe, steps)
 
 
-def _read(
-    files: Sequence[Path], detector: Path, recipe: MatcherRecipe, where: torch.device, jobs: int, kept: Path
-) -> tuple[Panoramas, FeatureTable]:
-    if recipe.features == OWN:
-        finder = _trained_detector(detector).to(where)  # before hours of reading end there
-        panoramas = load_panoramas(files, where, jobs, kept)
-        return panoramas, found_by(finder, panoramas, recipe.keypoints)
-    table = _extracted(files, recipe, jobs, kept)
-    return load_panoramas(files, where, jobs, kept), table.to(where)
-
-
 def _extracted(files: Sequence[Path], recipe: MatcherRecipe, jobs: int, kept: Path) -> FeatureTable:
     """Keypoints of a pipeline, kept beside the checkpoints: each piece of a training begins with them."""
 
@@ -81,6 +70,17 @@ def _extracted(files: Sequence[Path], recipe: MatcherRecipe, jobs: int, kept: Pa
 
     arrays = computed_once(kept, f"keypoints-{recipe.keypoints}", make)
     return FeatureTable(**{name: torch.from_numpy(part) for name, part in arrays.items()})
+
+
+def _read(
+    files: Sequence[Path], detector: Path, recipe: MatcherRecipe, where: torch.device, jobs: int, kept: Path
+) -> tuple[Panoramas, FeatureTable]:
+    if recipe.features == OWN:
+        finder = _trained_detector(detector).to(where)  # before hours of reading end there
+        panoramas = load_panoramas(files, where, jobs, kept)
+        return panoramas, found_by(finder, panoramas, recipe.keypoints)
+    table = _extracted(files, recipe, jobs, kept)
+    return load_panoramas(files, where, jobs, kept), table.to(where)
 
 
 def _trained_detector(folder: Path) -> KeypointNet:

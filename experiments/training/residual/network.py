@@ -6,7 +6,7 @@ difference is learned. It begins at nothing, so that the first step is root SIFT
 
 import torch
 
-from services.features.networks.keypoint_context import CONTEXT
+from services.features.networks.attention import CONTEXT
 
 WIDTH = 128
 """Numbers of a descriptor, in and out."""

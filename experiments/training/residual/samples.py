@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from experiments.training.correspondences import correspondences
 from experiments.training.data.shards import Pair, trainable
-from services.features.networks.keypoint_context import context_of
+from services.features.networks.attention import context_of
 from services.features.pipeline.extraction import extract
 from services.features.pipeline.interfaces import IndexArray
 from services.features.pipeline.pipeline import Pipeline

@@ -2,8 +2,7 @@
 
 import torch
 
-from services.features.networks.folding import folded
-from services.features.networks.own_weights import own_weights
+from services.features.networks.own_weights import folded, own_weights
 from services.features.networks.patch_network import PatchNetwork
 from services.features.networks.patch_shapes import network_named
 

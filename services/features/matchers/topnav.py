@@ -6,8 +6,7 @@ import numpy as np
 import torch
 
 from services.features.matching.nearest_neighbours import match_by
-from services.features.networks.attention import Attention, Keypoints
-from services.features.networks.keypoint_context import CONTEXT, context_of
+from services.features.networks.attention import CONTEXT, Attention, Keypoints, context_of
 from services.features.networks.own_weights import own_weights
 from services.features.networks.runtime import device_named
 from services.features.pipeline.interfaces import (

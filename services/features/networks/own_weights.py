@@ -8,6 +8,8 @@ import json
 from typing import Any
 
 import torch
+from torch import nn
+from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 from services.features.networks.cache import path_of
 from services.features.networks.catalogue import find_model
@@ -43,3 +45,21 @@ def own_weights(name: str) -> tuple[dict[str, torch.Tensor], dict[str, Any]]:
         raise WeightsError(f"the weights of {name} cannot be read ({path}: {error}): {remedy}") from error
     floats = {key: value.float() if value.is_floating_point() else value for key, value in tensors.items()}
     return floats, json.loads(about["recipe"])
+
+
+def folded(network: nn.Module) -> nn.Module:
+    """A network in evaluation mode without normalisations, which go into the convolutions before them.
+
+    It is changed in place and says the same in less time.
+    """
+    for name, child in network.named_children():
+        setattr(network, name, folded(child))
+    if not isinstance(network, nn.Sequential):
+        return network
+    layers: list[nn.Module] = []
+    for layer in network:
+        if isinstance(layer, nn.BatchNorm2d) and layers and isinstance(layers[-1], nn.Conv2d):
+            layers[-1] = fuse_conv_bn_eval(layers[-1], layer)
+        else:
+            layers.append(layer)
+    return nn.Sequential(*layers)

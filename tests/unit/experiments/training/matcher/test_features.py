@@ -13,7 +13,7 @@ from experiments.training.matcher import features
 from experiments.training.matcher.features import extracted, found_by
 from experiments.training.sights import Sight
 from experiments.training.worlds import first_worlds
-from services.features.networks.keypoint_context import CONTEXT
+from services.features.networks.attention import CONTEXT
 from services.features.networks.spherical_keypoints import described, strongest
 from services.features.representations.equirectangular import PAD_COLUMNS
 from services.launcher.client.failure import ExperimentError

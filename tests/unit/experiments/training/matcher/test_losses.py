@@ -9,8 +9,7 @@ import torch
 from experiments.training.correspondences import RIGHT_RAD, correspondences
 from experiments.training.matcher.losses import Truth, loss_of, truth_of
 from experiments.training.sights import projected
-from services.features.networks.attention import Assignment, Attention, Keypoints
-from services.features.networks.keypoint_context import CONTEXT
+from services.features.networks.attention import CONTEXT, Assignment, Attention, Keypoints
 from tests.unit.experiments.training.places import HALF_UNKNOWN, HIDDEN
 
 RNG = np.random.default_rng(6)

@@ -48,7 +48,7 @@ def test_others_are_of_any_place_and_the_rest_is_as_asked_for(places):
     assert (shards[:, 0] != shards[:, 1]).mean() == pytest.approx(0.3 * 8 / 15, abs=0.04)
     assert HIDDEN in found
     some = [tuple(row) in EVERY for row in drawn(pairs, 2000, others=0.25).tolist()]
-    # Of the others, 7 of 10 from a shard (2 of 3 such pairs fit) and 3 from all (8 of 30), 0.55 fit by chance.
+    # Of the others 0.55 fit by chance: 2 of 3 of the seven tenths from a shard, 8 of 30 of the rest.
     assert np.mean(some) == pytest.approx(1.0 - 0.25 * 0.45, abs=0.025)
 
 

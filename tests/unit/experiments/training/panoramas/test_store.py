@@ -41,7 +41,7 @@ def test_overlap_is_that_of_the_sights_and_none_between_shards(places):
     table = places.panoramas.overlap
     for one, other in product(range(4), repeat=2):
         told = overlap(places.sights[one], places.sights[other])
-        assert float(table[one, other]) == pytest.approx(told, abs=0.03), (one, other)
+        assert float(table[one, other]) == pytest.approx(told, abs=0.04), (one, other)
     assert 0.3 < float(table[HALF_UNKNOWN, 0]) < 0.7
     assert table[:4, 4:].abs().max() == table[4:, :4].abs().max() == 0.0  # though their boxes are the same
     assert places.panoramas.shard.tolist() == [0, 0, 0, 0, 1, 1]

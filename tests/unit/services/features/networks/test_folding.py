@@ -5,7 +5,7 @@ from numpy.testing import assert_allclose
 
 torch = pytest.importorskip("torch")
 
-from services.features.networks.folding import folded  # noqa: E402
+from services.features.networks.own_weights import folded  # noqa: E402
 from services.features.networks.patch_shapes import network_named  # noqa: E402
 from services.features.networks.spherical_keypoints import network_of  # noqa: E402
 
