@@ -20,11 +20,14 @@ def own_weights(name: str) -> tuple[dict[str, torch.Tensor], dict[str, Any]]:
     """Parameters, in single precision, and the recipe they were trained by.
 
     Raises:
-        WeightsError: the file is not there, or not the one that was given away.
+        WeightsError: there are none yet, the file is not there, or not the one that was given away.
     """
     from safetensors import SafetensorError, safe_open
 
-    model, remedy = find_model(name), "install topnav again"
+    try:
+        model, remedy = find_model(name), "install topnav again"
+    except ValueError as error:
+        raise WeightsError(f"no weights of {name} come with topnav yet: choose another pipeline") from error
     path = path_of(model)
     try:
         found = hashlib.sha256(path.read_bytes()).hexdigest()

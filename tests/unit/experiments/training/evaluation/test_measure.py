@@ -44,6 +44,7 @@ def test_a_pipeline_without_weights_is_named_and_an_unknown_one_refused(monkeypa
     models, absent = available(["sift", "aliked-n16"])
     assert [model.name for model in models] == ["sift"]
     assert list(absent) == ["aliked-n16"]
+    assert models[0].size_bytes == 0
     with pytest.raises(ValueError, match="got 'soft'"):
         available(["soft"])
 

@@ -50,6 +50,11 @@ def test_a_changed_file_is_named_and_refused(model):
     assert state_of(model) == "broken"
 
 
+def test_a_plugin_whose_weights_do_not_come_yet_says_so():
+    with pytest.raises(WeightsError, match="no weights of nothing come with topnav yet"):
+        own_weights.own_weights("nothing")
+
+
 def test_a_missing_file_is_named(model):
     path_of(model).unlink()
     with pytest.raises(WeightsError, match=r"thing\.safetensors: No such file.*install topnav again"):
