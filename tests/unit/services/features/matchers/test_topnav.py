@@ -1,0 +1,84 @@
+"""Our matcher as a plugin: which frames it looks at, and which of the network's answers are matches."""
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch")
+
+from services.features.matchers.mutual_ratio import MutualRatio  # noqa: E402
+from services.features.matchers.topnav import LEAST_RIGHT, LOOKED_AT, AttentionMatcher  # noqa: E402
+from services.features.networks.attention import Assignment  # noqa: E402
+from services.features.pipeline.interfaces import FeatureSet, Profile, Runtime  # noqa: E402
+
+PROFILE = Profile("sift", matcher="topnav-attention")
+
+
+class Answers:
+    """In place of the network: the same answer to every pair, and how often it was asked."""
+
+    def __init__(self, right):
+        self.right, self.asked = right, 0
+
+    def last(self, one, other, hopeless):
+        assert 0.0 < hopeless < 0.1
+        assert one.descriptors.shape[0] == other.descriptors.shape[0] == 1
+        assert torch.allclose(one.descriptors.norm(dim=-1), torch.tensor(1.0), atol=1e-3)
+        self.asked += 1
+        if self.right is None:
+            return None
+        log_right = torch.log(torch.tensor(self.right, dtype=torch.float32))[None]
+        return Assignment(log_right, (torch.zeros(1, 2), torch.zeros(1, 2)), torch.zeros(1, 3))
+
+
+@pytest.fixture
+def matcher():
+    torch.manual_seed(1)
+    return AttentionMatcher(PROFILE, "euclidean", Runtime(trained=False))
+
+
+def some(count: int, seed: int) -> FeatureSet:
+    rng = np.random.default_rng(seed)
+    lonlat = rng.uniform([-3.0, -1.0], [3.0, 1.0], (count, 2)).astype(np.float32)
+    descriptors = rng.integers(0, 255, (count, 128)).astype(np.float32)
+    return FeatureSet(lonlat, np.full(count, 0.1, np.float32), descriptors, np.full(count, 0.05, np.float32))
+
+
+def test_matches_are_mutual_likely_and_carry_their_probability(matcher):
+    matcher._network = Answers([[0.9, 0.02, 0.01], [0.4, 0.3, 0.01], [0.01, 0.01, LEAST_RIGHT / 2]])
+    (found,) = matcher.match(some(3, 1), [some(3, 2)])
+    assert found.pairs.tolist() == [[0, 0]]
+    assert found.right == pytest.approx([0.9])
+
+
+def test_another_place_has_no_matches(matcher):
+    matcher._network = Answers(None)
+    (found,) = matcher.match(some(3, 1), [some(3, 2)])
+    assert (len(found), found.pairs.shape) == (0, (0, 2))
+
+
+def test_of_many_frames_those_most_alike_are_looked_at_and_the_others_keep_their_neighbours(matcher):
+    query = some(20, 1)
+    alike = [FeatureSet(query.lonlat_rad[:n], query.scores[:n], query.descriptors[:n]) for n in range(3, 15)]
+    matcher._network = Answers(None)
+    found = matcher.match(query, alike)
+    plain = MutualRatio(PROFILE, "euclidean").match(query, alike)
+    assert matcher._network.asked == LOOKED_AT
+    beyond = len(alike) - LOOKED_AT
+    for one, other in zip(found[:beyond], plain[:beyond], strict=True):
+        np.testing.assert_array_equal(one.pairs, other.pairs)
+    assert [len(one) for one in found[beyond:]] == [0] * LOOKED_AT
+
+
+def test_frames_without_keypoints_have_no_matches_and_are_not_looked_at(matcher):
+    matcher._network = Answers([[0.9]])
+    nothing = some(0, 3)
+    assert [len(one) for one in matcher.match(some(4, 1), [nothing])] == [0]
+    assert [len(one) for one in matcher.match(nothing, [some(4, 1)])] == [0]
+    assert matcher.match(some(4, 1), []) == []
+    assert matcher._network.asked == 0
+
+
+def test_a_network_that_learned_nothing_answers_all_the_same(matcher):
+    (found,) = matcher.match(some(40, 1), [some(30, 2)])
+    assert found.pairs.shape[1:] == (2,)
+    assert len(np.unique(found.pairs[:, 0])) == len(found) == len(found.right)
