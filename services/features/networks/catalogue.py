@@ -80,7 +80,14 @@ def _own(name: str, plugin: str, size_bytes: int, sha256: str) -> TrainedModel:
     return TrainedModel(name, file, "Apache-2.0", origin, (plugin,), size_bytes, sha256, source="topnav")
 
 
-OWN: tuple[TrainedModel, ...] = ()
+OWN: tuple[TrainedModel, ...] = (
+    _own(
+        "topnav-slim",
+        "topnav-slim",
+        563_984,
+        "48f9ded9bf4187f32a51ebca5db1d7cfd781858cae222b267412c8cf296def60",
+    ),
+)
 MODELS: tuple[TrainedModel, ...] = (
     _file("aliked-t16", "aliked-t16.pth", "BSD-3-Clause", "Shiaoming/ALIKED"),
     _file("aliked-n16", "aliked-n16.pth", "BSD-3-Clause", "Shiaoming/ALIKED"),

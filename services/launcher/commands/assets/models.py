@@ -61,11 +61,12 @@ def verify(names: Names = None) -> None:
 
     asked = [find_model(name) for name in names or []]
     here = asked or [model for model in MODELS if state_of(model) != "absent"]
-    if not here:
-        raise ExperimentError("no model is here: 'topnav models pull NAME' brings one")
     broken = [model.name for model in here if _print_state(model) == "broken"]
     if broken:
-        raise ExperimentError(f"broken: {', '.join(broken)}; delete the files and pull them again")
+        raise ExperimentError(
+            f"broken: {', '.join(broken)}; delete the files and pull them again, or install topnav again for "
+            "those that come with it"
+        )
 
 
 def _load(model: "TrainedModel") -> None:
