@@ -20,6 +20,10 @@ RecipeFile = Annotated[
 Device = Annotated[str, typer.Option(help="cpu or cuda.")]
 Export = Annotated[Path | None, typer.Option(help="Write the trained weights alone into this file.")]
 Jobs = Annotated[int, typer.Option(min=1, help="Worlds at a time.")]
+ShardsAtATime = Annotated[int, typer.Option("--jobs", min=1, help="Shards read at a time.")]
+Shards = Annotated[Path, typer.Option(help="Folder of shards of 'topnav train data'.")]
+Checkpoints = Annotated[Path, typer.Option(help="Folder of checkpoints and log.")]
+Until = Annotated[int | None, typer.Option(min=1, help="Stop early after this step.")]
 
 
 @app.command("data")
@@ -64,10 +68,10 @@ def data(
 
 @app.command("residual")
 def residual(
-    pairs: Annotated[Path, typer.Option(help="Folder of shards of 'topnav train data'.")] = DATA,
-    into: Annotated[Path, typer.Option(help="Folder of checkpoints and log.")] = MODELS / "residual",
+    pairs: Shards = DATA,
+    into: Checkpoints = MODELS / "residual",
     recipe: RecipeFile = None,
-    until: Annotated[int | None, typer.Option(min=1, help="Stop early after this step.")] = None,
+    until: Until = None,
 ) -> None:
     """A residual on root SIFT; goes on from the last checkpoint to the same result as if never cut off."""
     from experiments.training.recipe import recipe_from
@@ -80,13 +84,13 @@ def residual(
 
 @app.command("keypoints")
 def keypoints(
-    pairs: Annotated[Path, typer.Option(help="Folder of shards of 'topnav train data'.")] = DATA,
-    into: Annotated[Path, typer.Option(help="Folder of checkpoints and log.")] = MODELS / "keypoints",
+    pairs: Shards = DATA,
+    into: Checkpoints = MODELS / "keypoints",
     recipe: RecipeFile = None,
-    until: Annotated[int | None, typer.Option(min=1, help="Stop early after this step.")] = None,
+    until: Until = None,
     device: Device = "cpu",
     export: Export = None,
-    jobs: Jobs = 1,
+    jobs: ShardsAtATime = 1,
 ) -> None:
     """Detector and descriptor in one pass; goes on from the last checkpoint."""
     from experiments.training.detector.recipe import KeypointsRecipe
@@ -100,16 +104,16 @@ def keypoints(
 
 @app.command("matcher")
 def matcher(
-    pairs: Annotated[Path, typer.Option(help="Folder of shards of 'topnav train data'.")] = DATA,
-    into: Annotated[Path, typer.Option(help="Folder of checkpoints and log.")] = MODELS / "matcher",
+    pairs: Shards = DATA,
+    into: Checkpoints = MODELS / "matcher",
     detector: Annotated[
         Path, typer.Option(help="Folder of 'topnav train keypoints', for a recipe with features own.")
     ] = MODELS / "keypoints",
     recipe: RecipeFile = None,
-    until: Annotated[int | None, typer.Option(min=1, help="Stop early after this step.")] = None,
+    until: Until = None,
     device: Device = "cpu",
     export: Export = None,
-    jobs: Jobs = 1,
+    jobs: ShardsAtATime = 1,
 ) -> None:
     """Attention over the keypoints of two pictures; goes on from the last checkpoint."""
     from experiments.training.matcher.recipe import MatcherRecipe
@@ -124,13 +128,13 @@ def matcher(
 @app.command("patch")
 def patch(
     shape: Annotated[str | None, typer.Option(help="hardnet, sosnet or slim; default: the recipe's.")] = None,
-    pairs: Annotated[Path, typer.Option(help="Folder of shards of 'topnav train data'.")] = DATA,
-    into: Annotated[Path, typer.Option(help="Folder of checkpoints and log.")] = MODELS / "patch",
+    pairs: Shards = DATA,
+    into: Checkpoints = MODELS / "patch",
     recipe: RecipeFile = None,
-    until: Annotated[int | None, typer.Option(min=1, help="Stop early after this step.")] = None,
-    device: Annotated[str, typer.Option(help="cpu or cuda.")] = "cpu",
-    jobs: Annotated[int, typer.Option(min=1, help="Shards read at a time.")] = 1,
-    export: Annotated[Path | None, typer.Option(help="Write the weights alone to this file.")] = None,
+    until: Until = None,
+    device: Device = "cpu",
+    jobs: ShardsAtATime = 1,
+    export: Export = None,
 ) -> None:
     """A descriptor of patches; goes on from the last checkpoint, on the CPU to the same bits."""
     from experiments.training.data.shards import shard_files

@@ -12,24 +12,14 @@ from dataclasses import dataclass
 import torch
 from torch.nn import functional
 
-from experiments.training.panoramas.store import CROP_DEG, RESIZE, Panoramas, bearings, lonlat
+from experiments.training.panoramas.store import Panoramas, bearings, lonlat
+from experiments.training.panoramas.strips import continued, grid_of, lonlat_of_strip
 from services.features.networks.spherical_keypoints import KeypointNet, Maps, described
 from services.features.representations.equirectangular import PAD_COLUMNS
-from shared.geometry.sphere import EquirectGrid
 
 CELL_PX = 8
 RIGHT_RAD = 0.0123
 """A keypoint this near to the true place is the same point: 0.7 degrees, as verification allows."""
-
-
-@dataclass(frozen=True)
-class Weights:
-    """Of the parts of the loss."""
-
-    points: float = 1.0
-    keypoints: float = 1.0
-    score: float = 1.0
-    choice: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,13 +35,6 @@ class Drawn:
     pixels: torch.Tensor
     scores: torch.Tensor
     log_chosen: torch.Tensor
-
-
-def grid_of(height_px: int) -> EquirectGrid:
-    """The pixels of a strip without its continuation."""
-    return EquirectGrid.cropped(2 * height_px, height_px, CROP_DEG).resized(
-        RESIZE[1], EquirectGrid.cropped(RESIZE[1], RESIZE[0], CROP_DEG).height
-    )
 
 
 def pair_losses(
@@ -78,7 +61,7 @@ def pair_losses(
         keypoints: of each picture.
         generator: draws points and keypoints.
     """
-    scores, maps = network(functional.pad(grays, (PAD_COLUMNS, PAD_COLUMNS, 0, 0), mode="circular"))
+    scores, maps = network(continued(grays))
     scores = scores[:, :, PAD_COLUMNS:-PAD_COLUMNS].float()
     maps = tuple(map_.float() for map_ in maps)
     with torch.autocast(grays.device.type, enabled=False):  # to bfloat16, 3 degrees are no angle at all
@@ -175,11 +158,8 @@ class _Looking:
         return torch.stack([x, y], dim=-1)
 
     def _lonlat(self, pixels: torch.Tensor, shifts: torch.Tensor) -> torch.Tensor:
-        grid = self._grid
-        x = (pixels[..., 0] - shifts[:, None]) % grid.width
-        lon = 2.0 * torch.pi * (0.5 - x / grid.width)
-        lat = torch.pi * (0.5 - (pixels[..., 1] + grid.crop_top) / grid.full_height)
-        return torch.stack([lon, lat], dim=-1)
+        x = (pixels[..., 0] - shifts[:, None]) % self._grid.width
+        return lonlat_of_strip(torch.stack([x, pixels[..., 1]], dim=-1), self._grid)
 
 
 def _points_loss(looking: _Looking, asked: torch.Tensor, temperature: torch.Tensor) -> torch.Tensor:

@@ -6,11 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from torch.nn import functional
 
 from experiments.training.data.shards import trainable
-from experiments.training.detector.losses import grid_of
 from experiments.training.panoramas.store import Panoramas
+from experiments.training.panoramas.strips import continued, grid_of, lonlat_of_strip
 from experiments.work.workers import workers
 from services.features.networks.attention import Keypoints, context_of
 from services.features.networks.spherical_keypoints import KeypointNet, described, strongest
@@ -83,13 +82,12 @@ def _by_network(
     network: KeypointNet, panoramas: Panoramas, numbers: torch.Tensor, keypoints: int
 ) -> tuple[torch.Tensor, ...]:
     grays = panoramas.strips[numbers][:, None].float() / 255.0
-    scores, maps = network(functional.pad(grays, (PAD_COLUMNS, PAD_COLUMNS, 0, 0), mode="circular"))
+    scores, maps = network(continued(grays))
     pixels, values = strongest(scores.float(), keypoints, PAD_COLUMNS)
     vectors = described(maps, network.strides, pixels)
     grid = grid_of(panoramas.ranges_m.shape[-2])
-    lon = 2.0 * torch.pi * (0.5 - (pixels[..., 0] - PAD_COLUMNS) / grid.width)
-    lat = torch.pi * (0.5 - (pixels[..., 1] + grid.crop_top) / grid.full_height)
-    lonlat_rad = torch.stack([lon, lat], dim=-1)
+    own = pixels - torch.tensor([PAD_COLUMNS, 0.0], device=pixels.device)
+    lonlat_rad = lonlat_of_strip(own, grid)
     context = np.stack(
         [
             context_of(FeatureSet(where, strength, np.zeros((len(strength), 0))))

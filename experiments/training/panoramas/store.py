@@ -11,13 +11,12 @@ import numpy as np
 import torch
 
 from experiments.training.data.shards import trainable
+from experiments.training.panoramas.strips import CROP_DEG, RESIZE
 from experiments.training.sealed import computed_once
 from experiments.training.sights import BAND_RAD, SAME_M, SAME_SHARE, Sight
 from services.features.representations.strip import cropped_strip
 from services.launcher.client.failure import ExperimentError
 
-CROP_DEG, RESIZE = 25.0, (400, 800)
-"""What the networks see of a panorama: the same strip as in the pipelines that use them."""
 CHECKED = (12, 36)
 """Rows and columns of directions by which overlap is measured."""
 

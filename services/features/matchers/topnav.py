@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import torch
 
-from services.features.matching.nearest_neighbours import match_by
+from services.features.matchers.mutual_ratio import MutualRatio
 from services.features.networks.attention import CONTEXT, Attention, Keypoints, context_of
 from services.features.networks.own_weights import own_weights
 from services.features.networks.runtime import device_named
@@ -33,7 +33,7 @@ class AttentionMatcher:
     """Mutual assignments that are likely right, each with its probability."""
 
     def __init__(self, profile: Profile, distance: Distance, runtime: Runtime) -> None:
-        self._distance, self._ratio = distance, profile.ratio
+        self._quick = MutualRatio(profile, distance)
         self._device = device_named(runtime.device)
         if runtime.trained:
             weights, recipe = own_weights(ATTENTION[profile.extractor])
@@ -46,12 +46,7 @@ class AttentionMatcher:
 
     def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[Matched]:
         """Matches with each other frame; beyond LOOKED_AT frames those of nearest neighbours."""
-        quick = match_by(
-            lambda found: np.flatnonzero(found.mutual & (found.ratio(self._distance) < self._ratio)),
-            query,
-            others,
-            self._distance,
-        )
+        quick = self._quick.match(query, others)
         ranked = sorted(range(len(others)), key=lambda k: (-len(quick[k]), k))[:LOOKED_AT]
         one = self._keypoints(query) if ranked and len(query) else None
         for number in ranked:

@@ -12,10 +12,10 @@ from experiments.training.detector.losses import (
     _Looking,
     _score_losses,
     draw_keypoints,
-    grid_of,
     pair_losses,
 )
 from experiments.training.detector.recipe import KeypointsRecipe, beginning
+from experiments.training.panoramas.strips import grid_of
 from experiments.training.sights import projected
 from services.features.networks.spherical_keypoints import KeypointNet
 from services.features.representations.equirectangular import PAD_COLUMNS

@@ -7,10 +7,10 @@ import pytest
 import torch
 
 from experiments.training.data.shards import Pair, Shard, write_shard
-from experiments.training.detector.losses import grid_of
 from experiments.training.detector.recipe import KeypointsRecipe, beginning
 from experiments.training.matcher import features
 from experiments.training.matcher.features import extracted, found_by
+from experiments.training.panoramas.strips import grid_of
 from experiments.training.sights import Sight
 from experiments.training.worlds import first_worlds
 from services.features.networks.attention import CONTEXT
