@@ -143,9 +143,11 @@ class Bus:
         """Ask and wait; raises the errors of `shared.queries.ask`."""
         return queries.ask(self._session, query, query.key(**names), request, timeout_s)
 
-    def announce(self, service: str) -> None:
-        """Declare this process alive as `service`; the token goes when the process does."""
-        self.declare_token(alive_key(service, uuid.uuid4().hex))
+    def announce(self, service: str) -> str:
+        """Declare this process alive as `service`; its token, whose name is returned, goes when it does."""
+        instance = uuid.uuid4().hex
+        self.declare_token(alive_key(service, instance))
+        return instance
 
     def declare_token(self, key: str) -> None:
         """Declare a liveliness token that goes when this process does."""

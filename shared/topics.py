@@ -17,6 +17,7 @@ from shared.messages import (
     sensors,
     simulation,
     tasks,
+    traffic,
 )
 from shared.messages.base import Message
 from shared.transport.keys import fill
@@ -106,6 +107,7 @@ MISSION_RECORD = Query(
     "topnav/missions/{robot}", maps.MissionRecordRequest, maps.MissionRecord, 8 * MB, anyone=True
 )
 TASKS = Query("topnav/missions/{queue}/tasks", tasks.TaskRequest, tasks.TaskReply, 8 * MB, anyone=True)
+WAY = Query("topnav/{robot}/way", traffic.WayRequest, traffic.WayReply, 1 * MB)
 COMPARE = Query(
     "topnav/{robot}/compare", inspections.CompareRequest, inspections.CompareReply, 8 * MB, anyone=True
 )

@@ -7,12 +7,13 @@ against distance are those measured on rendered frames; headings carry noise and
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 
 from services.drive.core import Memory, Since, compute_velocity
 from services.drive.limits import DriveLimits
-from services.planner.ports import Decision, Mission, Observation
+from services.planner.ports import Decision, Mission, Observation, RightOfWay
 from services.planner.profiles import DEFAULT
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.keep_clear import current_limits
@@ -40,6 +41,19 @@ STEP_S = 0.3
 BODY_RADIUS_M = 0.25
 NOON = WallClock(29_923_920)
 Pose = tuple[float, float, float]
+
+
+class Moving(Protocol):
+    """Who is where no wall is, now."""
+
+    def walk(self, robot: Pose) -> None:
+        """Time goes on by a step."""
+
+    def touches(self, point: tuple[float, float]) -> bool:
+        """Whether a robot there bumps into it."""
+
+    def part(self) -> Part:
+        """It as a solid."""
 
 
 @dataclass
@@ -95,7 +109,7 @@ class PlaneWorld:
     collisions: int = 0
     driven_m: float = 0.0
     moved: Motion = NO_MOTION
-    walkers: list["Walker"] = field(default_factory=list)
+    walkers: list["Moving"] = field(default_factory=list)
     max_range_m: float = MAX_RANGE_M
 
     def __post_init__(self) -> None:
@@ -205,6 +219,10 @@ class PlaneMap:
             if isinstance(operation, AddNode):
                 self.poses[operation.node.node_id] = _pose_of(operation.features)
 
+    def right_of_way(self, _at: Sequence[int], ahead: Sequence[int]) -> RightOfWay:
+        """Nobody else drives here."""
+        return RightOfWay(len(ahead))
+
 
 class PlaneMatcher:
     """Matches by true distance and line of sight; `blind` sees nothing that resembles anything.
@@ -289,25 +307,33 @@ def run(
         decision = mission.decide(observation)
         if decision.outcome:
             return decision, step
-        heading = Heading(
-            robot="r1",
-            seq=world.seq,
-            action=decision.action,
-            heading_rad=decision.heading_rad,
-            face_rad=decision.face_rad,
-            s_cv=decision.s_cv,
-            s_slow=150,
-            s_max=300,
-            speed_fraction=DEFAULT.travel.room_speed * decision.speed_fraction,
-            distance_m=decision.distance_m,
-            why=decision.why,
-        )
-        since = Since(step=world.moved)
-        velocity, memory = compute_velocity(heading, observation.ranges, since, memory, world.rng, limits)
-        world.move(velocity.forward_mps, velocity.left_mps, velocity.turn_radps)
+        memory = follow(world, decision, observation, memory, limits)
         if path is not None:
             path.append(world.pose)
     return decision, max_steps
+
+
+def follow(
+    world: PlaneWorld, decision: Decision, observation: Observation, memory: Memory, limits: DriveLimits
+) -> Memory:
+    """Drive for one frame as was decided for it; what the drive service remembers of it."""
+    heading = Heading(
+        robot="r1",
+        seq=world.seq,
+        action=decision.action,
+        heading_rad=decision.heading_rad,
+        face_rad=decision.face_rad,
+        s_cv=decision.s_cv,
+        s_slow=150,
+        s_max=300,
+        speed_fraction=DEFAULT.travel.room_speed * decision.speed_fraction,
+        distance_m=decision.distance_m,
+        why=decision.why,
+    )
+    since = Since(step=world.moved)
+    velocity, memory = compute_velocity(heading, observation.ranges, since, memory, world.rng, limits)
+    world.move(velocity.forward_mps, velocity.left_mps, velocity.turn_radps)
+    return memory
 
 
 def _pose_of(features: Features) -> Pose:

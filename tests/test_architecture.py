@@ -70,6 +70,7 @@ EDGE_FILES = {
     "settings.py",
     "inspector.py",
     "remote.py",
+    "traffic.py",
     "assignment.py",
     "mission_control.py",
     "records.py",

@@ -8,6 +8,7 @@ from services.map_store.storage.archive import Archive, write_archive
 from services.map_store.storage.blobs import checksum, pack_features, unpack_features
 from services.map_store.storage.contents import Kind
 from services.map_store.storage.graph import AddStoredNode, Graph, StoredNode
+from services.planner.ports import RightOfWay
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.rules import NO_LIMITS, Limits
 from shared.messages.features import Features
@@ -37,6 +38,10 @@ class MemoryMap:
     def features_of(self, node_id: int) -> Features:
         """What a node looks like."""
         return self.features[node_id]
+
+    def right_of_way(self, _at: Sequence[int], ahead: Sequence[int]) -> RightOfWay:
+        """Nobody else drives in it."""
+        return RightOfWay(len(ahead))
 
 
 def save(maps: MemoryMap, path: Path) -> None:

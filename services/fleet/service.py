@@ -4,11 +4,16 @@ import logging
 import math
 import threading
 import time
+import uuid
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 from services.fleet.beginnings import first_node
 from services.fleet.core import Move, Plan, Robot, decide
 from services.fleet.maps import Maps
 from services.fleet.settings import FleetSettings
+from services.fleet.traffic.desk import Desk
+from services.fleet.traffic.rights import Claim
 from services.fleet.watching import Watched
 from shared.bus import Bus
 from shared.messages.tasks import QueueStatus, Task, TaskReply, TaskRequest
@@ -19,16 +24,22 @@ from shared.wire import WireError
 
 log = logging.getLogger(__name__)
 
+FIRST = 9
+"""Priority of a task that clears the way: nothing else begins before it."""
 LISTENS_S = 2.5
 """Before it hands out anything: planner, drive and dispatch say once a second how they stand; who was heard
 first would get what another one is nearer to."""
 
 
 class Fleet:
-    """Gives the tasks for whichever robot to robots. Holds nothing that a restart would need."""
+    """Gives the tasks for whichever robot to robots. Holds nothing that a restart would need.
 
-    def __init__(self, settings: FleetSettings, bus: Bus) -> None:
-        self._settings, self._bus = settings, bus
+    Args:
+        to_send: robots with nothing to do that stand in the way of others, by the time now.
+    """
+
+    def __init__(self, settings: FleetSettings, bus: Bus, to_send: Callable[[float], list[Claim]]) -> None:
+        self._settings, self._bus, self._to_send = settings, bus, to_send
         self._limits = settings.limits()
         self._maps = Maps(bus, settings.map_period_s, settings.query_timeout_s)
         self._heard = bus.subscribe(STATUS, robot="*")
@@ -36,6 +47,7 @@ class Fleet:
         self._robots: dict[str, Watched] = {}
         self._began_s: float | None = None
         self._count, self._alarm = 0, ""
+        self._sent: dict[str, float] = {}
 
     def step(self, now_s: float) -> None:
         """Do what there is to do; `now_s` is monotonic.
@@ -56,6 +68,8 @@ class Fleet:
         self._tell(queue, plan)
         for move in plan.moves if now_s - self._began_s >= LISTENS_S else ():
             self._move(move)
+        for claim in self._to_send(now_s):
+            self._send_away(claim)
 
     def _way_m(self, task: Task, robot: Robot, now_s: float) -> float:
         """Metres from where a robot is to where a task begins; infinite where nobody knows."""
@@ -74,6 +88,23 @@ class Fleet:
             self._bus.counters.count("not moved", str(error))
         else:
             log.info("task %s: from %s to %s, %s", task.task_id, task.robot, move.to, move.why)
+
+    def _send_away(self, claim: Claim) -> None:
+        """Have a robot with nothing to do that stands in the way of others go elsewhere, before all else."""
+        if self._sent.get(claim.robot) == claim.told_s:
+            return
+        task = Task(
+            task_id=f"room-{uuid.uuid4().hex[:16]}",
+            robot=claim.robot,
+            kind="goto",
+            map=claim.map,
+            parameters={"goal_node": claim.room[-1]},
+            priority=FIRST,
+            by="fleet",
+        )
+        self._ask(claim.robot, TaskRequest(action="add", task=task))
+        self._sent[claim.robot] = claim.told_s
+        log.info("%s is in the way of others: to node %d", claim.robot, claim.room[-1])
 
     def _tell(self, queue: TaskReply, plan: Plan) -> None:
         alarm = plan.alarm
@@ -94,10 +125,24 @@ class Fleet:
 
 def run(settings: FleetSettings, bus: Bus, stop: threading.Event) -> None:
     """Look at the queue once a period until `stop`; who is away is waited for."""
-    fleet = Fleet(settings, bus)
-    bus.announce("fleet")
-    while not stop.wait(settings.period_s):
-        try:
-            fleet.step(time.monotonic())
-        except (QueryError, WireError) as error:
-            bus.counters.count("unanswered", str(error))
+    desk = Desk(bus, settings.map_period_s, settings.query_timeout_s)
+    fleet = Fleet(settings, bus, desk.to_send)
+    desk.announce()
+    with serving(desk, stop):
+        while not stop.wait(settings.period_s):
+            try:
+                fleet.step(time.monotonic())
+            except (QueryError, WireError) as error:
+                bus.counters.count("unanswered", str(error))
+
+
+@contextmanager
+def serving(desk: Desk, stop: threading.Event) -> Iterator[None]:
+    """Robots that ask for the right of way are answered meanwhile, and until `stop`."""
+    thread = threading.Thread(target=desk.serve, args=(stop,), name="rights of way", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        stop.set()
+        thread.join()

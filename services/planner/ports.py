@@ -72,8 +72,23 @@ class Inspector(Protocol):
         """
 
 
+@dataclass(frozen=True)
+class RightOfWay:
+    """How far the robot may go, where others drive too.
+
+    Attributes:
+        free: nodes of the way ahead that are its own.
+        why: what the next one waits for.
+        room: nodes of the way by which it is to make room for others first; empty where it need not.
+    """
+
+    free: int
+    why: str = ""
+    room: tuple[int, ...] = ()
+
+
 class MapAccess(Protocol):
-    """The map as the planner knows it, and the way to change it."""
+    """The map as the planner knows it, the way to change it, and who else drives in it."""
 
     graph: MapGraph
 
@@ -85,6 +100,14 @@ class MapAccess(Protocol):
 
     def features_of(self, node_id: int) -> Features:
         """What a node looks like."""
+
+    def right_of_way(self, at: Sequence[int], ahead: Sequence[int]) -> RightOfWay:
+        """How far the robot may go.
+
+        Args:
+            at: nodes between which it is, the one that it heads for last; empty where nobody knows.
+            ahead: nodes of its way beyond.
+        """
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 
-from services.planner.ports import Matches
+from services.planner.ports import Matches, RightOfWay
+from services.planner.traffic import Traffic
 from shared.bus import Bus
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.keep_clear import current_limits
@@ -23,10 +24,17 @@ WRITE_TRIES = 10
 
 
 class RemoteMap:
-    """One map: a copy of its graph that follows the store's revisions."""
+    """One map: a copy of its graph that follows the store's revisions.
 
-    def __init__(self, bus: Bus, name: str, timeout_s: float) -> None:
-        self._bus, self.name, self._timeout_s = bus, name, timeout_s
+    Args:
+        bus: to the map store.
+        name: of the map.
+        timeout_s: for an answer.
+        traffic: asks for rights of way; None where the robot drives alone.
+    """
+
+    def __init__(self, bus: Bus, name: str, timeout_s: float, traffic: Traffic | None = None) -> None:
+        self._bus, self.name, self._timeout_s, self._traffic = bus, name, timeout_s, traffic
         self.graph = MapGraph()
         self.revision = 0
 
@@ -93,6 +101,12 @@ class RemoteMap:
     def features_of(self, node_id: int) -> Features:
         """What a node looks like."""
         return self._ask(MapRequest(action="read_features", node_ids=(node_id,))).features[0].features
+
+    def right_of_way(self, at: Sequence[int], ahead: Sequence[int]) -> RightOfWay:
+        """How far the robot may go along its way, by what the fleet service says."""
+        if self._traffic is None:
+            return RightOfWay(len(ahead))
+        return self._traffic.ask(self.name, at, ahead)
 
     def _transact(self, operations: Sequence[Operation]) -> MapReply:
         return self._ask(

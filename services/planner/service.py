@@ -96,6 +96,7 @@ class Planner:
             and self._ready(self._features, self._ranges)
         ):
             self._answer(self._motion.observe(self._features, now_s))
+        self.control.stand_in_traffic()
         if now_s - self._heartbeat_s > HEARTBEAT_S:
             self._publish_status(now_s)
             self.control.settle()

@@ -141,6 +141,7 @@ QUESTIONS: dict[Query[Any, Any], Grant] = {
     topics.MAP_READ: _grant([Role.MAP_STORE], [Role.FEATURES, Role.FLEET, Role.FOXGLOVE]),
     topics.MISSION_RECORD: _grant([Role.MAP_STORE], [Role.PLANNER]),
     topics.TASKS: _grant([Role.MAP_STORE], [*GIVERS, *PEOPLE]),
+    topics.WAY: _grant([Role.FLEET], [Role.PLANNER]),
     topics.COMPARE: _grant([Role.FEATURES], [Role.PLANNER]),
     topics.INSPECTION: _grant([Role.MAP_STORE], [Role.PLANNER]),
     topics.SIMULATION: _grant([Role.SIMULATOR], [Role.OPERATOR]),

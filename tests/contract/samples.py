@@ -17,6 +17,7 @@ from shared.messages import (
     sensors,
     simulation,
     tasks,
+    traffic,
 )
 from shared.messages import features as looks
 from shared.messages import missions as orders
@@ -537,6 +538,15 @@ def inspected() -> tuple[Message, ...]:
     )
 
 
+def rights_of_way() -> tuple[Message, ...]:
+    """Among robots of one map."""
+    at = {"seq": 7, "stamp_ns": STAMP_NS}
+    return (
+        traffic.WayRequest(**at, robot="r1", map="flat", at=(4, 5), ahead=(6, 7, 8), busy=True),
+        traffic.WayReply(**at, free=2, why="the way beyond is taken by r2", room=(5, 9)),
+    )
+
+
 def simulated() -> tuple[Message, ...]:
     """Simulation only."""
     return (
@@ -556,7 +566,8 @@ def simulated() -> tuple[Message, ...]:
 
 def samples() -> dict[type[Message], Message]:
     """Message type -> a full example."""
-    examples = (*seen(), *driven(), *missions(), *kinds(), *mapped(), *queued(), *inspected(), *simulated())
+    examples = (*seen(), *driven(), *missions(), *kinds(), *mapped(), *queued(), *inspected())
+    examples = (*examples, *rights_of_way(), *simulated())
     return {type(example): example for example in examples}
 
 

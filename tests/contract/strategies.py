@@ -174,7 +174,7 @@ def _fit_mark(fields: Fields, _count: int, _seed: int) -> Fields:
         "name": _seen(fields.get("name", "")),
         "place": _seen(fields.get("place", "")),
         "areas": tuple(_seen(area) for area in fields.get("areas", ())),
-        "edges": tuple((a // 2, b // 2 + WIDEST // 2) for a, b in fields.get("edges", ())),
+        "edges": tuple((a // 2, b // 2 + WIDEST // 2 + 1) for a, b in fields.get("edges", ())),
     }
     return fields | {name: value for name, value in fitted.items() if name in fields}
 

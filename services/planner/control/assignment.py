@@ -11,6 +11,7 @@ from services.planner.ports import Mission
 from services.planner.profiles import Profile
 from services.planner.remote import RemoteMap, RemoteMatcher
 from services.planner.settings import PlannerSettings
+from services.planner.traffic import Traffic
 from services.planner.travel.whereabouts import Whereabouts
 from shared.bus import Bus
 from shared.mapgraph.graph import MapGraph
@@ -47,10 +48,11 @@ class Assigner:
 
     def __init__(self, settings: PlannerSettings, profile: Profile, kinds: MissionKinds, bus: Bus) -> None:
         self._settings, self._profile, self._kinds, self._bus = settings, profile, kinds, bus
+        self.traffic = Traffic(bus, settings.robot, settings.query_timeout_s)
 
     def map_called(self, name: str) -> RemoteMap:
         """A map that is not loaded yet."""
-        return RemoteMap(self._bus, name, self._settings.map_timeout_s)
+        return RemoteMap(self._bus, name, self._settings.map_timeout_s, self.traffic)
 
     def begin(self, record: MissionRecord, before: Assignment | None, *, create: bool) -> Assignment:
         """Take a mission up where the one before left the robot; `create` makes a map that is missing."""

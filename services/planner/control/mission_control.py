@@ -105,6 +105,14 @@ class MissionControl:
         self._now.reason = reason
         self._change("pause", by)
 
+    def stand_in_traffic(self) -> None:
+        """Say now and then where the robot is, also while it stands: others go round it or have it go."""
+        if self.map is None:
+            return
+        here = None if self._assignment is None else self._assignment.whereabouts.here
+        at = () if here is None else (here.node_id,)
+        self._assigner.traffic.renew(self.map.name, at, busy=self._now.under_way)
+
     def settle(self) -> None:
         """Save an end that the map store was not there to hear of; QueryError while it is away."""
         self._records.settle()

@@ -65,6 +65,7 @@ class Travel:
         self._search: Search | None = None
         self._notes: list[Note] = []
         self._held_frames = 0
+        self._makes_room = False
         self._progress = Progress()
 
     @property
@@ -159,7 +160,7 @@ class Travel:
 
     def _set_off(self, path: list[int], event: Event) -> None:
         self._change(event)
-        self._search = None
+        self._search, self._makes_room = None, event is Event.MAKES_ROOM
         self._follower = PathFollower(
             self._profile,
             self._maps,
@@ -173,6 +174,14 @@ class Travel:
     def _follow(self, observation: Observation) -> Decision:
         follower = self._follower
         assert follower is not None
+        way = self._maps.right_of_way(*follower.way())
+        if way.room and not self._makes_room:
+            self._notes.append(Note("makes_room", f"by way of {list(way.room[:8])}"))
+            self._set_off(list(way.room), Event.MAKES_ROOM)
+            return Decision("hold", why="making room for others")
+        follower.may_go(way.free)
+        if follower.waits:
+            return Decision("hold", why=f"waits: {way.why}")
         event, decision = follower.step(observation, self._matcher)
         self._progress = follower.progress
         if event is None:
@@ -181,6 +190,8 @@ class Travel:
             return replace(decision, speed_fraction=share * decision.speed_fraction)
         self._notes += decision.notes
         why = decision.why
+        if self._makes_room:
+            return self._end_of_making_room(event, follower, why)
         if event is Event.REACHED:
             refuted = self._destination.refutes_arrival(
                 follower.path[-1], self._progress.similarity, self.tracker
@@ -196,6 +207,13 @@ class Travel:
             return Decision("hold", why=f"planning again: {why}")
         here = self.tracker.here
         return self._recover(Setback(event, *follower.failed_edge(), tuple(follower.path), why, here))
+
+    def _end_of_making_room(self, event: Event, follower: PathFollower, why: str) -> Decision:
+        """Go on from the refuge; also from where the robot is, if the way there does not let it get on."""
+        self._change(Event.MADE_ROOM if event is Event.REACHED else event)
+        if event is Event.WAY_UNCLEAR:
+            self._unclear.add(follower.next_edge())
+        return Decision("hold", why=why)
 
     def _recover(self, setback: Setback) -> Decision:
         """Learn from what ended the path, and plan again from what the next frame shows."""

@@ -1,6 +1,6 @@
 """Following a path: which waypoint to aim at, and what ends it early."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
 from services.planner.profiles import Profile
@@ -44,6 +44,7 @@ class PathFollower:
         self._ahead = Lookahead(profile, maps, destination, unclear, tracker)
         self._patience = Patience()
         self.path, self.index = path, 0
+        self._passed, self._last, self._stopped_at = 0, len(path) - 1, -1
         self._strict = is_strict(profile)
         self._heading_rad: float | None = None
         self._steady = SteadyHeading()
@@ -64,6 +65,9 @@ class PathFollower:
         self._report(waypoint, s_cv, match)
         if self._has_arrived(match):
             return Event.REACHED, _hold(f"arrived at {name}, S {s_cv}", notes)
+        if self._last <= self.index and self._stands(match):
+            self._stopped_at = self.index
+            return None, _hold(f"at {name}, others go first", notes)
         if self._next_is_unclear(match, matches, observation.ranges):
             return Event.WAY_UNCLEAR, _hold(f"no free ground seen beyond {name}", notes)
         if self._has_waited_too_long(match) and not self._goes_on_blind():
@@ -91,6 +95,38 @@ class PathFollower:
         self._steady.turned(observation.moved.turn_rad)
         if self._heading_rad is not None:
             self._heading_rad = observation.moved.direction(self._heading_rad)
+
+    def way(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Nodes between which the robot is, and those of its way beyond."""
+        here = self._tracker.here
+        if here is not None and here.node_id in self.path[: self.index + 1]:
+            self._passed = max(self._passed, self.path[: self.index + 1].index(here.node_id))
+        passed = self._nodes(self.path[self._passed : self._next()])
+        about = () if here is None or here.node_id in passed else (here.node_id,)
+        return (*about, *passed), self._nodes(self.path[self._next() :])
+
+    def may_go(self, free: int) -> None:
+        """Of the way beyond so many nodes may be driven to, in the frame to come."""
+        self._last = self._next() + free - 1
+
+    @property
+    def waits(self) -> bool:
+        """Whether it stands where it is: the next node is not its own, and it is not on the way to one."""
+        return self._last < self.index or self._last == self.index == self._stopped_at
+
+    def _nodes(self, way: Sequence[int]) -> tuple[int, ...]:
+        """The same in nodes of the map: for the goal picture the one most like it."""
+        if GOAL not in way:
+            return tuple(way)
+        like = self._destination.targets()
+        nearest = min(like, key=lambda node: (like[node], node), default=self.path[0])
+        return tuple(nearest if node == GOAL else node for node in way)
+
+    def _next(self) -> int:
+        """Index of the first waypoint that the robot neither stands at nor is on the way to."""
+        here = self._tracker.here
+        set_off = self.index or (here is not None and here.node_id == self.path[0])
+        return self.index + 1 if set_off else 0
 
     def failed_edge(self) -> tuple[EdgeKey | None, int]:
         """What stopped the robot: the edge driven and its waypoint; at a waypoint, what comes next."""
@@ -130,7 +166,7 @@ class PathFollower:
 
     def _advance(self, matches: Matches, ranges: Ranges) -> tuple[Note, ...]:
         """Go on to the latest waypoint that may be headed for; by the thesis only to the next."""
-        later = self._ahead.furthest(self.path, self.index, matches, ranges)
+        later = self._ahead.furthest(self.path[: self._last + 1], self.index, matches, ranges)
         if later == self.index:
             return ()
         here, there = matches.get(self.path[self.index]), matches[self.path[later]]

@@ -41,6 +41,8 @@ class Event(StrEnum):
     ALIASED = "aliased"
     REACHED = "reached"
     RULED_OUT = "ruled_out"
+    MAKES_ROOM = "makes_room"
+    MADE_ROOM = "made_room"
     SET_OUT = "set_out"
     GIVEN_UP = "given_up"
 
@@ -66,6 +68,8 @@ _REASONS = {
     Event.ALIASED: "the view resembles the destination, but other nodes resemble it more",
     Event.REACHED: "the view agrees with that of the destination",
     Event.RULED_OUT: "a rule of the map is against going on along the path",
+    Event.MAKES_ROOM: "other robots cannot get by: it goes out of their way first",
+    Event.MADE_ROOM: "it is out of the way of others, and goes on from there",
     Event.SET_OUT: "a new destination is asked for",
     Event.GIVEN_UP: "no try is left",
 }
@@ -85,6 +89,8 @@ def _rows() -> list[Transition]:
         (Event.WAY_UNCLEAR, State.LOCALISING),
         (Event.ALIASED, State.LOCALISING),
         (Event.RULED_OUT, State.LOCALISING),
+        (Event.MAKES_ROOM, State.FOLLOWING),
+        (Event.MADE_ROOM, State.LOCALISING),
         (Event.REACHED, State.ARRIVED),
     )
     rows = [(before, event, after) for before in _SEEKING for event, after in seeking]

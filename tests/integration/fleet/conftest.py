@@ -1,6 +1,7 @@
 """Three robots in one map, the map store, and the process that hands out the fleet's tasks."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -20,6 +21,8 @@ from tests.integration.map_store.conftest import START_S
 ANSWER_S = 60.0
 NODES = 21
 """Along a corridor, a metre apart."""
+ROOM = (10, 21, 22, 23)
+"""Nodes from one of the corridor into a room."""
 PLACES = {"r1": 0, "r2": 10, "r3": 20}
 """Where the robots stand at first."""
 
@@ -78,8 +81,10 @@ def corridor(bus: Bus, endpoint: str, tmp_path_factory: pytest.TempPathFactory) 
     try:
         assert wait_until(lambda: {"map_store", "fleet"} <= set(bus.alive()), START_S)
         bus.ask(MAP, MapRequest(action="create"), ANSWER_S, map="flat")
-        nodes = [AddNode(node=Node(node_id=number), features=FEATURES) for number in range(NODES)]
-        edges = [PutEdge(edge=Edge(a=n, b=n + 1, length_m=1.0, traversals=1)) for n in range(NODES - 1)]
+        numbers = (*range(NODES), *ROOM[1:])
+        nodes = [AddNode(node=Node(node_id=number), features=FEATURES) for number in numbers]
+        legs = (*pairwise(range(NODES)), *pairwise(ROOM))
+        edges = [PutEdge(edge=Edge(a=a, b=b, length_m=1.0, traversals=1)) for a, b in legs]
         wish = MapRequest(action="transact", operations=(*nodes, *edges))
         bus.ask(MAP, wish, ANSWER_S, map="flat")
         yield

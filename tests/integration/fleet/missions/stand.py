@@ -6,6 +6,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from services.planner.mission_kinds import MissionContext, MissionKind
 from services.planner.ports import Decision, Observation, Progress
+from shared.mapgraph.local.displacement import Displacement
 
 
 class StandParameters(BaseModel):
@@ -36,7 +37,9 @@ class Stand:
         return Decision("hold", why=f"stood {self._stood}", outcome="succeeded" if done else "")
 
 
-def _make(_context: MissionContext, parameters: StandParameters) -> Stand:
+def _make(context: MissionContext, parameters: StandParameters) -> Stand:
+    if context.whereabouts is not None:
+        context.whereabouts.here = Displacement(parameters.goal_node)
     return Stand(parameters)
 
 

@@ -7,6 +7,7 @@ import pytest
 from services.fleet.maps import Maps
 from services.fleet.service import LISTENS_S, Fleet
 from services.fleet.settings import FleetSettings
+from services.fleet.traffic.rights import Claim
 from shared.messages.estop import EStopState
 from shared.messages.maps import Edge, MapDelta, MapReply, Node
 from shared.messages.missions import MissionStatus
@@ -71,7 +72,8 @@ class Stage:
 
     def __init__(self, **settings: object) -> None:
         self.bus = Bus()
-        self.fleet = Fleet(FleetSettings(**settings), self.bus)
+        self.in_the_way: list[Claim] = []
+        self.fleet = Fleet(FleetSettings(**settings), self.bus, lambda _now_s: self.in_the_way)
 
     def free(self, *names: str, node: int = 0) -> None:
         """They have nothing to do; said to everybody, as robots do."""

@@ -23,7 +23,10 @@ RANGES = Ranges(robot="r1", angles_rad=(0.0,) * 12, distances_m=(1.0,) * 12, max
 
 
 class Store:
-    """A map store with one map of one node and one mission record."""
+    """A map store with one map of one node and one mission record; no fleet service is there."""
+
+    def watch_alive(self, _changed, _service):
+        """Nobody else comes."""
 
     def __init__(self, record):
         self.record = record
