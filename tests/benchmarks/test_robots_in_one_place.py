@@ -1,6 +1,7 @@
 """Two robots that see and feel each other map one flat and drive through it at once; gates nothing.
 
 pytest -q -s tests/benchmarks/test_robots_in_one_place.py
+FLEET=0 pytest -q -s tests/benchmarks/test_robots_in_one_place.py  # without rights of way
 """
 
 import os
@@ -16,12 +17,13 @@ from services.launcher.client.trail import collisions
 from shared.messages.simulation import Pose
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
-from tests.e2e.fleet import another_robot, taking_part
+from tests.e2e.fleet import another_robot, fleet_service, taking_part
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(3600)]
 
 WORLD, MAP, FIRST, SECOND = "apartment", "flat", "r1", "r2"
 STEPS = int(os.environ.get("STEPS", "150"))
+RIGHTS_OF_WAY = os.environ.get("FLEET", "1") == "1"
 GOALS = int(os.environ.get("GOALS", "5"))
 
 
@@ -41,6 +43,8 @@ def test_two_robots_in_one_flat(tmp_path, keep):
     with ExitStack() as open_:
         stack = open_.enter_context(open_stack(choice))
         open_.enter_context(another_robot(stack, SECOND, WORLD, tmp_path, FIRST))
+        if RIGHTS_OF_WAY:
+            open_.enter_context(fleet_service(stack, tmp_path))
         robots = [open_.enter_context(taking_part(stack, name)) for name in (FIRST, SECOND)]
         threads = open_.enter_context(ThreadPoolExecutor(2))
         first, second = robots
@@ -67,6 +71,7 @@ def test_two_robots_in_one_flat(tmp_path, keep):
                 "reached": sum(run.status.state == "succeeded" for run in ends),
                 "of": len(ends),
                 "why": [run.status.failure for run in ends if run.status.state != "succeeded"],
+                "steps": [sum(run.status.step for run in each.runs) for each in robots],
                 "collisions": [collisions(each.client.trail.truths) for each in robots],
             }
         )

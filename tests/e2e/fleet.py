@@ -74,3 +74,20 @@ def another_robot(stack: Stack, name: str, world: str, folder: Path, company: st
         finally:
             robot.terminate()
             robot.wait()
+
+
+@contextmanager
+def fleet_service(stack: Stack, folder: Path) -> Iterator[None]:
+    """The fleet service of a running stack."""
+    with (folder / "fleet.log").open("wb") as log:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "services.fleet"],
+            env=os.environ | {"TOPNAV_ENDPOINT": stack.endpoint},
+            stderr=log,
+        )
+        try:
+            assert wait_until(lambda: bool(stack.bus.alive("fleet")), START_S, 0.2)
+            yield
+        finally:
+            process.terminate()
+            process.wait()
