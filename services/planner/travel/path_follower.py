@@ -115,11 +115,13 @@ class PathFollower:
         return self._last < self.index or self._last == self.index == self._stopped_at
 
     def _nodes(self, way: Sequence[int]) -> tuple[int, ...]:
-        """The same in nodes of the map: for the goal picture the one most like it."""
+        """The same in nodes of the map: for the goal picture the one most like it, of one place alone."""
         if GOAL not in way:
             return tuple(way)
         like = self._destination.targets()
-        nearest = min(like, key=lambda node: (like[node], node), default=self.path[0])
+        nearest = self.path[max(0, len(self.path) - 2)]
+        if like and (nearest == GOAL or not self._destination.aliased):
+            nearest = min(like, key=lambda node: (like[node], node))
         return tuple(nearest if node == GOAL else node for node in way)
 
     def _next(self) -> int:
