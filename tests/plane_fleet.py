@@ -48,7 +48,7 @@ class SharedMap(PlaneMap):
     """The map as one of several robots knows it."""
 
     def __init__(self, maps: PlaneMap, name: str, desk: Desk) -> None:
-        super().__init__(maps.graph, maps.poses)
+        super().__init__(maps.graph, maps.poses, shared=True)
         self._name, self._desk = name, desk
 
     def right_of_way(self, at: Sequence[int], ahead: Sequence[int]) -> RightOfWay:

@@ -207,6 +207,7 @@ class PlaneMap:
 
     graph: MapGraph = field(default_factory=MapGraph)
     poses: dict[int, Pose] = field(default_factory=dict)
+    shared: bool = False
 
     def limits(self) -> Limits:
         """What the rules say on a Monday at noon."""

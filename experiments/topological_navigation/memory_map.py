@@ -20,6 +20,8 @@ MAX_BYTES = 2_000_000_000  # unpacked: 80,000 nodes of 23 kB
 class MemoryMap:
     """Graph and features; what a mission needs of a map."""
 
+    shared = False
+
     def __init__(self) -> None:
         self.graph = MapGraph()
         self.features: dict[int, Features] = {}

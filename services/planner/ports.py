@@ -92,6 +92,10 @@ class MapAccess(Protocol):
 
     graph: MapGraph
 
+    @property
+    def shared(self) -> bool:
+        """Whether somebody has to be asked for the right of way."""
+
     def limits(self) -> Limits:
         """What the rules of the map say now."""
 

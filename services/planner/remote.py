@@ -102,6 +102,11 @@ class RemoteMap:
         """What a node looks like."""
         return self._ask(MapRequest(action="read_features", node_ids=(node_id,))).features[0].features
 
+    @property
+    def shared(self) -> bool:
+        """Whether the fleet service has to be asked for the right of way."""
+        return self._traffic is not None and self._traffic.is_regulated
+
     def right_of_way(self, at: Sequence[int], ahead: Sequence[int]) -> RightOfWay:
         """How far the robot may go along its way, by what the fleet service says."""
         if self._traffic is None:

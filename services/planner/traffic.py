@@ -44,21 +44,23 @@ class Traffic:
             ahead: nodes of its way beyond.
             busy: whether it is on a mission.
         """
-        now_s = time.monotonic()
-        if self._fleets:
-            self._seen_s = now_s
-        elif now_s - self._seen_s < MISSED_S:
-            return RightOfWay(0, UNHEARD)
-        else:
+        if not self.is_regulated:
             return RightOfWay(len(ahead))
+        if not self._fleets:
+            return RightOfWay(0, UNHEARD)
         request = WayRequest(robot=self._robot, map=name, at=tuple(at), ahead=tuple(ahead), busy=busy)
-        self._asked_s = now_s
+        self._asked_s = self._seen_s = time.monotonic()
         try:
             reply = self._bus.ask(WAY, request, self._timeout_s, robot=self._robot)
         except QueryError as error:
             self._bus.counters.count("no right of way", str(error))
             return RightOfWay(0, UNHEARD)
         return RightOfWay(reply.free, reply.why, reply.room)
+
+    @property
+    def is_regulated(self) -> bool:
+        """Whether there is somebody to ask, or was so lately that he is to be waited for."""
+        return bool(self._fleets) or time.monotonic() - self._seen_s < MISSED_S
 
     def renew(self, name: str, at: Sequence[int], *, busy: bool) -> None:
         """Say where the robot is, if nothing was said for a while."""

@@ -15,9 +15,9 @@ from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.view_range import edge_length_m
 from shared.mapgraph.routing import way_m
 
-NEAR_M = 1.2
-"""Two robots, with their middles so near, are too near; chosen: twice their radius of 0.25 m, and for each a
-hand's breadth beside its leg and what lengths of ways are off by."""
+NEAR_M = 1.05
+"""Two robots, with their middles so near, are too near; chosen: twice their radius of 0.25 m, and for each
+what it drives beside its leg and lengths of ways are off by."""
 
 BODIES_MAX = 4096
 """Ways of robots that are kept; chosen: those of a minute."""

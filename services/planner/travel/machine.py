@@ -174,14 +174,8 @@ class Travel:
     def _follow(self, observation: Observation) -> Decision:
         follower = self._follower
         assert follower is not None
-        way = self._maps.right_of_way(*follower.way())
-        if way.room and not self._makes_room:
-            self._notes.append(Note("makes_room", f"by way of {list(way.room[:8])}"))
-            self._set_off(list(way.room), Event.MAKES_ROOM)
-            return Decision("hold", why="making room for others")
-        follower.may_go(way.free)
-        if follower.waits:
-            return Decision("hold", why=f"waits: {way.why}")
+        if self._maps.shared and (waiting := self._give_way(follower)) is not None:
+            return waiting
         event, decision = follower.step(observation, self._matcher)
         self._progress = follower.progress
         if event is None:
@@ -207,6 +201,16 @@ class Travel:
             return Decision("hold", why=f"planning again: {why}")
         here = self.tracker.here
         return self._recover(Setback(event, *follower.failed_edge(), tuple(follower.path), why, here))
+
+    def _give_way(self, follower: PathFollower) -> Decision | None:
+        """Ask for the nodes ahead; a decision where the robot waits for others, or makes room for them."""
+        way = self._maps.right_of_way(*follower.way())
+        if way.room and not self._makes_room:
+            self._notes.append(Note("makes_room", f"by way of {list(way.room[:8])}"))
+            self._set_off(list(way.room), Event.MAKES_ROOM)
+            return Decision("hold", why="making room for others")
+        follower.may_go(way.free)
+        return Decision("hold", why=f"waits: {way.why}") if follower.waits else None
 
     def _end_of_making_room(self, event: Event, follower: PathFollower, why: str) -> Decision:
         """Go on from the refuge; also from where the robot is, if the way there does not let it get on."""

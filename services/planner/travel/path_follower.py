@@ -1,7 +1,9 @@
 """Following a path: which waypoint to aim at, and what ends it early."""
 
+import math
 from collections.abc import Collection, Sequence
 
+from services.planner.mapping.reach import distances
 from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.similarity import heading_of, similarity
@@ -99,11 +101,16 @@ class PathFollower:
     def way(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """Nodes between which the robot is, and those of its way beyond."""
         here = self._tracker.here
-        if here is not None and here.node_id in self.path[: self.index + 1]:
-            self._passed = max(self._passed, self.path[: self.index + 1].index(here.node_id))
         passed = self._nodes(self.path[self._passed : self._next()])
-        about = () if here is None or here.node_id in passed else (here.node_id,)
-        return (*about, *passed), self._nodes(self.path[self._next() :])
+        ahead = self._nodes(self.path[self._next() :])
+        if here is None:
+            return passed, ahead
+        away_m = distances(self._maps.graph, here, passed)
+        if not away_m:
+            return (here.node_id, *passed), ahead
+        nearest = min(range(len(passed)), key=lambda at: away_m.get(passed[at], math.inf))
+        self._passed += nearest
+        return passed[nearest:], ahead
 
     def may_go(self, free: int) -> None:
         """Of the way beyond so many nodes may be driven to, in the frame to come."""

@@ -31,7 +31,7 @@ def test_what_is_passed_is_free_for_the_next():
     rights, near = Rights(), corridor(12, CROSSING)
     for now_s, at, ahead in ((0.0, 4, (5, 6, 7, 8, 9, 10)), (1.0, 8, (9, 10))):
         rights.ask(Claim("r1", "flat", (at,), ahead), near, now_s)
-    assert rights.ask(Claim("r2", "flat", (22,), (21, 20, 6)), near, 1.1).free == 3
+    assert rights.ask(Claim("r2", "flat", (22,), (21, 20, 6)), near, 1.1).free == AHEAD
 
 
 def test_a_narrow_stretch_is_granted_whole_or_not_at_all():
@@ -45,7 +45,7 @@ def test_a_narrow_stretch_is_granted_whole_or_not_at_all():
 def test_robots_in_other_maps_are_in_nobodys_way():
     rights, near = Rights(), corridor(12)
     rights.ask(Claim("r1", "flat", (5,)), near, 0.0)
-    assert rights.ask(Claim("r2", "hall", (3,), (4, 5, 6)), near, 0.1).free == 3
+    assert rights.ask(Claim("r2", "hall", (3,), (4, 5, 6)), near, 0.1).free == AHEAD
 
 
 def test_a_silent_robot_frees_its_leg_when_its_lease_ends():

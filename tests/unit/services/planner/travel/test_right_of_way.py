@@ -18,7 +18,7 @@ class Guarded(PlaneMap):
     """The map, and somebody who says how far the robot may go."""
 
     def __init__(self, maps):
-        super().__init__(maps.graph, maps.poses)
+        super().__init__(maps.graph, maps.poses, shared=True)
         self.asked, self.most, self.room = [], math.inf, ()
 
     def right_of_way(self, at, ahead):
