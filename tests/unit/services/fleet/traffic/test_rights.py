@@ -20,6 +20,13 @@ def test_alone_a_robot_is_granted_what_it_looks_ahead_and_no_more():
     assert rights.ask(Claim("r1", "flat", (0, 1), (2, 3, 4, 5)), near, 0.2).free == AHEAD
 
 
+def test_asked_again_and_again_it_is_granted_no_more_while_another_drives_far_away():
+    rights, near = Rights(), corridor(30)
+    rights.ask(Claim("r2", "flat", (25,), (26, 27)), near, 0.0)
+    for now_s in (0.1, 0.2, 0.3):
+        assert rights.ask(Claim("r1", "flat", (0,), (1, 2, 3, 4, 5)), near, now_s).free == AHEAD
+
+
 def test_the_second_waits_and_is_told_for_whom():
     rights, near = Rights(), corridor(12, CROSSING)
     rights.ask(Claim("r1", "flat", (4,), (5, 6, 7)), near, 0.0)
@@ -128,7 +135,7 @@ def test_two_head_on_in_a_corridor_get_past_each_other_by_a_room():
     assert drive(corridor(12, {6: (20, 21, 22)}), drivers, 60) == []
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", [*range(8), 39, 59])  # the last: one alone that makes room helps nobody
 def test_many_in_a_corridor_with_rooms_all_get_to_where_they_want(seed):
     rooms = {door: tuple(range(100 + 10 * door, 104 + 10 * door)) for door in (2, 5, 8, 11)}
     near, rng = corridor(14, rooms), np.random.default_rng(seed)

@@ -48,6 +48,7 @@ def test_it_asks_for_the_nodes_of_its_way_in_order_and_says_where_it_is(drive):
     assert len(first_at) == 1
     assert math.dist(maps.poses[first_at[-1]][:2], maps.poses[first_ahead[0]][:2]) < 2.5
     assert last_ahead == ()
+    assert max(len(at) for at, _ in maps.asked) <= 4  # what lies behind is given back
     assert last_at[-1] == first_ahead[-1]
     assert all(node in maps.poses for at, ahead in maps.asked for node in (*at, *ahead))
 
