@@ -7,7 +7,8 @@ import socket
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 from shared.access.credentials import CredentialsError
 from shared.bus import Bus, UnreachableError, open_bus
@@ -86,3 +87,16 @@ def run_service(
         log.error("%s", error)
         sys.exit(1)
     log.info("stopped")
+
+
+@contextmanager
+def in_thread(work: Callable[[threading.Event], object], name: str) -> Iterator[None]:
+    """Do something beside the block; its event is set at the end of the block, which waits for it."""
+    stop = threading.Event()
+    thread = threading.Thread(target=work, args=(stop,), name=name)
+    thread.start()
+    try:
+        yield
+    finally:
+        stop.set()
+        thread.join()

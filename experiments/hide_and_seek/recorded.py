@@ -1,6 +1,5 @@
 """Recordings of rounds that fail, to look at afterwards: `topnav replay`."""
 
-import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -9,6 +8,7 @@ from services.launcher.client.stack import Stack
 from services.launcher.evaluation.outcome import Round
 from services.recorder.recorder import record
 from services.recorder.recording import RecordingWriter
+from shared.lifecycle import in_thread
 
 
 def played_on_record(stack: Stack, file: Path | None, play: Callable[[], Round]) -> Round:
@@ -31,12 +31,9 @@ def played_on_record(stack: Stack, file: Path | None, play: Callable[[], Round])
 
 @contextmanager
 def _recording(stack: Stack, file: Path) -> Iterator[None]:
-    stop = threading.Event()
-    with RecordingWriter(file) as writer, stack.address.open() as bus:
-        thread = threading.Thread(target=record, args=(bus, writer, (), stop, None), name="recorder")
-        thread.start()
-        try:
-            yield
-        finally:
-            stop.set()
-            thread.join()
+    with (
+        RecordingWriter(file) as writer,
+        stack.address.open() as bus,
+        in_thread(lambda stop: record(bus, writer, (), stop, None), "recorder"),
+    ):
+        yield

@@ -5,8 +5,7 @@ import math
 import threading
 import time
 import uuid
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 
 from services.fleet.beginnings import first_node
 from services.fleet.core import Move, Plan, Robot, decide
@@ -16,6 +15,7 @@ from services.fleet.traffic.desk import Desk
 from services.fleet.traffic.rights import Claim
 from services.fleet.watching import Watched
 from shared.bus import Bus
+from shared.lifecycle import in_thread
 from shared.messages.tasks import QueueStatus, Task, TaskReply, TaskRequest
 from shared.queries import QueryError, RefusedError
 from shared.topics import FLEET_QUEUE, STATUS, TASKS
@@ -128,21 +128,9 @@ def run(settings: FleetSettings, bus: Bus, stop: threading.Event) -> None:
     desk = Desk(bus, settings.map_period_s, settings.query_timeout_s)
     fleet = Fleet(settings, bus, desk.to_send)
     desk.announce()
-    with serving(desk, stop):
+    with in_thread(desk.serve, "rights of way"):
         while not stop.wait(settings.period_s):
             try:
                 fleet.step(time.monotonic())
             except (QueryError, WireError) as error:
                 bus.counters.count("unanswered", str(error))
-
-
-@contextmanager
-def serving(desk: Desk, stop: threading.Event) -> Iterator[None]:
-    """Robots that ask for the right of way are answered meanwhile, and until `stop`."""
-    thread = threading.Thread(target=desk.serve, args=(stop,), name="rights of way", daemon=True)
-    thread.start()
-    try:
-        yield
-    finally:
-        stop.set()
-        thread.join()

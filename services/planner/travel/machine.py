@@ -184,8 +184,11 @@ class Travel:
             return replace(decision, speed_fraction=share * decision.speed_fraction)
         self._notes += decision.notes
         why = decision.why
-        if self._makes_room:
-            return self._end_of_making_room(event, follower, why)
+        if event is Event.WAY_UNCLEAR:
+            self._unclear.add(follower.next_edge())
+        if self._makes_room:  # go on from the refuge, or from where the way there does not let it get on
+            self._change(Event.MADE_ROOM if event is Event.REACHED else event)
+            return Decision("hold", why=why)
         if event is Event.REACHED:
             refuted = self._destination.refutes_arrival(
                 follower.path[-1], self._progress.similarity, self.tracker
@@ -196,7 +199,6 @@ class Travel:
             event, why = Event.ALIASED, f"{why}, {refuted}"
         self._change(event)
         if event is Event.WAY_UNCLEAR:
-            self._unclear.add(follower.next_edge())
             self._notes.append(Note("leg_doubted", f"edge {follower.next_edge()}: {why}"))
             return Decision("hold", why=f"planning again: {why}")
         here = self.tracker.here
@@ -211,13 +213,6 @@ class Travel:
             return Decision("hold", why="making room for others")
         follower.may_go(way.free)
         return Decision("hold", why=f"waits: {way.why}") if follower.waits else None
-
-    def _end_of_making_room(self, event: Event, follower: PathFollower, why: str) -> Decision:
-        """Go on from the refuge; also from where the robot is, if the way there does not let it get on."""
-        self._change(Event.MADE_ROOM if event is Event.REACHED else event)
-        if event is Event.WAY_UNCLEAR:
-            self._unclear.add(follower.next_edge())
-        return Decision("hold", why=why)
 
     def _recover(self, setback: Setback) -> Decision:
         """Learn from what ended the path, and plan again from what the next frame shows."""

@@ -3,8 +3,7 @@
 import io
 import re
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator
 from typing import Any
 
 import httpx
@@ -17,6 +16,7 @@ from services.recorder.reading import read
 from services.recorder.recorder import record
 from services.recorder.recording import RecordingWriter
 from shared.bus import open_bus, wait_until
+from shared.lifecycle import in_thread
 from shared.messages.sensors import Frame
 from shared.topics import FRAME
 from tests.browser import WAIT_MS, listen, needs_chromium
@@ -188,7 +188,7 @@ def test_a_recording_plays_as_if_live(page: Any, explored: Explored, tmp_path: A
     with (
         RecordingWriter(file) as writer,
         open_bus(explored.stack.endpoint) as bus,
-        in_thread(lambda stop: record(bus, writer, frozenset(), stop, None)),
+        in_thread(lambda stop: record(bus, writer, frozenset(), stop, None), "recorder"),
     ):
         explored.game.begin(seed=3)
         assert wait_until(lambda: writer.counts[pictures] >= 6, WAIT_S)
@@ -199,24 +199,11 @@ def test_a_recording_plays_as_if_live(page: Any, explored: Explored, tmp_path: A
             while not stop.is_set():
                 play(read(file), player.put, 1.0, stop)
 
-        with in_thread(over_and_over):
+        with in_thread(over_and_over, "player"):
             page.wait_for_selector("#robot option[value=ghost]", state="attached", timeout=WAIT_MS)
             page.select_option("#robot", "ghost")
             page.wait_for_selector("#frame:visible", timeout=WAIT_MS)
             assert "frame" in page.inner_text("#frame-facts")
-
-
-@contextmanager
-def in_thread(work: Callable[[threading.Event], object]) -> Iterator[None]:
-    """Do something beside the block, until it ends."""
-    stop = threading.Event()
-    thread = threading.Thread(target=work, args=(stop,))
-    thread.start()
-    try:
-        yield
-    finally:
-        stop.set()
-        thread.join()
 
 
 def test_every_view_is_accessible_and_well_behaved(page: Any) -> None:
