@@ -66,10 +66,15 @@ def another_robot(stack: Stack, name: str, world: str, folder: Path, company: st
         "SIMULATOR_SEED": "2",
         "SIMULATOR_COMPANY": company,
     }
+    before = {each: len(stack.bus.alive(each)) for each in SERVICES}
+
+    def is_there() -> bool:
+        return all(len(stack.bus.alive(each)) > count for each, count in before.items())
+
     with (folder / f"{name}.log").open("wb") as log:
         robot = subprocess.Popen([SCRIPT, name], env=os.environ | variables, stderr=log)
         try:
-            assert wait_until(lambda: all(len(stack.bus.alive(each)) == 2 for each in SERVICES), START_S, 0.2)
+            assert wait_until(is_there, START_S, 0.2)
             yield
         finally:
             robot.terminate()
@@ -79,14 +84,27 @@ def another_robot(stack: Stack, name: str, world: str, folder: Path, company: st
 @contextmanager
 def fleet_service(stack: Stack, folder: Path) -> Iterator[None]:
     """The fleet service of a running stack."""
-    with (folder / "fleet.log").open("wb") as log:
+    with _service(stack, folder, "fleet"):
+        yield
+
+
+@contextmanager
+def dispatch_of_the_first(stack: Stack, folder: Path) -> Iterator[None]:
+    """The dispatch of the robot of a stack that was opened for commands, which has none."""
+    with _service(stack, folder, "dispatch", TOPNAV_ROBOT=stack.robot):
+        yield
+
+
+@contextmanager
+def _service(stack: Stack, folder: Path, name: str, **variables: str) -> Iterator[None]:
+    with (folder / f"{name}.log").open("wb") as log:
         process = subprocess.Popen(
-            [sys.executable, "-m", "services.fleet"],
-            env=os.environ | {"TOPNAV_ENDPOINT": stack.endpoint},
+            [sys.executable, "-m", f"services.{name}"],
+            env=os.environ | {"TOPNAV_ENDPOINT": stack.endpoint} | variables,
             stderr=log,
         )
         try:
-            assert wait_until(lambda: bool(stack.bus.alive("fleet")), START_S, 0.2)
+            assert wait_until(lambda: bool(stack.bus.alive(name)), START_S, 0.2)
             yield
         finally:
             process.terminate()

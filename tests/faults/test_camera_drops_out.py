@@ -11,7 +11,7 @@ from services.launcher.client.trail import collisions
 from services.launcher.evaluation.exploration import explore
 from services.launcher.evaluation.rounds import Game
 from shared.bus import wait_until
-from shared.topics import CAMERA_STATE
+from shared.topics import CAMERA_STATE, EVENT
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
 from tests.e2e.near_node import hiding_place_near_a_node
@@ -62,6 +62,7 @@ def test_it_stands_while_its_camera_is_gone_and_finds_the_picture_afterwards(rob
     explored = explore(stack, WORLD, "theta", seed=1, max_steps=STEPS)
     assert len(explored.graph.nodes) > 3
     assert states.take().model == robot.camera.model
+    events = stack.bus.subscribe(EVENT, robot=stack.robot)
     game = Game(stack, space, "theta", np.random.default_rng(1))
     start = game.begin(seed=1).pose
     with Watch(stack.endpoint, stack.robot) as watch:
@@ -83,5 +84,5 @@ def test_it_stands_while_its_camera_is_gone_and_finds_the_picture_afterwards(rob
         assert watch.fastest_mps(gone.back_s) > 0.1  # it drove on
         still = [speed for at_s, speed in watch.speeds if headed_s[-1] + 1.0 < at_s < gone.back_s]
         assert max(still) < 0.03
-    assert played.success, played.run.status.reason
+    assert played.success, [f"{event.step} {event.kind}: {event.reason}" for event in events.take_all()]
     assert collisions([*explored.run.truths, *played.run.truths]) == 0

@@ -132,10 +132,18 @@ class GoalPlaces:
         return found[0]
 
     def stood(self, node: int | None) -> Ruling:
-        """The robot stood at the very spot, and the goal picture did not agree with the view."""
+        """The robot stood at the very spot, and the goal picture did not agree with the view.
+
+        The one place that there is gets another try: nothing else speaks against it, and one late picture
+        may be all that was wrong.
+        """
         place = self._nearest(node)
         if self.plain or place is None:
             return Ruling("not seen")
+        if len(self._places) == 1:
+            self._losses[place] += 1
+            if self._losses[place] < TRIES:
+                return Ruling("not seen, where alone it can be")
         self._evidence.visited(place, Visit())
         return self._judge(place)
 

@@ -81,6 +81,15 @@ def test_who_stood_at_the_very_spot_and_did_not_see_the_goal_excludes_it(two):
     assert two.arrived(1, view(0.86)).why == ""
 
 
+def test_the_one_place_that_there_is_gets_another_try():
+    """It resembles the goal too little to be plain."""
+    places = places_of(by_node(match(1, 0.0, 0.0, 60), match(2, 1.0, 0.0, 40)))
+    assert not places.plain
+    assert places.stood(1).failure == ""
+    assert set(places.open_targets(TARGETS)) == {1, 2}
+    assert places.stood(1).failure == "goal_not_in_map"
+
+
 def test_a_look_alike_is_visited_before_arrival_is_claimed(two):
     assert not two.plain
     assert set(two.open_targets(TARGETS)) == {1, 2, 9, 10}
