@@ -21,6 +21,7 @@ from shared.messages.sensors import Ranges
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
+IndexArray = npt.NDArray[np.intp]
 
 OCCLUDED = 0.5
 """What floor counts that nobody saw, where there may be a way to it; chosen."""
@@ -78,7 +79,7 @@ class FloorViews:
         """
         seen, hidden = self._looked_at(floor_m, views, covers_m)
         rest = ~seen & ~hidden
-        beside = self._looked_at((floor_m[rest, None] + RING_M).reshape(-1, 2), views, covers_m)[0]
+        beside = self._seen((floor_m[rest, None] + RING_M).reshape(-1, 2), views)
         hidden[rest] = beside.reshape(-1, len(RING_M)).any(axis=1)
         return np.where(seen, 1.0, np.where(hidden, OCCLUDED, 0.0))
 
@@ -95,21 +96,39 @@ class FloorViews:
             moved.append(views)
         return np.concatenate(moved)
 
+    def _seen(self, floor_m: FloatArray, views: FloatArray) -> BoolArray:
+        """(N,) whether any view saw it."""
+        floor, away_m, echo_m = _echoes_beside(floor_m, views, -self._radius_m)
+        seen = floor[away_m <= echo_m - self._radius_m]
+        return np.bincount(seen, minlength=len(floor_m)) > 0
+
     def _looked_at(
         self, floor_m: FloatArray, views: FloatArray, covers_m: float
     ) -> tuple[BoolArray, BoolArray]:
         """(N,) each: seen by any view; else behind what was seen, and not behind a wall."""
-        echoes_m, count = views[:, 3:], len(floor_m)
-        offset = floor_m[:, None] - views[None, :, :2]
-        away_m = np.hypot(offset[..., 0], offset[..., 1])
-        floor, view = np.nonzero(away_m <= echoes_m.max(axis=1, initial=0.0) + max(covers_m, WALL_M))
-        offset, away_m = offset[floor, view], away_m[floor, view]
-        bearing_rad = np.arctan2(offset[:, 1], offset[:, 0]) - views[view, 2]
-        echo_m = echoes_m[view, np.rint(bearing_rad / SECTOR_RAD).astype(int) % SECTORS]
+        floor, away_m, echo_m = _echoes_beside(floor_m, views, max(covers_m, WALL_M))
         seen = away_m <= echo_m - self._radius_m
         near = echo_m <= DOOR_SEEN_M
         blocked = ~seen & near & (away_m <= echo_m + WALL_M)
         hidden = blocked | (~seen & ~near & (away_m <= echo_m + covers_m))
-        views_that = (np.bincount(floor[which], minlength=count) for which in (seen, hidden, blocked))
+        views_that = (np.bincount(floor[w], minlength=len(floor_m)) for w in (seen, hidden, blocked))
         saw, may_hide, show_wall = views_that
         return saw > 0, (saw == 0) & (may_hide > 0) & (show_wall < WALL_VIEWS)
+
+
+def _echoes_beside(
+    floor_m: FloatArray, views: FloatArray, beyond_m: float
+) -> tuple[IndexArray, FloatArray, FloatArray]:
+    """Spots and views no further apart than its longest reading and `beyond_m`.
+
+    Returns:
+        (K,) each: index of the spot, distance, and what the sensor towards it read.
+    """
+    echoes_m = views[:, 3:]
+    at_m, reach_m = views[:, :2], np.maximum(echoes_m.max(axis=1, initial=0.0) + beyond_m, 0.0)
+    apart_m2 = (floor_m**2).sum(axis=1)[:, None] + (at_m**2).sum(axis=1) - 2.0 * floor_m @ at_m.T
+    floor, view = np.nonzero(apart_m2 <= reach_m**2)
+    offset = floor_m[floor] - at_m[view]
+    bearing_rad = np.arctan2(offset[:, 1], offset[:, 0]) - views[view, 2]
+    sector = np.rint(bearing_rad / SECTOR_RAD).astype(int) % SECTORS
+    return floor, np.hypot(offset[:, 0], offset[:, 1]), echoes_m[view, sector]

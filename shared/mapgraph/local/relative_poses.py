@@ -13,6 +13,7 @@ the covariance of the positions relative to the root.
 from collections import deque
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -35,6 +36,9 @@ ROUNDS = 3
 """Of reweighting; the answer then moves by centimetres."""
 CAUCHY = 3.0
 """Standard deviations at which a measurement counts half: the usual scale of Cauchy weights."""
+INVERTED_NODES = 64
+"""Of a part with no more nodes all covariances are reckoned at once, and kept: a frame asks for some of them
+five times. In a larger one those few that are asked for cost less."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +113,15 @@ class _Solution:
         if self.equations is None or self.weight is None:
             size = self.values.shape[1]
             return np.zeros((len(rows), size, size))
+        if len(self.values) <= INVERTED_NODES:
+            return self._all[rows]
         return self.equations.covariance(self.weight, rows)
+
+    @cached_property
+    def _all(self) -> FloatArray:
+        assert self.equations is not None
+        assert self.weight is not None
+        return self.equations.covariance(self.weight, np.arange(len(self.values)))
 
 
 @dataclass(frozen=True)
