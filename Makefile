@@ -14,6 +14,9 @@ PYTEST_ARGS ?=
 WORKERS ?= 4
 # The matrices are small: more threads only wait for each other, and tests run side by side.
 export OPENBLAS_NUM_THREADS = 1
+# Workers share the cores: each with as many threads as there are cores costs a fifth more.
+test check: export OMP_NUM_THREADS = 1
+test check: export OPENCV_FOR_THREADS_NUM = 1
 # Hundreds of processes start in a run of the tests: without bytecode on disk each compiles for two seconds.
 unexport PYTHONDONTWRITEBYTECODE
 FUZZ_ARGS ?= --seconds 60 --json runs/fuzz/report.json
