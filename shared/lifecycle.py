@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 
 from shared.access.credentials import CredentialsError
@@ -90,13 +91,22 @@ def run_service(
 
 
 @contextmanager
-def in_thread(work: Callable[[threading.Event], object], name: str) -> Iterator[None]:
-    """Do something beside the block; its event is set at the end of the block, which waits for it."""
+def in_thread(work: Callable[[threading.Event], object], name: str) -> Iterator[Callable[[], None]]:
+    """Do something beside the block; its event is set at the end of the block, which waits for it.
+
+    Returns:
+        What raises the work's exception, once it failed, in the thread of the block; its end does so, too.
+    """
     stop = threading.Event()
-    thread = threading.Thread(target=work, args=(stop,), name=name)
-    thread.start()
-    try:
-        yield
-    finally:
-        stop.set()
-        thread.join()
+    with ThreadPoolExecutor(1, name) as threads:
+        beside = threads.submit(work, stop)
+
+        def check() -> None:
+            if beside.done():
+                beside.result()
+
+        try:
+            yield check
+        finally:
+            stop.set()
+    beside.result()

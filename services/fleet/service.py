@@ -128,8 +128,9 @@ def run(settings: FleetSettings, bus: Bus, stop: threading.Event) -> None:
     desk = Desk(bus, settings.map_period_s, settings.query_timeout_s)
     fleet = Fleet(settings, bus, desk.to_send)
     desk.announce()
-    with in_thread(desk.serve, "rights of way"):
+    with in_thread(desk.serve, "rights of way") as check:
         while not stop.wait(settings.period_s):
+            check()  # robots would wait for a desk that is gone while this process is there
             try:
                 fleet.step(time.monotonic())
             except (QueryError, WireError) as error:

@@ -12,7 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from shared.lifecycle import STOPPING, JsonFormatter, stop_on_signals
+from shared.bus import wait_until
+from shared.lifecycle import STOPPING, JsonFormatter, in_thread, stop_on_signals
 
 SOON_S = 60.0
 
@@ -116,3 +117,23 @@ def test_a_loop_that_fails_ends_the_process_instead_of_hanging_it(repository: Pa
         _, errors = child.communicate(timeout=SOON_S)
     assert child.returncode == 1
     assert "RuntimeError: broken" in errors
+
+
+def test_what_is_done_beside_a_block_ends_with_it():
+    heard = []
+    with in_thread(lambda stop: heard.append(stop.wait(10.0)), "beside") as check:
+        check()
+    assert heard == [True]
+
+
+def test_what_fails_beside_a_block_is_told_to_who_asks_and_at_the_end():
+    failed = threading.Event()
+
+    def fail(_stop: threading.Event) -> None:
+        failed.set()
+        raise LookupError("no such map")
+
+    with pytest.raises(LookupError, match="no such map"), in_thread(fail, "beside"):
+        assert failed.wait(10.0)
+    with pytest.raises(LookupError), in_thread(fail, "beside") as check:
+        wait_until(lambda: check() is not None, 10.0)

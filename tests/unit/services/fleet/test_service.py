@@ -1,11 +1,12 @@
 """The fleet loop against a bus that is none: when it hands out, what a refusal means, which maps it reads."""
 
+import threading
 from typing import Any
 
 import pytest
 
 from services.fleet.maps import Maps
-from services.fleet.service import LISTENS_S, Fleet
+from services.fleet.service import LISTENS_S, Fleet, run
 from services.fleet.settings import FleetSettings
 from services.fleet.traffic.rights import Claim
 from shared.messages.estop import EStopState
@@ -208,3 +209,21 @@ def test_damaged_records_are_an_alarm(damaged: int, alarm: str, monkeypatch: pyt
     monkeypatch.setattr(stage.bus, "ask", lambda *_, **__: answer)
     assert stage.step(0.0).alarm.startswith(alarm)
     assert bool(stage.bus.said[-1].alarm) == bool(alarm)
+
+
+def test_the_process_ends_where_its_desk_for_rights_of_way_failed(monkeypatch):
+    """Another one is started then; robots wait for one that is there and says nothing."""
+
+    class Failing:
+        def __init__(self, *_: object) -> None:
+            self.to_send = lambda _now_s: []
+
+        def announce(self) -> None:
+            pass
+
+        def serve(self, _stop: threading.Event) -> None:
+            raise LookupError("a bug")
+
+    monkeypatch.setattr("services.fleet.service.Desk", Failing)
+    with pytest.raises(LookupError, match="a bug"):
+        run(FleetSettings(period_s=0.01), Bus(), threading.Event())
