@@ -19,6 +19,7 @@ import { Mission } from "./drive/mission.js";
 import { Panorama } from "./drive/panorama.js";
 import { Queue } from "./drive/queue.js";
 import { Polar } from "./drive/polar.js";
+import { Robots } from "./map/robots.js";
 import { Routes } from "./map/routes.js";
 import { Runs } from "./record/runs.js";
 import { locked } from "./page/session.js";
@@ -29,7 +30,7 @@ const SERVICES = ["simulator", "features", "map_store", "planner", "drive", "dis
 const REAL = ["ros", "camera"]; // in whose place no simulator is missed
 const BODY = ["odometry", "imu", "battery", "camera"];
 const DEFAULT_ROBOT = "r1";
-const ROBOTS_MS = 5000;
+const ROBOTS_MS = 2000;
 const SAID_MS = 8000;
 
 let robot = "";
@@ -45,6 +46,7 @@ const history = new History();
 const events = new Events(showMoment);
 const matches = new Matches(where, (match) => polar.takeMatch(match));
 const graph = new Graph((what) => inspector.open(what));
+const robots = new Robots(graph, (name) => choose(name));
 const inspector = new Inspector(graph, (node) => mission.goToNode(node), (node) => marks.name([node]), () => graph.load(), say);
 const marks = new Marks(graph, (name) => mission.goToPlace(name), (node) => inspector.open({ node }), say);
 const routes = new Routes(graph, (name, reverse) => mission.driveRoute(name, reverse), say);
@@ -72,6 +74,7 @@ function showMap(name) {
   graph.show(name);
   if (name === shownMap) return;
   shownMap = name;
+  mission.mapShown(name);
   $("true-positions").checked = false;
   inspector.close();
   if (name) goal.check();
@@ -169,13 +172,20 @@ function follow(name) {
   live.follow(name);
 }
 
+/** Follow another robot, as if it was chosen above. */
+function choose(name) {
+  $("robot").value = name;
+  follow(name);
+}
+
 async function listRobots() {
-  let names = [];
+  let heard = [];
   try {
-    names = (await get("/api/robots")).map((entry) => entry.robot);
+    heard = await get("/api/robots");
   } catch {
     return;
   }
+  const names = heard.map((entry) => entry.robot);
   const first = names.includes(DEFAULT_ROBOT) ? DEFAULT_ROBOT : names[0] || DEFAULT_ROBOT; // not a recording that was played
   const all = [...new Set([robot || first, ...names])].sort();
   const shown = [...$("robot").options].map((option) => option.value);
@@ -184,6 +194,7 @@ async function listRobots() {
     $("robot").value = robot || first;
   }
   if (!robot) follow($("robot").value);
+  robots.take(heard, robot);
 }
 
 $("robot").addEventListener("change", (event) => follow(event.target.value));

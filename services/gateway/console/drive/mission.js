@@ -14,6 +14,7 @@ export class Mission {
     this.kinds = [];
     $("mission-form").addEventListener("submit", (event) => { event.preventDefault(); this.start(); });
     $("mission-kind").addEventListener("change", () => this.choose());
+    $("new-map").addEventListener("input", () => { this.otherMap = true; });
     for (const action of ["pause", "resume", "cancel", "finish"]) $(action).addEventListener("click", () => this.steer(action));
     this.clear();
   }
@@ -78,6 +79,11 @@ export class Mission {
 
   title(name) {
     return this.kinds.find((kind) => kind.name === name)?.title || name;
+  }
+
+  /** The map that is shown is meant, until somebody writes the name of another. */
+  mapShown(name) {
+    if (name && !this.otherMap) $("new-map").value = name;
   }
 
   start() {

@@ -5,6 +5,18 @@ import { html } from "../page/dom.js";
 /** The plain type of a parameter that may also be left out. */
 const typeOf = (schema) => schema.type || schema.anyOf?.map((one) => one.type).find((type) => type !== "null") || "string";
 
+const UNITS = { m: "m", s: "s", rad: "rad", deg: "°" };
+
+/** What a field is called: its title, or the words of its name with the unit in brackets. */
+function caption(name, title) {
+  const words = name.split("_");
+  const made = words.map((word) => word[0].toUpperCase() + word.slice(1)).join(" "); // as pydantic makes a title
+  if (title && title !== made) return title;
+  const unit = words.length > 1 ? UNITS[words.at(-1)] : undefined;
+  const text = (unit ? words.slice(0, -1) : words).join(" ");
+  return `${text[0].toUpperCase()}${text.slice(1)}${unit ? ` (${unit})` : ""}`;
+}
+
 /** One labelled field. */
 export function field(name, schema) {
   const type = typeOf(schema);
@@ -18,7 +30,7 @@ export function field(name, schema) {
   } else input = html("input", { name, title, value: start, maxlength: 400 });
   if (type === "boolean") input.checked = Boolean(schema.default);
   input.dataset.type = type;
-  return html("label", {}, `${schema.title || name} `, input);
+  return html("label", {}, `${caption(name, schema.title)} `, input);
 }
 
 /** What stands in the fields; empty ones are left to their defaults. */

@@ -23,12 +23,12 @@ export class Graph {
       textureOnViewport: true, pixelRatio: Math.min(devicePixelRatio, 2),
     });
     this.cy.on("tap", "node", (event) => {
-      if (event.target.id() === "goal") return;
       const id = event.target.data("number");
+      if (id === undefined) return; // the goal, or a robot
       if (this.picking) this.take(id, !this.picked.has(id));
       else chosen({ node: id });
     });
-    this.cy.on("boxselect", "node", (event) => this.picking && event.target.id() !== "goal" && this.take(event.target.data("number"), true));
+    this.cy.on("boxselect", "node", (event) => this.picking && event.target.data("number") !== undefined && this.take(event.target.data("number"), true));
     this.cy.on("select", (event) => event.target.unselect());
     this.cy.on("tap", "edge", (event) => !this.picking && event.target.data("ends") && chosen({ edge: event.target.data("ends") }));
     this.cy.on("dragpan scrollzoom pinchzoom", () => { this.moved = true; });
@@ -206,7 +206,7 @@ export class Graph {
       ...drawn.map(({ a, b }) => [`e${a}-${b}`, { group: "edges", data: { id: `e${a}-${b}`, source: `n${a}`, target: `n${b}`, ends: [a, b] } }]),
     ]);
     this.cy.batch(() => {
-      this.cy.elements().filter((element) => !wanted.has(element.id()) && element.id() !== "goal").remove();
+      this.cy.elements().filter((element) => !wanted.has(element.id()) && element.id() !== "goal" && !element.hasClass("robot")).remove();
       this.cy.add([...wanted.values()].filter((element) => !this.cy.getElementById(element.data.id).length));
       for (const { a, b, suspended } of drawn) this.cy.getElementById(`e${a}-${b}`).toggleClass("suspended", suspended);
       this.cy.elements().toggleClass("many", this.nodes.length > MANY);

@@ -28,6 +28,9 @@ export function look() {
     { selector: "node.start", style: { "background-color": colour("start") } },
     { selector: "node.target", style: { "background-color": colour("target") } },
     { selector: "node.near", style: { "border-width": 4, "border-color": colour("warn") } },
+    { selector: "node.robot", style: { shape: "round-rectangle", width: "label", height: 14, padding: 3, label: "data(label)", "text-valign": "center",
+      "text-margin-y": 0, "text-outline-width": 0, "font-weight": "bold", color: colour("card"), "background-color": colour("text"), "z-index": 10 } },
+    { selector: "node.followed", style: { "background-color": colour("warn") } },
     { selector: ".chosen", style: { "overlay-color": colour("accent"), "overlay-opacity": 0.3, "overlay-padding": 6 } },
   ];
 }

@@ -44,6 +44,7 @@ export const TEXT = {
     nodes.length || goal ? `path ${[...nodes, ...(goal ? ["goal"] : [])].join(" → ")}` : "",
     nearest === null ? "" : `robot near node ${nearest}`,
   ].filter(Boolean).join("; "),
+  robots: (places) => places.map(([robot, node]) => `${robot} near node ${node}`).join(", "),
   node: (id) => `Node ${id}`,
   nodeFacts: (keypoints, open) => `${keypoints} keypoints, ${open} unexplored directions`,
   view: (id) => `View from node ${id}`,
