@@ -4,8 +4,8 @@ import logging
 from collections.abc import Iterator
 
 from shared.bus import Bus
+from shared.messages.simulation import Truth
 from shared.topics import TRUTH
-from simulator.scene.parts import Pose2
 
 log = logging.getLogger(__name__)
 
@@ -21,8 +21,8 @@ class Neighbours:
         self._heard_s = dict.fromkeys(names, float("-inf"))
         self._world, self._elsewhere = world, set[str]()
 
-    def news(self, now_s: float) -> Iterator[tuple[str, Pose2 | None]]:
-        """Who is where, of those of whom something new is known; None of one that is gone.
+    def news(self, now_s: float) -> Iterator[tuple[str, Truth | None]]:
+        """Who is where and when, of those of whom something new is known; None of one that is gone.
 
         Args:
             now_s: monotonic.
@@ -30,9 +30,8 @@ class Neighbours:
         for name, inbox in self._inboxes.items():
             truths = inbox.take_all()
             if truths and truths[-1].world == self._world:
-                pose = truths[-1].pose
                 self._heard_s[name] = now_s
-                yield name, (pose.x_m, pose.y_m, pose.yaw_rad)
+                yield name, truths[-1]
             elif truths:
                 self._warn_once(name, truths[-1].world)
             elif 0.0 <= self._heard_s[name] < now_s - SILENT_S:

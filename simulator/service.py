@@ -19,6 +19,7 @@ from simulator.disturbances.transit import Transit
 from simulator.experimenter import Experimenter, RequestError
 from simulator.neighbours import Neighbours
 from simulator.outbox import MessageMaker
+from simulator.pace import Pace
 from simulator.service_settings import SimulatorSettings
 from simulator.simulation import Simulation
 from simulator.world.world_file import WorldFile
@@ -88,14 +89,21 @@ class Loop:
         self.maker = MessageMaker(simulation, settings)
         self._experimenter = Experimenter(simulation, self.maker, settings.seed)
         levels = settings.disturbance
+        self.pace = Pace()
         self.transit: Transit[Frame] = Transit(levels.latency, levels.drops, settings.seed)
         self.seq = 0
         self.stamp_ns = time.time_ns()
 
     def hear_neighbours(self, now_s: float) -> None:
         """Learn where the other robots are; `now_s` is monotonic."""
-        for name, pose in self.ports.neighbours.news(now_s):
-            self.simulation.tell_company(name, pose)
+        for name, truth in self.ports.neighbours.news(now_s):
+            if truth is None:
+                self.pace.gone(name)
+                self.simulation.tell_company(name, None)
+                continue
+            self.pace.heard(name, truth.stamp_ns, now_s)
+            pose = truth.pose
+            self.simulation.tell_company(name, (pose.x_m, pose.y_m, pose.yaw_rad))
 
     def serve_requests(self) -> bool:
         """Answer waiting requests; True if the world has changed under the robot."""
@@ -122,30 +130,39 @@ class LockstepLoop(Loop):
 
     While the emergency stop is engaged time goes on with a robot that stands, commanded or not. Stamps are of
     the robot's own time, which begins at the wall clock's and goes on with the physics. A frame that comes
-    late shows an earlier moment and says so by its stamp; for one that is lost another period passes.
+    late shows an earlier moment and says so by its stamp; for one that is lost another period passes. Robots
+    of one place wait for one another (`Pace`).
     """
 
     def start(self) -> None:
         """Send the first frame."""
+        self._answer: Velocity | None = None
         self._begin()
 
     def step(self, now_s: float) -> None:
         """Advance if the awaited velocity came; send the frame again if none came for a while."""
         self.hear_neighbours(now_s)
-        velocity = self.ports.newest_velocity()
-        answered = velocity is not None and velocity.seq == self.seq
+        velocity = self._answer_to_frame()
+        waits = self.pace.is_ahead(now_s)
         late = now_s - self._sent_s > self.settings.repeat_s
         if self.serve_requests():
             self.seq += 1
             self.stamp_ns += CHANGE_NS
             self._begin()
         elif self.ports.stop.engaged():
-            if answered or late:
+            if late or (velocity is not None and not waits):
                 self._advance(None)
-        elif velocity is not None and answered:
+        elif velocity is not None and not waits:
             self._advance(velocity)
         elif late:
-            self._repeat(now_s)
+            self._repeat(now_s, Truth if waits else Message)
+
+    def _answer_to_frame(self) -> Velocity | None:
+        """The velocity for the last frame, kept while the robot waits for others."""
+        newest = self.ports.newest_velocity()
+        if newest is not None and newest.seq == self.seq:
+            self._answer = newest
+        return self._answer if self._answer is not None and self._answer.seq == self.seq else None
 
     def _advance(self, velocity: Velocity | None) -> None:
         period_s = self.settings.control_period_s
@@ -170,6 +187,7 @@ class LockstepLoop(Loop):
         self._expose()
         self._drive_on(late_ns)
         self.seq += 1
+        self.pace.passed(period_s)
 
     def _drive_on(self, duration_ns: int) -> None:
         if duration_ns > 0:
@@ -193,8 +211,8 @@ class LockstepLoop(Loop):
         self._pending = [*self.sense_body(), self._frame.model_copy(update={"seq": self.seq})]
         self._repeat(time.monotonic())
 
-    def _repeat(self, now_s: float) -> None:
-        self.ports.send(*self._pending)
+    def _repeat(self, now_s: float, kind: type[Message] = Message) -> None:
+        self.ports.send(*(message for message in self._pending if isinstance(message, kind)))
         self._sent_s = now_s
 
 

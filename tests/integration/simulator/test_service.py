@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -61,7 +62,7 @@ class Peer:
 
     def command(self, seq, forward_mps=0.32, left_mps=0.0, ttl_ms=500):
         self._commands.put(
-            Velocity(seq=seq, robot="r1", forward_mps=forward_mps, left_mps=left_mps, ttl_ms=ttl_ms)
+            Velocity(seq=seq, robot=self.robot, forward_mps=forward_mps, left_mps=left_mps, ttl_ms=ttl_ms)
         )
 
     def answer(self, seq):
@@ -312,6 +313,20 @@ def test_robots_of_one_place_see_and_feel_each_other(start):
     seen = first.frame.seq
     first.wait_for(lambda: first.frame.seq > seen + 1)
     assert differing(alone, first.frame) < 20
+
+
+def test_in_lockstep_none_runs_away_from_one_that_thinks_for_long(start):
+    """r2 answers once a second, r1 at once."""
+    first = start(lockstep=True, SIMULATOR_COMPANY="r2")
+    second = start(lockstep=True, robot="r2", SIMULATOR_COMPANY="r1")
+    begun, ahead = first.truth.seq, []
+    for seq in range(5):
+        thought_s = time.monotonic() + 1.0
+        first.wait_for(lambda: (first.command(first.truth.seq), time.monotonic() > thought_s)[1])  # noqa: B023
+        ahead.append(first.truth.seq - begun - seq)
+        second.answer(seq)
+    assert max(ahead) <= 2
+    assert first.truth.seq - begun >= 4
 
 
 def differing(one, other):
