@@ -1,0 +1,166 @@
+"""Planners of many robots that write to one map store at once; gates nothing.
+
+pytest -q -s tests/benchmarks/test_hundred_planners.py
+PLANNERS=10,100 MAPS=own,one SECONDS=120 pytest -q -s tests/benchmarks/test_hundred_planners.py
+
+What one planner wrote while it explored the plan of the apartment is written by each again, at the pace of
+the robot and from a bus session of its own, which hears of all writes as planners do. MAPS=own: each maps a
+place of its own. MAPS=one: all drive in one map, and note an edge as driven every three seconds.
+"""
+
+import multiprocessing
+import os
+import time
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from services.drive.limits import DriveLimits
+from services.planner.missions.explore import FrontierExploration
+from services.planner.profiles import DEFAULT
+from services.planner.remote import RemoteMap
+from shared.bus import open_bus, wait_until
+from shared.messages.features import Features
+from shared.messages.maps import AddNode, Operation, PutEdge
+from shared.queries import QueryError
+from shared.topics import MAP_DELTA
+from tests.integration.map_store.conftest import START_S, Process
+from tests.plane_exploration import MOST_STEPS, START
+from tests.plane_world import STEP_S, PlaneMap, PlaneMatcher, PlaneWorld, run
+
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(3600)]
+
+PLANNERS = [int(count) for count in os.environ.get("PLANNERS", "10,100").split(",")]
+MAPS = os.environ.get("MAPS", "own,one").split(",")
+SECONDS = float(os.environ.get("SECONDS", "60"))
+PROCESSES = 4
+KEYPOINTS, THUMBNAIL_BYTES = 300, 10_000
+LEG_S, TIMEOUT_S = 3.0, 10.0
+ONE = "building"
+
+Writes = Sequence[tuple[float, Sequence[Operation]]]
+
+
+class Recorded(PlaneMap):
+    """A map that keeps what is written to it, and in which frame."""
+
+    def commit(self, operations):
+        super().commit(operations)
+        self.writes.append((self.world.seq * STEP_S, tuple(operations)))
+
+
+@pytest.fixture(scope="module")
+def writes():
+    """What a planner writes, by the seconds since its robot set out."""
+    world, maps = PlaneWorld(START, np.random.default_rng(1)), Recorded()
+    maps.world, maps.writes = world, []
+    mission = FrontierExploration(DEFAULT, maps, PlaneMatcher(world, maps), np.random.default_rng(1))
+    run(world, mission, DriveLimits(), MOST_STEPS)
+    return maps.writes
+
+
+def as_seen(operations: Sequence[Operation], rng: np.random.Generator) -> list[Operation]:
+    """The same with features of the size of the default pipeline's."""
+    features = Features(
+        pipeline="sift",
+        lonlat_rad=rng.random((KEYPOINTS, 2), dtype=np.float32),
+        scores=rng.random(KEYPOINTS, dtype=np.float32),
+        descriptors=rng.integers(0, 256, (KEYPOINTS, 128), dtype=np.uint8),
+        thumbnail=rng.bytes(THUMBNAIL_BYTES),
+    )
+    return [
+        operation.model_copy(update={"features": features}) if isinstance(operation, AddNode) else operation
+        for operation in operations
+    ]
+
+
+class Planner:
+    """One of them, as far as the map store knows."""
+
+    def __init__(self, endpoint: str, number: int, writes: Writes, one: bool) -> None:
+        self._endpoint, self._number, self._writes, self._one = endpoint, number, writes, one
+        self._rng = np.random.default_rng(number)
+
+    def run(self, begin_s: float) -> tuple[list[float], list[str]]:
+        """Seconds that each write took, and what went wrong."""
+        took_s, wrong = [], []
+        with open_bus(self._endpoint) as bus:
+            deltas = bus.subscribe(MAP_DELTA, map="*")
+            maps = RemoteMap(bus, ONE if self._one else f"m{self._number}", TIMEOUT_S)
+            maps.load(create=True)
+            for at_s, operations in self._due():
+                while time.time() < begin_s + at_s:
+                    for delta in deltas.take_all():
+                        if delta.map == maps.name and delta.revision > maps.revision:
+                            maps.follow(delta)
+                    time.sleep(min(0.1, max(0.0, begin_s + at_s - time.time())))
+                wanted = operations or self._driven(maps)
+                since_s = time.perf_counter()
+                try:
+                    maps.commit(wanted)
+                except QueryError as error:
+                    wrong.append(str(error))
+                took_s.append(time.perf_counter() - since_s)
+        return took_s, wrong
+
+    def _due(self):
+        """What to write and when, each planner from a moment of its own on."""
+        phase_s = float(self._rng.uniform(0.0, LEG_S))
+        if self._one:
+            yield from ((phase_s + leg * LEG_S, ()) for leg in range(int((SECONDS - phase_s) / LEG_S)))
+            return
+        for at_s, operations in self._writes:
+            if phase_s + at_s < SECONDS:
+                yield phase_s + at_s, as_seen(operations, self._rng)
+
+    def _driven(self, maps: RemoteMap) -> list[Operation]:
+        edges = sorted(maps.graph.edges)
+        edge = maps.graph.edges[edges[int(self._rng.integers(len(edges)))]]
+        return [PutEdge(edge=edge.model_copy(update={"traversals": edge.traversals + 1}))]
+
+
+def some(endpoint: str, numbers: Sequence[int], writes: Writes, one: bool, begin_s: float):
+    """Planners of one process, a thread each."""
+    with ThreadPoolExecutor(len(numbers)) as threads:
+        return list(threads.map(lambda n: Planner(endpoint, n, writes, one).run(begin_s), numbers))
+
+
+@pytest.fixture
+def endpoint(repository, tmp_path, router_endpoint, free_port):
+    """A map store process with a map that somebody made already."""
+    store = Process(repository, tmp_path, router_endpoint, free_port())
+    store.start()
+    with open_bus(router_endpoint) as bus:
+        assert wait_until(lambda: bool(bus.alive("map_store")), START_S, 0.1)
+        yield router_endpoint
+    store.kill()
+
+
+@pytest.mark.parametrize("maps", MAPS)
+@pytest.mark.parametrize("count", PLANNERS)
+def test_writes_of_many_planners(count, maps, endpoint, writes, keep):
+    with open_bus(endpoint) as bus:
+        whole = RemoteMap(bus, ONE, TIMEOUT_S)
+        whole.load(create=True)
+        for _, operations in writes:
+            whole.commit(as_seen(operations, np.random.default_rng(0)))
+    begin_s = time.time() + 10.0 + count / 10.0
+    groups = [list(range(count))[each::PROCESSES] for each in range(min(PROCESSES, count))]
+    with ProcessPoolExecutor(len(groups), multiprocessing.get_context("spawn")) as processes:
+        asked = [processes.submit(some, endpoint, group, writes, maps == "one", begin_s) for group in groups]
+        played = [planner for each in asked for planner in each.result()]
+    took_ms = 1e3 * np.concatenate([took_s for took_s, _ in played])
+    keep(
+        {
+            "planners": count,
+            "maps": maps,
+            "writes": len(took_ms),
+            "writes_per_s": len(took_ms) / SECONDS,
+            "median_ms": np.median(took_ms),
+            "p99_ms": np.percentile(took_ms, 99),
+            "most_ms": took_ms.max(),
+            "wrong": sum(len(wrong) for _, wrong in played),
+        }
+    )
