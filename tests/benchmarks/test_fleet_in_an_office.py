@@ -27,10 +27,9 @@ from shared.messages.simulation import Pose
 from shared.messages.tasks import Task, TaskRequest
 from shared.topics import STATUS
 from shared.transport.keys import ANY
-from simulator.generation.generate import generate
-from simulator.generation.world_text import write_world
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
+from tests.benchmarks.test_exploring_plans import world_of
 from tests.e2e.fleet import another_robot, dispatch_of_the_first, fleet_service, taking_part
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(7200)]
@@ -47,10 +46,9 @@ APART_M = 3.0
 @pytest.fixture(scope="module")
 def world(tmp_path_factory):
     """The file of the office."""
-    kind, seed, size = PLAN.rsplit("-", 2)
-    file = tmp_path_factory.mktemp("world") / f"{PLAN}.yaml"
-    write_world(file, generate(kind, int(seed), size))
-    return str(file)
+    folder = tmp_path_factory.mktemp("world")
+    world_of(PLAN, folder)
+    return str(folder / f"{PLAN}.yaml")
 
 
 @pytest.fixture(scope="module")

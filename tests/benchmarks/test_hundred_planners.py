@@ -22,10 +22,10 @@ from services.planner.missions.explore import FrontierExploration
 from services.planner.profiles import DEFAULT
 from services.planner.remote import RemoteMap
 from shared.bus import open_bus, wait_until
-from shared.messages.features import Features
 from shared.messages.maps import AddNode, Operation, PutEdge
 from shared.queries import QueryError
 from shared.topics import MAP_DELTA
+from tests.benchmarks.test_map_store_databases import features_of_a_place
 from tests.integration.map_store.conftest import START_S, Process
 from tests.plane_exploration import MOST_STEPS, START
 from tests.plane_world import STEP_S, PlaneMap, PlaneMatcher, PlaneWorld, run
@@ -36,7 +36,6 @@ PLANNERS = [int(count) for count in os.environ.get("PLANNERS", "10,100").split("
 MAPS = os.environ.get("MAPS", "own,one").split(",")
 SECONDS = float(os.environ.get("SECONDS", "60"))
 PROCESSES = 4
-KEYPOINTS, THUMBNAIL_BYTES = 300, 10_000
 LEG_S, TIMEOUT_S = 3.0, 10.0
 ONE = "building"
 
@@ -63,13 +62,7 @@ def writes():
 
 def as_seen(operations: Sequence[Operation], rng: np.random.Generator) -> list[Operation]:
     """The same with features of the size of the default pipeline's."""
-    features = Features(
-        pipeline="sift",
-        lonlat_rad=rng.random((KEYPOINTS, 2), dtype=np.float32),
-        scores=rng.random(KEYPOINTS, dtype=np.float32),
-        descriptors=rng.integers(0, 256, (KEYPOINTS, 128), dtype=np.uint8),
-        thumbnail=rng.bytes(THUMBNAIL_BYTES),
-    )
+    features = features_of_a_place(rng)
     return [
         operation.model_copy(update={"features": features}) if isinstance(operation, AddNode) else operation
         for operation in operations

@@ -24,16 +24,20 @@ KEYPOINTS, THUMBNAIL_BYTES = 300, 10_000
 """A place of the default pipeline."""
 
 
-def place(number: int) -> list[Operation]:
-    """What the planner writes for a new place: it and the edge that leads there."""
-    rng = np.random.default_rng(number)
-    features = Features(
+def features_of_a_place(rng: np.random.Generator) -> Features:
+    """Features of the size that the default pipeline's have."""
+    return Features(
         pipeline="sift",
         lonlat_rad=rng.random((KEYPOINTS, 2), dtype=np.float32),
         scores=rng.random(KEYPOINTS, dtype=np.float32),
         descriptors=rng.integers(0, 256, (KEYPOINTS, 128), dtype=np.uint8),
         thumbnail=rng.bytes(THUMBNAIL_BYTES),
     )
+
+
+def place(number: int) -> list[Operation]:
+    """What the planner writes for a new place: it and the edge that leads there."""
+    features = features_of_a_place(np.random.default_rng(number))
     added = AddNode(node=Node(node_id=number, pipeline="sift", keypoints=KEYPOINTS), features=features)
     return [added, link(number)] if number else [added]
 

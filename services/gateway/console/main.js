@@ -46,7 +46,7 @@ const history = new History();
 const events = new Events(showMoment);
 const matches = new Matches(where, (match) => polar.takeMatch(match));
 const graph = new Graph((what) => inspector.open(what));
-const robots = new Robots(graph, (name) => choose(name));
+const robots = new Robots(graph, choose);
 const inspector = new Inspector(graph, (node) => mission.goToNode(node), (node) => marks.name([node]), () => graph.load(), say);
 const marks = new Marks(graph, (name) => mission.goToPlace(name), (node) => inspector.open({ node }), say);
 const routes = new Routes(graph, (name, reverse) => mission.driveRoute(name, reverse), say);

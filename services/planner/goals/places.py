@@ -141,9 +141,7 @@ class GoalPlaces:
         if self.plain or place is None:
             return Ruling("not seen")
         if len(self._places) == 1:
-            self._losses[place] += 1
-            if self._losses[place] < TRIES:
-                return Ruling("not seen, where alone it can be")
+            return self.lost(node)
         self._evidence.visited(place, Visit())
         return self._judge(place)
 
