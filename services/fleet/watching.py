@@ -3,6 +3,7 @@
 from services.fleet.condition import Condition, condition_of
 from services.fleet.core import Robot
 from shared.bus import Bus
+from shared.messages.missions import MissionStatus
 from shared.messages.tasks import QueueStatus
 from shared.robots.hearing import LATELY_S, Hearing
 from shared.topics import QUEUE
@@ -37,6 +38,13 @@ class Watched:
         self._condition = condition
         status = seen.status
         if status is not None and status.mission_id:
-            self._map, self._node = status.map, status.nearest_node
+            self._follow(status)
         has_tasks = said is not None and bool(said.waiting or said.running)
         return Robot(self.name, condition, now_s - self._since_s, self._map, self._node, has_tasks)
+
+    def _follow(self, status: MissionStatus) -> None:
+        """Who has arrived at a picture, or looks for its way, names no node: it is near the last one."""
+        if status.map != self._map:
+            self._map, self._node = status.map, None
+        if status.nearest_node is not None:
+            self._node = status.nearest_node

@@ -76,10 +76,10 @@ class Stage:
         self.in_the_way: list[Claim] = []
         self.fleet = Fleet(FleetSettings(**settings), self.bus, lambda _now_s: self.in_the_way)
 
-    def free(self, *names: str, node: int = 0) -> None:
+    def free(self, *names: str, node: int | None = 0, at: str = "flat") -> None:
         """They have nothing to do; said to everybody, as robots do."""
         for name in names:
-            status = MissionStatus(robot=name, mission_id="m", map="flat", nearest_node=node)
+            status = MissionStatus(robot=name, mission_id="m", map=at, nearest_node=node)
             for topic, message in (
                 (STATUS, status),
                 (ESTOP_STATE, EStopState(robot=name, engaged=False)),
@@ -170,6 +170,24 @@ def test_the_nearest_is_found_along_the_edges_as_the_rules_allow():
     stage.free("r2", node=3)
     stage.step(20.0)
     assert stage.bus.moved.pop() == ("a", ANY, "r1")
+
+
+@pytest.mark.parametrize(("at", "nearest"), [("flat", "r2"), ("yard", "r1")])
+def test_who_names_no_node_at_its_goal_is_near_the_last_one_of_that_map(at, nearest):
+    stage = Stage()
+    nodes = tuple(Node(node_id=n) for n in range(4))
+    edges = tuple(Edge(a=n, b=n + 1, length_m=1.0) for n in range(3))
+    stage.bus.map = MapReply(map="flat", revision=1, nodes=nodes, edges=edges)
+    stage.step(0.0)
+    stage.free("r2", node=3)
+    stage.step(1.0)
+    stage.free("r2", node=None, at=at)
+    stage.step(2.0)
+    stage.bus.tasks = (task("a", parameters={"goal_node": 2}),)
+    stage.free("r1", node=0)
+    stage.free("r2", node=None)
+    stage.step(LISTENS_S)
+    assert stage.bus.moved == [("a", ANY, nearest)]
 
 
 def test_no_more_robots_are_followed_than_it_may():
