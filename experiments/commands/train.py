@@ -12,7 +12,10 @@ app = typer.Typer(
 )
 
 WORLDS, SHARDS, PAIRS = 40, 4, 64  # 10,240 pairs, some 10 GB
-JUDGED = "sift,aliked-t16,aliked-n16,sift/equirectangular/topnav-attention,topnav-slim"
+JUDGED = (
+    "sift,aliked-t16,aliked-n16,sift/equirectangular/topnav-attention,topnav-keypoints,topnav-slim,"
+    "topnav-hardnet"
+)
 DATA, MODELS = Path("data/training/pairs"), Path("data/training")
 RecipeFile = Annotated[
     Path | None, typer.Option("--recipe", help="JSON with values that replace the recipe's.")

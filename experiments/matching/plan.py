@@ -24,6 +24,8 @@ DESCRIPTORS = (
     "tfeat",
     "mkd",
     "topnav-slim",
+    "topnav-hardnet",
+    "topnav-keypoints",
     "aliked-t16",
     "hardnet",
     "hardnet8",

@@ -17,6 +17,8 @@ CONTEXT = 4
 """Numbers of a keypoint."""
 SIZE_RAD, SCORE = 0.05, 0.1
 """Typical size and strength of SIFT's keypoints, so that their logarithms are about 0."""
+SHARPNESS = 15.0
+"""Factor of the descriptors' cosines with which training begins: that of `topnav train keypoints`."""
 ANSWERS = 3
 """Of a pair: logit of the same place, logit of the overlap, logarithm of the metres between them."""
 
@@ -84,10 +86,11 @@ class Attention(nn.Module):  # type: ignore[misc] # torch is not followed, see p
         """The answers of all layers, the last one last."""
         first, second = self.entered(one), self.entered(other)
         turned, turned_other = self.rotary(one.lonlat_rad), self.rotary(other.lonlat_rad)
+        cosines = one.descriptors @ other.descriptors.transpose(1, 2)
         answers = []
         for layer, answer in zip(self.layers, self.heads_out, strict=True):
             first, second = layer(first, second, turned, turned_other, one.present, other.present)
-            answers.append(answer(first, second, one.present, other.present))
+            answers.append(answer(first, second, cosines, one.present, other.present))
         return answers
 
     def last(self, one: Keypoints, other: Keypoints, hopeless: float) -> Assignment | None:
@@ -106,7 +109,8 @@ class Attention(nn.Module):  # type: ignore[misc] # torch is not followed, see p
                 pair = self.heads_out[number].of_pair(first, second, one.present, other.present)
                 if float(torch.sigmoid(pair[0, 0])) < hopeless:
                     return None
-        answer: Assignment = self.heads_out[-1](first, second, one.present, other.present)
+        cosines = one.descriptors @ other.descriptors.transpose(1, 2)
+        answer: Assignment = self.heads_out[-1](first, second, cosines, one.present, other.present)
         return answer
 
     def entered(self, points: Keypoints) -> torch.Tensor:
@@ -179,18 +183,24 @@ class Answer(nn.Module):  # type: ignore[misc]
     def __init__(self, width: int) -> None:
         super().__init__()
         self.project, self.matchable = nn.Linear(width, width), nn.Linear(width, 1)
+        self.sharpness = nn.Parameter(torch.tensor(SHARPNESS))
         self.pair = nn.Sequential(nn.Linear(2 * width, width), nn.GELU(), nn.Linear(width, ANSWERS))
 
     def forward(
         self,
         one: torch.Tensor,
         other: torch.Tensor,
+        cosines: torch.Tensor,
         present: torch.Tensor | None,
         present_other: torch.Tensor | None,
     ) -> Assignment:
-        """Double softmax of similarities, times that both are matchable at all."""
+        """Double softmax of similarities, times that both are matchable at all.
+
+        What the layers found is added to what the descriptors say by themselves: they need not learn anew
+        through a narrow width what 128 numbers told already.
+        """
         likeness = self.project(one) @ self.project(other).transpose(1, 2) / one.shape[-1] ** 0.5
-        likeness = likeness.float()
+        likeness = likeness.float() + self.sharpness * cosines.float()
         if present is not None:
             likeness = likeness.masked_fill(~present[:, :, None], -1e4)
         if present_other is not None:

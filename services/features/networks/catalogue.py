@@ -87,6 +87,24 @@ OWN: tuple[TrainedModel, ...] = (
         563_984,
         "48f9ded9bf4187f32a51ebca5db1d7cfd781858cae222b267412c8cf296def60",
     ),
+    _own(
+        "topnav-hardnet",
+        "topnav-hardnet",
+        2_674_520,
+        "01878c3814afe70ce8c7fd0bd946a5b3f8a02d1eda97534da8abb8602c99c3bb",
+    ),
+    _own(
+        "topnav-keypoints",
+        "topnav-keypoints",
+        787_920,
+        "02c9d19ef3d62bf101e4f67983df86c03b83dc03587e216d0fec74d5708552a7",
+    ),
+    _own(
+        "topnav-attention-sift",
+        "topnav-attention",
+        576_550,
+        "3260514f0b78c20591800b91ea9526b86e6f17702f555ae83abaae9a597a072e",
+    ),
 )
 MODELS: tuple[TrainedModel, ...] = (
     _file("aliked-t16", "aliked-t16.pth", "BSD-3-Clause", "Shiaoming/ALIKED"),

@@ -20,6 +20,7 @@ PATCH_NETWORKS = {
     "sosnet": "SosNet",
     "mkd": "Mkd",
     "topnav-slim": "Slim",
+    "topnav-hardnet": "FullHardNet",
 }
 KEYPOINT_NETWORKS = {
     "aliked-t16": "Aliked",
@@ -30,6 +31,7 @@ KEYPOINT_NETWORKS = {
     "xfeat": "XFeat",
     "dedode": "DeDoDe",
     "superpoint": "SuperPoint",
+    "topnav-keypoints": "Keypoints",
 }
 OWN_MATCHERS = {"topnav-attention": "AttentionMatcher"}
 """Trained here, as are the extractors whose names begin with topnav: nobody is to take one for another's."""

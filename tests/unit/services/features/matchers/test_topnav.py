@@ -8,7 +8,11 @@ torch = pytest.importorskip("torch")
 from services.features.matchers.mutual_ratio import MutualRatio  # noqa: E402
 from services.features.matchers.topnav import LEAST_RIGHT, LOOKED_AT, AttentionMatcher  # noqa: E402
 from services.features.networks.attention import Assignment  # noqa: E402
+from services.features.pipeline.extraction import extract  # noqa: E402
 from services.features.pipeline.interfaces import FeatureSet, Profile, Runtime  # noqa: E402
+from services.features.pipeline.named_pipelines import combined  # noqa: E402
+from services.features.pipeline.pipeline import Pipeline  # noqa: E402
+from shared.geometry.sphere import wrap_rad  # noqa: E402
 
 PROFILE = Profile("sift", matcher="topnav-attention")
 
@@ -34,6 +38,19 @@ class Answers:
 def matcher():
     torch.manual_seed(1)
     return AttentionMatcher(PROFILE, "euclidean", Runtime(trained=False))
+
+
+def test_trained_it_finds_the_turn_between_two_views(room):
+    pipeline = Pipeline(combined("sift", "equirectangular", "topnav-attention"))
+    picture = room(0.0, 0.0, 0.0, 400)
+    here, there = (
+        extract(view, pipeline.extractor, pipeline.representation, pipeline.profile)
+        for view in (picture, np.roll(picture, 80, axis=1))
+    )
+    (found,) = pipeline.matcher.match(here, [there])
+    moved = there.lonlat_rad[found.pairs[:, 1], 0] - here.lonlat_rad[found.pairs[:, 0], 0]
+    assert len(found) > 100
+    assert np.mean(np.abs(wrap_rad(moved + np.deg2rad(36.0))) < np.deg2rad(1.0)) > 0.9
 
 
 def some(count: int, seed: int) -> FeatureSet:

@@ -23,10 +23,24 @@ from services.features.pipeline.plugins import (  # noqa: E402
 )
 from shared.geometry.sphere import wrap_rad  # noqa: E402
 
-WIDTHS = {"aliked-t16": 64, "xfeat": 64, "superpoint": 256, "dedode": 256}
+WIDTHS = {
+    "aliked-t16": 64,
+    "xfeat": 64,
+    "superpoint": 256,
+    "dedode": 256,
+    "topnav-keypoints": 64,
+}
 SLOW = ("dedode",)
 UNTRAINED = Runtime(trained=False)
-TRAINED = ("aliked-t16", "aliked-n16", "tfeat", "mkd", "topnav-slim")
+TRAINED = (
+    "aliked-t16",
+    "aliked-n16",
+    "tfeat",
+    "mkd",
+    "topnav-slim",
+    "topnav-hardnet",
+    "topnav-keypoints",
+)
 
 
 @pytest.fixture
