@@ -18,6 +18,14 @@ from shared.queries import RefusedError
 from shared.topics import ESTOP_STATE, MAP_DELTA, MAP_READ, QUEUE, STATUS
 from shared.transport.keys import ANY
 
+LINE = MapReply(
+    map="flat",
+    revision=1,
+    nodes=tuple(Node(node_id=n) for n in range(4)),
+    edges=tuple(Edge(a=n, b=n + 1, length_m=1.0) for n in range(3)),
+)
+"""Four nodes, a metre apart."""
+
 
 class Inbox:
     """What waits on one topic."""
@@ -155,16 +163,14 @@ def test_one_whose_dispatch_alone_is_silent_gives_back_what_it_would_never_begin
 def test_the_nearest_is_found_along_the_edges_as_the_rules_allow():
     stage = Stage()
     stage.bus.tasks = (task("a", parameters={"goal_node": 2}),)
-    nodes = tuple(Node(node_id=n) for n in range(4))
-    edges = tuple(Edge(a=n, b=n + 1, length_m=1.0) for n in range(3))
-    stage.bus.map = MapReply(map="flat", revision=1, nodes=nodes, edges=edges)
+    stage.bus.map = LINE
     stage.step(0.0)
     stage.free("r1", node=0)
     stage.free("r2", node=3)
     stage.step(LISTENS_S)
     assert stage.bus.moved.pop() == ("a", ANY, "r2")
     away = OneWay(name="away", edges=((2, 3),))
-    stage.bus.map = MapReply(map="flat", revision=1, nodes=nodes, edges=edges, rules=(away,))
+    stage.bus.map = LINE.model_copy(update={"rules": (away,)})
     stage.bus.subscribe(MAP_DELTA, map="*").waiting.append(MapDelta(map="flat", revision=2))
     stage.free("r1", node=0)
     stage.free("r2", node=3)
@@ -175,9 +181,7 @@ def test_the_nearest_is_found_along_the_edges_as_the_rules_allow():
 @pytest.mark.parametrize(("at", "nearest"), [("flat", "r2"), ("yard", "r1")])
 def test_who_names_no_node_at_its_goal_is_near_the_last_one_of_that_map(at, nearest):
     stage = Stage()
-    nodes = tuple(Node(node_id=n) for n in range(4))
-    edges = tuple(Edge(a=n, b=n + 1, length_m=1.0) for n in range(3))
-    stage.bus.map = MapReply(map="flat", revision=1, nodes=nodes, edges=edges)
+    stage.bus.map = LINE
     stage.step(0.0)
     stage.free("r2", node=3)
     stage.step(1.0)
