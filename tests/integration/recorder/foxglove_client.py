@@ -14,6 +14,8 @@ PROTOCOL = "foxglove.sdk.v1"
 CLOSE_S = 0.2
 DATA, DATA_HEAD = 1, struct.Struct("<BIQ")
 """First byte of a message; then the number of the subscription and the time in nanoseconds."""
+UNKNOWN = "Unknown channel ID: "
+"""What foxglove-sdk 0.30 says to a client that asks for a channel at once: it tells of it, then knows it."""
 
 
 class FoxgloveClient:
@@ -48,6 +50,9 @@ class FoxgloveClient:
             number = len(self._names)
             self._names[number] = name
             asked.append({"id": number, "channelId": self.channels[name]["id"]})
+        self._subscribe(asked)
+
+    def _subscribe(self, asked: list[dict[str, int]]) -> None:
         self._socket.send(json.dumps({"op": "subscribe", "subscriptions": asked}))
 
     def until(self, condition: Callable[[], object], timeout_s: float) -> bool:
@@ -74,3 +79,15 @@ class FoxgloveClient:
             self.server = told
         elif told["op"] == "advertise":
             self.channels |= {channel["topic"]: channel for channel in told["channels"]}
+        elif told["op"] == "status" and told["message"].startswith(UNKNOWN):
+            self._ask_again(int(told["message"].removeprefix(UNKNOWN)))
+
+    def _ask_again(self, channel_id: int) -> None:
+        refused = {name for name, channel in self.channels.items() if channel["id"] == channel_id}
+        self._subscribe(
+            [
+                {"id": number, "channelId": channel_id}
+                for number, name in self._names.items()
+                if name in refused
+            ]
+        )
