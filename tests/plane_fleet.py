@@ -1,6 +1,7 @@
 """Several robots at once on a true floor plan, each with its planner and drive, and the rights of way."""
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
@@ -9,6 +10,9 @@ import numpy as np
 
 from services.drive.core import Memory
 from services.drive.limits import DriveLimits
+from services.fleet import choice
+from services.fleet.choice import choose
+from services.fleet.condition import READY
 from services.fleet.traffic.nearness import Nearness
 from services.fleet.traffic.rights import Claim, Rights
 from services.planner.missions.goto import Goto
@@ -17,6 +21,8 @@ from services.planner.profiles import DEFAULT
 from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.routing import metres_to
+from shared.messages.tasks import Task
+from shared.transport.keys import ANY
 from simulator.scene.parts import Material, Part
 from simulator.scene.shapes import post
 from simulator.world.freespace import FreeSpace
@@ -145,7 +151,7 @@ class Outcome:
 
 
 class Fleet:
-    """Robots that begin at some nodes share tasks: each is taken by the nearest that is free."""
+    """Robots that begin at some nodes share tasks, which the fleet's service hands out."""
 
     def __init__(self, desk: Desk, space: FreeSpace, starts: Sequence[int], seed: int) -> None:
         generators = [np.random.default_rng([seed, number]) for number in range(len(starts))]
@@ -159,14 +165,19 @@ class Fleet:
 
     def play(self, goals: Sequence[int], max_steps: int) -> Outcome:
         """Drive to all goals."""
-        limits, waiting, step, nearest_m = DriveLimits(), list(goals), 0, math.inf
+        waiting = [
+            Task(task_id=f"t{number}", robot=ANY, kind="goto", map=MAP, parameters={"goal_node": goal})
+            for number, goal in enumerate(goals)
+        ]
+        by_name, overtaken = {robot.name: robot for robot in self.robots}, Counter[str]()
+        limits, step, nearest_m = DriveLimits(), 0, math.inf
         while step < max_steps and (waiting or any(robot.has_task for robot in self.robots)):
             self._desk.now_s = step * STEP_S
             self._send_away()
-            while waiting and (free := [robot for robot in self.robots if robot.idle]):
-                to_m = metres_to(self._desk.maps.graph, waiting[0])
-                nearest = min(free, key=lambda robot: to_m.get(robot.node or 0, math.inf))
-                nearest.begin(waiting.pop(0), task=True)
+            for move in choose(waiting, *self._idle_and_all(), self._way_m, overtaken):
+                waiting.remove(move.task)
+                overtaken.update(move.overtaken)
+                by_name[move.to].begin(_goal(move.task), task=True)
             for robot in self.robots:
                 robot.step(limits)
             spots = [robot.world.pose[:2] for robot in self.robots]
@@ -183,6 +194,13 @@ class Fleet:
             sent=self.sent,
         )
 
+    def _idle_and_all(self) -> tuple[list[choice.Robot], list[choice.Robot]]:
+        robots = [choice.Robot(robot.name, READY, map=MAP, node=robot.node) for robot in self.robots]
+        return [told for told, robot in zip(robots, self.robots, strict=True) if robot.idle], robots
+
+    def _way_m(self, task: Task, robot: choice.Robot) -> float:
+        return metres_to(self._desk.maps.graph, _goal(task)).get(robot.node or 0, math.inf)
+
     def _send_away(self) -> None:
         """As the fleet service does with those that have nothing to do and stand in the way."""
         if self._desk.rights is None:
@@ -192,3 +210,9 @@ class Fleet:
             if robot.idle:
                 robot.begin(claim.room[-1], task=False)
                 self.sent += 1
+
+
+def _goal(task: Task) -> int:
+    goal = task.parameters["goal_node"]
+    assert isinstance(goal, int)
+    return goal

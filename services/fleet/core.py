@@ -4,11 +4,10 @@ So this process may end at any moment, and two of it say the same or are refused
 where it waits, and a robot that begins it at that very moment keeps it.
 """
 
-import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from services.fleet.condition import Condition
+from services.fleet.choice import Move, Robot, Way, choose
 from shared.messages.tasks import Task
 from shared.transport.keys import ANY
 
@@ -28,34 +27,6 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class Robot:
-    """One robot as it is now.
-
-    Attributes:
-        lasts_s: for how long its condition has been of this kind.
-        map: in which it was last on a mission; "" where nobody knows.
-        node: of that map at which it is; None where nobody knows.
-        has_tasks: something waits or runs in its own queue, as it says.
-    """
-
-    name: str
-    condition: Condition
-    lasts_s: float = 0.0
-    map: str = ""
-    node: int | None = None
-    has_tasks: bool = False
-
-
-@dataclass(frozen=True)
-class Move:
-    """Put a task into the queue `to`, a robot's or that of the fleet."""
-
-    task: Task
-    to: str
-    why: str
-
-
-@dataclass(frozen=True)
 class Plan:
     """What to do now.
 
@@ -69,35 +40,26 @@ class Plan:
     alarm: str = ""
 
 
-Way = Callable[[Task, Robot], float]
-"""Metres from where a robot is to where a task begins; infinite where nobody knows."""
-
-
-def decide(tasks: Sequence[Task], robots: Iterable[Robot], way_m: Way, limits: Limits) -> Plan:
-    """Take back what waits in vain, then give each task that no robot has to the nearest that is free.
+def decide(
+    tasks: Sequence[Task], robots: Iterable[Robot], way_m: Way, limits: Limits, overtaken: Mapping[str, int]
+) -> Plan:
+    """Take back what waits in vain, then give tasks that no robot has to robots that are free.
 
     Args:
         tasks: of the fleet that have not ended, in the order in which they are to begin.
         robots: all that were heard of, and all that have a task.
         way_m: asked only of robots in the map of the task.
         limits: what decides whether a robot gets a task and keeps it.
+        overtaken: how often tasks that wait were overtaken so far, by id.
     """
     known = {robot.name: robot for robot in robots}
     moves = [move for task in tasks if (move := _taken_back(task, known, limits)) is not None]
     loaded = {task.robot for task in tasks}
     free = [r for r in known.values() if r.condition.is_ready and not r.has_tasks and r.name not in loaded]
-    why = ""
-    for task in tasks:
-        if task.state != "queued" or task.robot != ANY:
-            continue
-        able = _able(task, free, known)
-        if able:
-            nearest = min(able, key=lambda robot: (_way_m(task, robot, way_m), robot.name))
-            free.remove(nearest)
-            moves.append(Move(task, nearest.name, _told(_way_m(task, nearest, way_m))))
-        elif not why:
-            why = _waits_for(known)
-    return Plan(tuple(moves), why, _alarm(tasks, known, limits))
+    waiting = [task for task in tasks if task.state == "queued" and task.robot == ANY]
+    given = list(choose(waiting, free, list(known.values()), way_m, overtaken))
+    why = _waits_for(known) if len(given) < len(waiting) else ""
+    return Plan((*moves, *given), why, _alarm(tasks, known, limits))
 
 
 def _taken_back(task: Task, known: Mapping[str, Robot], limits: Limits) -> Move | None:
@@ -110,25 +72,6 @@ def _taken_back(task: Task, known: Mapping[str, Robot], limits: Limits) -> Move 
     if condition.is_ready or robot.lasts_s < after_s[condition.kind]:
         return None
     return Move(task, ANY, f"{robot.name}: {condition.why}")
-
-
-def _able(task: Task, free: Sequence[Robot], known: Mapping[str, Robot]) -> list[Robot]:
-    """Those of the free robots that may be in the task's map; all, where none that is heard of may be."""
-
-    def may_be_there(robot: Robot) -> bool:
-        return robot.map in ("", task.map)
-
-    if not any(may_be_there(robot) for robot in known.values() if robot.condition.kind != "silent"):
-        return list(free)
-    return [robot for robot in free if may_be_there(robot)]
-
-
-def _way_m(task: Task, robot: Robot, way_m: Way) -> float:
-    return way_m(task, robot) if robot.map == task.map and robot.node is not None else math.inf
-
-
-def _told(metres: float) -> str:
-    return "the way there is not known" if metres == math.inf else f"{metres:.1f} m away"
 
 
 def _waits_for(known: Mapping[str, Robot]) -> str:

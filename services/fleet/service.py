@@ -5,10 +5,12 @@ import math
 import threading
 import time
 import uuid
+from collections import Counter
 from collections.abc import Callable
 
 from services.fleet.beginnings import first_node
-from services.fleet.core import Move, Plan, Robot, decide
+from services.fleet.choice import Move, Robot
+from services.fleet.core import Plan, decide
 from services.fleet.maps import Maps
 from services.fleet.settings import FleetSettings
 from services.fleet.traffic.desk import Desk
@@ -34,6 +36,8 @@ first would get what another one is nearer to."""
 class Fleet:
     """Gives the tasks for whichever robot to robots. Holds nothing that a restart would need.
 
+    It counts how often tasks were overtaken; a restart lets them be overtaken as often again.
+
     Args:
         to_send: robots with nothing to do that stand in the way of others, by the time now.
     """
@@ -48,6 +52,7 @@ class Fleet:
         self._began_s: float | None = None
         self._count, self._alarm = 0, ""
         self._sent: dict[str, float] = {}
+        self._overtaken: Counter[str] = Counter()
 
     def step(self, now_s: float) -> None:
         """Do what there is to do; `now_s` is monotonic.
@@ -64,7 +69,15 @@ class Fleet:
             if is_robot(name) and len(self._robots) < self._settings.max_robots:
                 self._robots[name] = Watched(self._bus, name, now_s)
         robots = [watched.look(now_s, self._limits.battery) for watched in self._robots.values()]
-        plan = decide(queue.tasks, robots, lambda task, robot: self._way_m(task, robot, now_s), self._limits)
+        waiting = {task.task_id for task in queue.tasks if task.robot == ANY}
+        self._overtaken = Counter({one: count for one, count in self._overtaken.items() if one in waiting})
+        plan = decide(
+            queue.tasks,
+            robots,
+            lambda task, robot: self._way_m(task, robot, now_s),
+            self._limits,
+            self._overtaken,
+        )
         self._tell(queue, plan)
         for move in plan.moves if now_s - self._began_s >= LISTENS_S else ():
             self._move(move)
@@ -87,6 +100,7 @@ class Fleet:
         except RefusedError as error:
             self._bus.counters.count("not moved", str(error))
         else:
+            self._overtaken.update(move.overtaken)
             log.info("task %s: from %s to %s, %s", task.task_id, task.robot, move.to, move.why)
 
     def _send_away(self, claim: Claim) -> None:

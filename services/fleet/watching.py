@@ -1,7 +1,7 @@
 """One robot as its services tell of it, and since when it stands as it does."""
 
+from services.fleet.choice import Robot
 from services.fleet.condition import Condition, condition_of
-from services.fleet.core import Robot
 from shared.bus import Bus
 from shared.messages.missions import MissionStatus
 from shared.messages.tasks import QueueStatus

@@ -104,8 +104,8 @@ class Planner:
         """Seconds that each write took, and what went wrong."""
         took_s, wrong = [], []
         with client_of(self._endpoint) as bus:
-            deltas = bus.subscribe(MAP_DELTA, map="*")
             maps = RemoteMap(bus, ONE if self._one else f"m{self._number}", TIMEOUT_S)
+            deltas = bus.subscribe(MAP_DELTA, map=maps.name)
             assert wait_until(lambda: loaded(maps), START_S, 0.1)
             for at_s, operations in self._due():
                 while time.time() < begin_s + at_s:

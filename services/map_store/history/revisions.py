@@ -16,6 +16,8 @@ from services.map_store.storage.graph import Change, Graph, Step
 from services.map_store.storage.rows import pack_history, pack_lost, unpack_steps, write_change
 from services.map_store.storage.tables import revisions
 
+INSERT = insert(revisions)
+
 
 @dataclass(frozen=True)
 class Revision:
@@ -51,7 +53,7 @@ def record(
         "steps": entry.steps,
         "sha256": sha256,
     }
-    connection.execute(insert(revisions).values({**sealed(revisions, values), "content": content}))
+    connection.execute(INSERT, {**sealed(revisions, values), "content": content})
     now = replace(
         found,
         revision=entry.revision,
@@ -151,7 +153,7 @@ def give_up(connection: Connection, map_id: int, revision: int, now_ns: int) -> 
     content, sha256 = pack_lost()
     values = {"map_id": map_id, "revision": revision, "author": "", "stamp_ns": now_ns, "undoes": None}
     row = sealed(revisions, {**values, "steps": 0, "sha256": sha256})
-    connection.execute(insert(revisions).values({**row, "content": content}))
+    connection.execute(INSERT, {**row, "content": content})
 
 
 def _headers(map_id: int) -> Select[Any]:

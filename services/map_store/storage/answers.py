@@ -4,11 +4,17 @@ An asker whose answer is lost, with the network or with the map store that gave 
 is kept with the write itself, in one transaction.
 """
 
-from sqlalchemy import Connection, delete, func, insert, select
+from sqlalchemy import Connection, bindparam, delete, func, insert, select
 
 from services.map_store.integrity.seals import intact, sealed
 from services.map_store.storage.tables import answers
 
+OF_REQUEST = select(answers).where(
+    answers.c.request_id == bindparam("request"), answers.c.map == bindparam("name")
+)
+NEWEST, INSERT = select(func.max(answers.c.number)), insert(answers)
+DELETE_SAME = delete(answers).where(answers.c.request_id == bindparam("request"))
+DELETE_OLD = delete(answers).where(answers.c.number <= bindparam("last"))
 KEPT = 10_000
 """The newest answers: ten minutes of 16 writes a second, and who asks again does so within seconds."""
 
@@ -17,8 +23,7 @@ def revision_of(connection: Connection, map_name: str, request_id: str) -> int |
     """What was answered to this request about this map; None for a new one, and for one without an id."""
     if not request_id:
         return None
-    same = answers.c.request_id == request_id, answers.c.map == map_name
-    row = connection.execute(select(answers).where(*same)).first()
+    row = connection.execute(OF_REQUEST, {"request": request_id, "name": map_name}).first()
     return row.revision if row is not None and intact(answers, row) else None
 
 
@@ -26,11 +31,11 @@ def keep(connection: Connection, map_name: str, request_id: str, revision: int) 
     """Remember the answer to a request that has an id, and forget old ones."""
     if not request_id:
         return
-    number = (connection.execute(select(func.max(answers.c.number))).scalar() or 0) + 1
+    number = (connection.execute(NEWEST).scalar() or 0) + 1
     values = {"number": number, "request_id": request_id, "map": map_name, "revision": revision}
-    connection.execute(delete(answers).where(answers.c.request_id == request_id))  # it may be damaged
-    connection.execute(insert(answers).values(sealed(answers, values)))
-    connection.execute(delete(answers).where(answers.c.number <= number - KEPT))
+    connection.execute(DELETE_SAME, {"request": request_id})  # it may be damaged
+    connection.execute(INSERT, sealed(answers, values))
+    connection.execute(DELETE_OLD, {"last": number - KEPT})
 
 
 def damaged(connection: Connection) -> list[int]:

@@ -4,7 +4,7 @@ import hashlib
 from collections.abc import Iterable, Mapping, Set
 from typing import Any
 
-from sqlalchemy import Column, Connection, Select, delete, func, insert, select, update
+from sqlalchemy import Connection, Select, bindparam, delete, func, insert, select, update
 
 from services.map_store.errors import CorruptError, MissingError
 from services.map_store.integrity.seals import matches
@@ -13,6 +13,12 @@ from shared.messages.features import Features
 from shared.topics import FEATURES
 from shared.wire import WireError, decode, encode
 
+KNOWN = select(tables.blobs.c.sha256).where(tables.blobs.c.sha256.in_(bindparam("names", expanding=True)))
+LINKED = select(tables.map_blobs.c.sha256).where(
+    tables.map_blobs.c.map_id == bindparam("of"),
+    tables.map_blobs.c.sha256.in_(bindparam("names", expanding=True)),
+)
+DATA = select(tables.blobs.c.data).where(tables.blobs.c.sha256 == bindparam("name"))
 CHUNK = 500
 """Values in one SQL list; SQLite's oldest limit is 999."""
 
@@ -38,7 +44,7 @@ def unpack_features(data: bytes) -> Features:
 def put(connection: Connection, map_id: int, contents: Mapping[str, bytes]) -> None:
     """Keep `contents` (checksum -> bytes) for a map; good bytes are not written again, damaged ones are."""
     names = list(contents)
-    known = _existing(connection, select(tables.blobs.c.sha256), tables.blobs.c.sha256, names)
+    known = _existing(connection, KNOWN, names)
     for name in known:
         _heal(connection, name, contents[name])
     rows = [{"sha256": n, "size": len(contents[n]), "data": contents[n]} for n in names if n not in known]
@@ -49,15 +55,14 @@ def put(connection: Connection, map_id: int, contents: Mapping[str, bytes]) -> N
 
 def share(connection: Connection, map_id: int, names: Set[str]) -> None:
     """Keep blobs of another map for this one as well; MissingError when they are gone with that map."""
-    there = _existing(connection, select(tables.blobs.c.sha256), tables.blobs.c.sha256, sorted(names))
+    there = _existing(connection, KNOWN, sorted(names))
     if gone := names - there:
         raise MissingError(f"{len(gone)} blobs are no longer there; was the map they belong to deleted?")
     _link(connection, map_id, sorted(names))
 
 
 def _link(connection: Connection, map_id: int, names: list[str]) -> None:
-    mine = select(tables.map_blobs.c.sha256).where(tables.map_blobs.c.map_id == map_id)
-    linked = _existing(connection, mine, tables.map_blobs.c.sha256, names)
+    linked = _existing(connection, LINKED, names, of=map_id)
     links = [{"map_id": map_id, "sha256": name} for name in names if name not in linked]
     if links:
         connection.execute(insert(tables.map_blobs), links)
@@ -73,7 +78,7 @@ def _heal(connection: Connection, name: str, data: bytes) -> None:
 
 def get(connection: Connection, name: str) -> bytes:
     """Read one blob; CorruptError when it is gone or its checksum does not match."""
-    data = connection.execute(select(tables.blobs.c.data).where(tables.blobs.c.sha256 == name)).scalar()
+    data = connection.execute(DATA, {"name": name}).scalar()
     if data is None:
         raise CorruptError(f"blob {name[:12]} is missing")
     if not matches(data, name):
@@ -100,7 +105,7 @@ def unreadable(connection: Connection, names: Iterable[str]) -> dict[str, str]:
 
 def given_up(connection: Connection, name: str) -> bool:
     """Whether a repair emptied this blob because its bytes were damaged."""
-    data = connection.execute(select(tables.blobs.c.data).where(tables.blobs.c.sha256 == name)).scalar()
+    data = connection.execute(DATA, {"name": name}).scalar()
     return data == b""
 
 
@@ -152,7 +157,7 @@ def measure(connection: Connection) -> None:
 def relink(connection: Connection, map_id: int, names: Set[str]) -> int:
     """Link a map to those of these blobs that are there, and unlink what is not; returns how many it was."""
     links = tables.map_blobs
-    there = _existing(connection, select(tables.blobs.c.sha256), tables.blobs.c.sha256, sorted(names))
+    there = _existing(connection, KNOWN, sorted(names))
     missing = there - owned(connection, map_id)
     dangling = links.c.sha256.not_in(select(tables.blobs.c.sha256))
     cut = connection.execute(delete(links).where(links.c.map_id == map_id, dangling)).rowcount
@@ -169,9 +174,9 @@ def drop(connection: Connection, map_id: int) -> None:
     connection.execute(delete(tables.blobs).where(~used.exists()))
 
 
-def _existing(connection: Connection, query: Select[Any], column: Column[str], names: list[str]) -> set[str]:
+def _existing(connection: Connection, query: Select[Any], names: list[str], **where: int) -> set[str]:
     found: set[str] = set()
     for start in range(0, len(names), CHUNK):
-        chunk = query.where(column.in_(names[start : start + CHUNK]))
-        found.update(str(name) for name in connection.execute(chunk).scalars())
+        chunk = {"names": names[start : start + CHUNK], **where}
+        found.update(str(name) for name in connection.execute(query, chunk).scalars())
     return found

@@ -15,6 +15,11 @@ from services.map_store.storage.tables import edges, marks, nodes
 from shared.mapgraph.marks import by_key
 from shared.messages.maps import Edge, Node
 
+THIS_EDGE = edges.c.map_id == bindparam("of"), edges.c.a == bindparam("at_a"), edges.c.b == bindparam("at_b")
+THIS_NODE = nodes.c.map_id == bindparam("of"), nodes.c.node_id == bindparam("at")
+DELETE_EDGE, DELETE_NODE = delete(edges).where(*THIS_EDGE), delete(nodes).where(*THIS_NODE)
+UPDATE_NODE, INSERT_NODE, INSERT_EDGE = update(nodes).where(*THIS_NODE), insert(nodes), insert(edges)
+
 STEPS: TypeAdapter[tuple[Step, ...]] = TypeAdapter(tuple[Step, ...])
 
 
@@ -55,17 +60,16 @@ def parse_edge(row: Row[Any]) -> Edge:
 def write_change(connection: Connection, map_id: int, revision: int, change: Change) -> None:
     """Write what changed; edges go first and come last because they refer to nodes."""
     nodes_now, edges_now = change.graph.nodes, change.graph.edges
-    this_edge = edges.c.map_id == map_id, edges.c.a == bindparam("at_a"), edges.c.b == bindparam("at_b")
-    this_node = nodes.c.map_id == map_id, nodes.c.node_id == bindparam("at")
-    _each(connection, delete(edges).where(*this_edge), [{"at_a": a, "at_b": b} for a, b in change.edges])
-    _each(connection, delete(nodes).where(*this_node), [{"at": n} for n in change.nodes - nodes_now.keys()])
+    known, joined = change.before.nodes, change.edges & change.before.edges.keys()
+    _each(connection, DELETE_EDGE, [{"of": map_id, "at_a": a, "at_b": b} for a, b in joined])
+    gone = change.nodes - nodes_now.keys()
+    _each(connection, DELETE_NODE, [{"of": map_id, "at": n} for n in gone])
     made = {n: node_row(map_id, revision, nodes_now[n]) for n in sorted(change.nodes & nodes_now.keys())}
-    known = change.before.nodes
-    _each(connection, insert(nodes), [row for n, row in made.items() if n not in known])
-    replaced = [{"at": n, **_without_key(row)} for n, row in made.items() if n in known]
-    _each(connection, update(nodes).where(*this_node), replaced)
-    joined = [edge_row(map_id, revision, edges_now[k]) for k in sorted(change.edges & edges_now.keys())]
-    _each(connection, insert(edges), joined)
+    _each(connection, INSERT_NODE, [row for n, row in made.items() if n not in known])
+    replaced = [{"of": map_id, "at": n, **_without_key(row)} for n, row in made.items() if n in known]
+    _each(connection, UPDATE_NODE, replaced)
+    put = [edge_row(map_id, revision, edges_now[k]) for k in sorted(change.edges & edges_now.keys())]
+    _each(connection, INSERT_EDGE, put)
     if change.marks:
         write_marks(connection, map_id, revision, change.graph.marks)
 
