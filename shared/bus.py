@@ -66,6 +66,7 @@ class Bus:
     def __init__(self, session: zenoh.Session) -> None:
         self._session = session
         self._declared: list[Any] = []
+        self._subscribers: dict[Inbox[Any], Any] = {}
         self.wake = threading.Event()
         self.counters = Counters()
 
@@ -93,8 +94,17 @@ class Bus:
         self._declared.append(declared)
         return Publisher(declared, topic)
 
-    def subscribe(self, topic: Topic[M], wake: threading.Event | None = None, **names: str) -> Inbox[M]:
-        """Declare a subscriber; `wake` replaces the bus's own event."""
+    def subscribe(
+        self, topic: Topic[M], wake: threading.Event | None = None, *, past: bool = True, **names: str
+    ) -> Inbox[M]:
+        """Declare a subscriber.
+
+        Args:
+            topic: what to hear.
+            wake: replaces the bus's own event.
+            past: of a recovered topic, get the last messages from before as well.
+            names: of whom; "*" for all.
+        """
         inbox = Inbox(
             topic.message, topic.max_bytes, CAPACITY[topic.delivery], wake or self.wake, self.counters
         )
@@ -110,13 +120,22 @@ class Bus:
                 self._session,
                 key,
                 store,
-                history=ext.HistoryConfig(detect_late_publishers=True, max_samples=RECOVERY_CACHE),
+                history=ext.HistoryConfig(detect_late_publishers=True, max_samples=RECOVERY_CACHE)
+                if past
+                else None,
                 recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
             )
         else:
             declared = self._session.declare_subscriber(key, store)
         self._declared.append(declared)
+        self._subscribers[inbox] = declared
         return inbox
+
+    def unsubscribe(self, inbox: Inbox[Any]) -> None:
+        """Undeclare a subscriber: nobody sends any more what only it wanted."""
+        declared = self._subscribers.pop(inbox)
+        self._declared.remove(declared)
+        declared.undeclare()
 
     def tap(self, topic: Topic[M], store: Callable[[str, bytes], None]) -> None:
         """Hand every payload of a topic, whosever it is, to `store` with its key, on Zenoh's threads."""
@@ -192,6 +211,7 @@ class Bus:
                 declared.undeclare()
         finally:
             self._declared.clear()
+            self._subscribers.clear()
             self._session.close()  # type: ignore[no-untyped-call]
 
 

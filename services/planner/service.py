@@ -23,7 +23,6 @@ from shared.topics import (
     FEATURES,
     HEADING,
     MANUAL,
-    MAP_DELTA,
     MISSION,
     MISSION_KINDS,
     ODOMETRY,
@@ -53,7 +52,6 @@ class Planner:
         self._ranges_in = bus.subscribe(RANGES, robot=robot)
         self._velocities = bus.subscribe(VELOCITY, robot=robot)
         self._odometry = bus.subscribe(ODOMETRY, robot=robot)
-        self._deltas = bus.subscribe(MAP_DELTA, map="*")
         self._stops = bus.subscribe(ESTOP_STATE, robot=robot)
         self._wishes = bus.subscribe(MANUAL, robot=robot)
         self._planners = bus.subscribe(STATUS, robot=robot)
@@ -86,7 +84,7 @@ class Planner:
         by_hand = [wish.who for wish in self._wishes.take_all() if wish.action == "drive"]
         if self.control.state == "running":
             self._pause_where_held(by_hand[-1] if by_hand else "", now_s)
-        for delta in self._deltas.take_all():
+        for delta in self.control.changes():
             self.control.follow_store(delta)
         self._follow_robot(now_s)
         self._features = self._features_in.take() or self._features
@@ -139,7 +137,7 @@ class Planner:
             request.leave()
         while (question := self._kind_requests.take()) is not None:
             question.leave()
-        self._deltas.take_all()
+        self.control.changes()
 
     def _ready(self, features: Features, ranges: Ranges) -> bool:
         """In lockstep both must be of one frame; the simulator repeats them until they are answered.

@@ -4,7 +4,7 @@ pytest -q -s tests/benchmarks/test_hundred_planners.py
 PLANNERS=10,100 MAPS=own,one SECONDS=120 pytest -q -s tests/benchmarks/test_hundred_planners.py
 
 What one planner wrote while it explored the plan of the apartment is written by each again, at the pace of
-the robot and from a bus session of its own, which hears of all writes as planners do. Sessions are clients of
+the robot and from a bus session of its own, which hears of its map as planners do. Sessions are clients of
 the router, as on a secured bus: peers would each be linked to each other, 4,950 links for a hundred.
 MAPS=own: each maps a place of its own. MAPS=one: all drive in one map, and note an edge as driven every three
 seconds.
@@ -22,13 +22,13 @@ import pytest
 import zenoh
 
 from services.drive.limits import DriveLimits
+from services.planner.control.map_changes import MapChanges
 from services.planner.missions.explore import FrontierExploration
 from services.planner.profiles import DEFAULT
 from services.planner.remote import RemoteMap
 from shared.bus import Bus, open_bus, wait_until
 from shared.messages.maps import AddNode, Operation, PutEdge
 from shared.queries import AbsentError, QueryError, TimedOutError
-from shared.topics import MAP_DELTA
 from shared.transport.session_config import looker_config
 from tests.benchmarks.test_map_store_databases import features_of_a_place
 from tests.integration.map_store.conftest import START_S, Process
@@ -104,13 +104,16 @@ class Planner:
         """Seconds that each write took, and what went wrong."""
         took_s, wrong = [], []
         with client_of(self._endpoint) as bus:
-            maps = RemoteMap(bus, ONE if self._one else f"m{self._number}", TIMEOUT_S)
-            deltas = bus.subscribe(MAP_DELTA, map=maps.name)
+            maps, deltas = (
+                RemoteMap(bus, ONE if self._one else f"m{self._number}", TIMEOUT_S),
+                MapChanges(bus),
+            )
+            deltas.follow(maps.name)
             assert wait_until(lambda: loaded(maps), START_S, 0.1)
             for at_s, operations in self._due():
                 while time.time() < begin_s + at_s:
                     for delta in deltas.take_all():
-                        if delta.map == maps.name and delta.revision > maps.revision:
+                        if delta.revision > maps.revision:
                             maps.follow(delta)
                     time.sleep(min(0.1, max(0.0, begin_s + at_s - time.time())))
                 wanted = operations or self._driven(maps)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from services.planner.control.map_changes import MapChanges
 from services.planner.control.records import parameters_of
 from services.planner.inspector import RemoteInspector
 from services.planner.mission_kinds import MissionContext, MissionKinds
@@ -49,9 +50,11 @@ class Assigner:
     def __init__(self, settings: PlannerSettings, profile: Profile, kinds: MissionKinds, bus: Bus) -> None:
         self._settings, self._profile, self._kinds, self._bus = settings, profile, kinds, bus
         self.traffic = Traffic(bus, settings.robot, settings.query_timeout_s)
+        self.changes = MapChanges(bus)
 
     def map_called(self, name: str) -> RemoteMap:
-        """A map that is not loaded yet."""
+        """A map that is not loaded yet; from now on it is the one of which changes are heard."""
+        self.changes.follow(name)
         return RemoteMap(self._bus, name, self._settings.map_timeout_s, self.traffic)
 
     def begin(self, record: MissionRecord, before: Assignment | None, *, create: bool) -> Assignment:

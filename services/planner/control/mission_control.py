@@ -143,6 +143,12 @@ class MissionControl:
             shown = self._kinds[self._record.action].shown
         return status_of(self._record, self._now, progress, graph, shown)
 
+    def changes(self) -> list[MapDelta]:
+        """What the map store has said of the map of the mission since the last call."""
+        if self.map is not None:  # also where a mission could not begin in another one
+            self._assigner.changes.follow(self.map.name)
+        return self._assigner.changes.take_all()
+
     def follow_store(self, delta: MapDelta) -> None:
         """A map changed: follow, if it is this one and somebody else did it. One gone ends the mission."""
         if self.map is None or delta.map != self.map.name:

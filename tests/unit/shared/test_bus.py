@@ -266,6 +266,20 @@ def test_a_late_follower_gets_the_deltas_it_missed(here: Bus, there: Bus):
     assert [message.revision for message in seen] == list(range(1, 21))
 
 
+def test_who_wants_no_past_hears_only_what_comes_and_nothing_once_unsubscribed(here: Bus, there: Bus):
+    publisher = here.publisher(MAP_DELTA, map="flat")
+    for revision in range(1, 4):
+        publisher.put(delta(revision))
+    late, whole = (there.subscribe(MAP_DELTA, past=past, map="flat") for past in (False, True))
+    collected(whole, lambda seen: [each.revision for each in seen] == [1, 2, 3])
+    publisher.put(delta(4))
+    assert [each.revision for each in collected(late, bool)] == [4]
+    there.unsubscribe(late)
+    publisher.put(delta(5))
+    collected(whole, lambda seen: [each.revision for each in seen][-1:] == [5])
+    assert late.take_all() == []
+
+
 def test_deltas_sent_while_the_router_was_away_are_recovered_in_order(free_port: Callable[[], int]):
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     router = zenoh.open(router_config(endpoint))

@@ -73,6 +73,7 @@ def test_it_is_known_after_a_restart(pair: MapStore, database_url: str):
 
 def test_only_the_newest_are_kept(pair: MapStore, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(answers, "KEPT", 5)
+    monkeypatch.setattr(answers, "FORGOTTEN", 4)
     for number in range(12):
         pair.transact("flat", [DRIVEN], request_id=f"q-{number}")
     with pair.database.read() as connection:

@@ -32,6 +32,18 @@ class Store:
         self.record = record
         self.map = record.map
         self.saves, self.away = 0, False
+        self.followed = []
+
+    def subscribe(self, _topic, **names):
+        self.followed.append(names["map"])
+        return self
+
+    def unsubscribe(self, _inbox):
+        self.followed.pop(0)
+
+    def take_all(self):
+        """Nobody writes."""
+        return []
 
     def ask(self, _query, request, _timeout_s, **names):
         if isinstance(request, MissionRecordRequest):
@@ -74,6 +86,8 @@ def test_a_mission_goes_on_in_its_map_under_another_name(action: str):
     for map_name, renamed_to in (("loft", "attic"), ("flat", "house")):
         control.follow_store(MapDelta(map=map_name, revision=1, reset=True, renamed_to=renamed_to))
     assert (control.state, control.status().map) == ("running", "house")
+    control.changes()
+    assert store.followed == ["house"]
     control.follow_store(MapDelta(map="house", revision=2, reset=True))
     assert control.handle(MissionRequest(action=action)).map == store.record.map == "house"
 
@@ -223,3 +237,12 @@ def test_a_mission_that_gets_on_may_take_longer_than_one_that_does_not():
     control.handle(MissionRequest(action="count", map="flat", max_steps=1))
     frames(control, 2)
     assert (control.state, control.status().failure) == ("failed", "timeout")
+
+
+def test_who_cannot_begin_in_another_map_hears_of_the_last_one_again():
+    control, store = control_of(action="", ended_action="explore", outcome="succeeded")
+    with pytest.raises(RefusedError):
+        control.handle(MissionRequest(action="goto", mission_id="n", map="loft"))
+    assert store.followed == ["loft"]
+    control.changes()
+    assert store.followed == ["flat"]
