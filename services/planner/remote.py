@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from services.planner.control.map_changes import MapChanges
 from services.planner.ports import Matches, RightOfWay
 from services.planner.traffic import Traffic
 from shared.bus import Bus
@@ -19,6 +20,8 @@ from shared.topics import MAP, MATCH
 from shared.wall_clock import WallClock
 
 AUTHOR = "planner"
+HEARD_S = 0.2
+"""What a write came too late for is told at once; longer than a busy store takes for it. Chosen."""
 WRITE_TRIES = 10
 """Writes of one change while others write: each other writer may come first a few times in a row."""
 
@@ -31,10 +34,19 @@ class RemoteMap:
         name: of the map.
         timeout_s: for an answer.
         traffic: asks for rights of way; None where the robot drives alone.
+        changes: tells what others write to this map; without it a write that they preceded reads the map.
     """
 
-    def __init__(self, bus: Bus, name: str, timeout_s: float, traffic: Traffic | None = None) -> None:
+    def __init__(
+        self,
+        bus: Bus,
+        name: str,
+        timeout_s: float,
+        traffic: Traffic | None = None,
+        changes: MapChanges | None = None,
+    ) -> None:
         self._bus, self.name, self._timeout_s, self._traffic = bus, name, timeout_s, traffic
+        self._changes = changes
         self.graph = MapGraph()
         self.revision = 0
 
@@ -51,7 +63,12 @@ class RemoteMap:
         self.revision = reply.revision
 
     def follow(self, delta: MapDelta) -> None:
-        """Take over what somebody else wrote; after a gap, and where nodes went, the map is read again."""
+        """Take over what somebody else wrote; after a gap, and where nodes went, the map is read again.
+
+        What is known already is passed over.
+        """
+        if delta.revision <= self.revision and not delta.reset:
+            return
         gone = any(isinstance(operation, DeleteNode) for operation in delta.operations)
         if delta.reset or gone or delta.revision != self.revision + 1:
             self.load(create=False)
@@ -64,14 +81,15 @@ class RemoteMap:
         self.revision = delta.revision
 
     def commit(self, operations: Sequence[Operation]) -> None:
-        """Write all or none; where somebody else wrote meanwhile, read again and add the change to theirs."""
+        """Write all or none; where somebody else wrote meanwhile, add the change to theirs."""
         for left in reversed(range(WRITE_TRIES)):
             try:
                 reply = self._transact(operations)
                 break
-            except RefusedError:
-                before, revision = self.graph, self.revision
-                self.load(create=False)
+            except RefusedError as error:
+                before, revision = self._nodes_and_edges(), self.revision
+                if error.code != "conflict" or not self._heard_others():
+                    self.load(create=False)
                 if self.revision == revision or not left or self._has(operations):
                     raise
                 operations = rebased(operations, before, self.graph)
@@ -79,6 +97,20 @@ class RemoteMap:
                     return
         self.graph.apply(operations)
         self.revision = reply.revision
+
+    def _nodes_and_edges(self) -> MapGraph:
+        """As they are now, whatever is applied later."""
+        return MapGraph(self.graph.nodes.values(), self.graph.edges.values())
+
+    def _heard_others(self) -> bool:
+        """Whether what others wrote was told already; a busy map is not read whole for each write."""
+        if self._changes is None:
+            return False
+        revision, told = self.revision, self._changes.wait(HEARD_S)
+        while told and not (told[0].reset or told[0].renamed_to):
+            self.follow(told.pop(0))
+        self._changes.put_back(told)  # of a map that went or is called otherwise the mission has to hear
+        return self.revision > revision
 
     def limits(self) -> Limits:
         """What the rules of the map say at this minute."""

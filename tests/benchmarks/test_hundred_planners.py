@@ -104,17 +104,14 @@ class Planner:
         """Seconds that each write took, and what went wrong."""
         took_s, wrong = [], []
         with client_of(self._endpoint) as bus:
-            maps, deltas = (
-                RemoteMap(bus, ONE if self._one else f"m{self._number}", TIMEOUT_S),
-                MapChanges(bus),
-            )
-            deltas.follow(maps.name)
+            name, deltas = ONE if self._one else f"m{self._number}", MapChanges(bus)
+            maps = RemoteMap(bus, name, TIMEOUT_S, changes=deltas)
+            deltas.follow(name)
             assert wait_until(lambda: loaded(maps), START_S, 0.1)
             for at_s, operations in self._due():
                 while time.time() < begin_s + at_s:
                     for delta in deltas.take_all():
-                        if delta.revision > maps.revision:
-                            maps.follow(delta)
+                        maps.follow(delta)
                     time.sleep(min(0.1, max(0.0, begin_s + at_s - time.time())))
                 wanted = operations or self._driven(maps)
                 since_s = time.perf_counter()

@@ -55,7 +55,7 @@ class Assigner:
     def map_called(self, name: str) -> RemoteMap:
         """A map that is not loaded yet; from now on it is the one of which changes are heard."""
         self.changes.follow(name)
-        return RemoteMap(self._bus, name, self._settings.map_timeout_s, self.traffic)
+        return RemoteMap(self._bus, name, self._settings.map_timeout_s, self.traffic, self.changes)
 
     def begin(self, record: MissionRecord, before: Assignment | None, *, create: bool) -> Assignment:
         """Take a mission up where the one before left the robot; `create` makes a map that is missing."""

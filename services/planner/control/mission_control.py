@@ -156,8 +156,6 @@ class MissionControl:
         if delta.renamed_to:
             self._rename(self.map, delta.renamed_to)
             return
-        if delta.revision <= self.map.revision and not delta.reset:
-            return
         try:
             self.map.follow(delta)
         except RefusedError as error:

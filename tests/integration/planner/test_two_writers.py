@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import pytest
 
+from services.planner.control.map_changes import MapChanges
 from services.planner.mapping.edges import NewEdges
 from services.planner.mapping.nodes import add_node
 from services.planner.ports import Observation
@@ -71,6 +72,21 @@ def test_a_planner_knows_its_new_place_by_the_id_that_it_got(two):
     seen = Observation(FEATURES.model_copy(update={"stamp_ns": 3}), ranges)
     node_id, _ = add_node(second, seen, NewEdges(), DEFAULT, None)
     assert (node_id, second.graph.nodes[node_id].stamp_ns) == (2, 3)
+
+
+def test_who_comes_second_hears_what_came_first_and_reads_no_whole_map(bus):
+    changes = MapChanges(bus)
+    first, second = RemoteMap(bus, "flat", TIMEOUT_S), RemoteMap(bus, "flat", TIMEOUT_S, changes=changes)
+    changes.follow("flat")
+    first.load(create=True)
+    add(first, 1)
+    second.load(create=True)
+    assert wait_until(lambda: 1 in {delta.revision for delta in changes.take_all()}, TIMEOUT_S)
+    before = second.graph
+    assert (add(first, 2, to=0), add(second, 3, to=0)) == (1, 2)
+    assert second.graph is before
+    assert stored(bus).nodes.keys() == second.graph.nodes.keys() == {0, 1, 2}
+    assert stored(bus).edges == second.graph.edges
 
 
 def test_directions_explored_at_once_are_both_kept(two, bus):

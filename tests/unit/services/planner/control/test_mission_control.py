@@ -34,7 +34,8 @@ class Store:
         self.saves, self.away = 0, False
         self.followed = []
 
-    def subscribe(self, _topic, **names):
+    def subscribe(self, _topic, _wake, *, past, **names):
+        assert not past
         self.followed.append(names["map"])
         return self
 
