@@ -194,6 +194,18 @@ def test_who_names_no_node_at_its_goal_is_near_the_last_one_of_that_map(at, near
     assert stage.bus.moved == [("a", ANY, nearest)]
 
 
+def test_what_was_overtaken_once_by_each_other_robot_comes_next():
+    stage = Stage()
+    stage.bus.map = LINE
+    far, *near = (task(name, parameters={"goal_node": node}) for name, node in (("a", 3), ("b", 1), ("c", 0)))
+    stage.step(0.0)
+    for now_s, waiting, given in ((LISTENS_S, (far, *near), "b"), (LISTENS_S + 1.0, (far, near[1]), "a")):
+        stage.free("r1", "r2", node=0)
+        stage.bus.tasks = (*waiting, task("z", "r2", state="running"))
+        stage.step(now_s)
+        assert stage.bus.moved.pop() == (given, ANY, "r1")
+
+
 def test_no_more_robots_are_followed_than_it_may():
     stage = Stage(max_robots=1)
     stage.bus.tasks = (task("a"), task("b"))
