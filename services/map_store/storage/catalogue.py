@@ -18,6 +18,7 @@ NEW_NAME = re.compile(r"(?!import\Z)[a-z0-9_][a-z0-9_-]{0,63}\Z")
 """Commands take "--help" for an option; /maps/import is a path of REST. Maps of old may have such names."""
 
 ALL = select(maps).order_by(maps.c.map_id)
+BY_NAME = select(maps).where(maps.c.name == bindparam("name"))
 OF_MAP = update(maps).where(maps.c.map_id == bindparam("of"))
 """Made once: to compose a statement takes SQLAlchemy several times as long as to execute it."""
 
@@ -62,14 +63,17 @@ def label(row: Row[Any]) -> str:
 
 
 def rows(connection: Connection) -> Sequence[Row[Any]]:
-    """The records of all maps by number. There are few, and no index that may be damaged is asked."""
+    """The records of all maps by number; no index that may be damaged is asked."""
     return connection.execute(ALL).all()
 
 
 def find(connection: Connection, name: str) -> MapRecord:
     """The record of a map; MissingError lists what there is, CorruptError says that it is damaged."""
     check_name(name)
-    found = rows(connection)
+    row = connection.execute(BY_NAME, {"name": name}).first()
+    if row is not None and row.name == name and intact(maps, row):
+        return record_of(row)
+    found = rows(connection)  # the index of names may be damaged
     for row in found:
         if label(row) == name:
             return record_of(row)

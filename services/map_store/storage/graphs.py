@@ -20,6 +20,7 @@ class Graphs:
 
     def __init__(self) -> None:
         self._graphs: OrderedDict[int, tuple[int, Graph]] = OrderedDict()
+        self._elements = 0
         self._lock = threading.Lock()
 
     def get(self, connection: Connection, found: MapRecord) -> Graph:
@@ -40,18 +41,22 @@ class Graphs:
     def forget(self, map_id: int) -> None:
         """Read the map again when it is asked for."""
         with self._lock:
-            self._graphs.pop(map_id, None)
+            self._drop(map_id)
 
     def remember(self, map_id: int, revision: int, graph: Graph) -> None:
         """Keep `graph` unless a newer revision is kept already."""
         with self._lock:
-            if self._graphs.get(map_id, (-1, graph))[0] < revision:
-                self._graphs[map_id] = (revision, graph)
-                self._graphs.move_to_end(map_id)
-            kept = sum(_size(graph) for _, graph in self._graphs.values())
-            while kept > CACHED_ELEMENTS and len(self._graphs) > 1:
-                _, (_, oldest) = self._graphs.popitem(last=False)
-                kept -= _size(oldest)
+            if self._graphs.get(map_id, (-1, graph))[0] >= revision:
+                return
+            self._drop(map_id)
+            self._graphs[map_id] = (revision, graph)
+            self._elements += _size(graph)
+            while self._elements > CACHED_ELEMENTS and len(self._graphs) > 1:
+                self._drop(next(iter(self._graphs)))
+
+    def _drop(self, map_id: int) -> None:
+        if (kept := self._graphs.pop(map_id, None)) is not None:
+            self._elements -= _size(kept[1])
 
 
 def _size(graph: Graph) -> int:
