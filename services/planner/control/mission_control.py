@@ -2,6 +2,7 @@
 
 import logging
 from contextlib import suppress
+from dataclasses import replace
 
 from services.planner.control.assignment import Assigner, Assignment
 from services.planner.control.records import MissionRecords, begun, ended, has_goal
@@ -78,6 +79,12 @@ class MissionControl:
     def _mission(self) -> Mission | None:
         return None if self._assignment is None else self._assignment.mission
 
+    @property
+    def _node(self) -> int | None:
+        """At which the robot is, as its last mission left it; None while nobody knows."""
+        here = None if self._assignment is None else self._assignment.whereabouts.here
+        return None if here is None else here.node_id
+
     def claim(self) -> None:
         """Take over from a planner before; goes on with its mission. QueryError while the store is away."""
         self._record = self._records.claim(self._record)
@@ -109,8 +116,7 @@ class MissionControl:
         """Say now and then where the robot is, also while it stands: others go round it or have it go."""
         if self.map is None:
             return
-        here = None if self._assignment is None else self._assignment.whereabouts.here
-        at = () if here is None else (here.node_id,)
+        at = () if self._node is None else (self._node,)
         self._assigner.traffic.renew(self.map.name, at, busy=self._now.under_way)
 
     def settle(self) -> None:
@@ -137,6 +143,8 @@ class MissionControl:
     def status(self) -> MissionStatus:
         """What is published after every step."""
         progress = self._mission.progress if self._mission is not None else Progress()
+        if progress.nearest_node is None:  # as of a robot that has arrived at a picture
+            progress = replace(progress, nearest_node=self._node)
         graph = self.map.graph if self.map is not None else MapGraph()
         shown: tuple[str, ...] = ()
         with suppress(MissionError):  # of a kind that is not known here nothing is

@@ -13,6 +13,7 @@ from services.planner.mission_kinds import (
 from services.planner.ports import Decision, Observation, Progress
 from services.planner.profiles import DEFAULT
 from services.planner.settings import PlannerSettings
+from shared.mapgraph.local.displacement import Displacement
 from shared.messages.maps import MapDelta, MapReply, MapRequest, MissionRecord, MissionRecordRequest, Node
 from shared.messages.missions import MissionRequest
 from shared.messages.sensors import Ranges
@@ -247,3 +248,13 @@ def test_who_cannot_begin_in_another_map_hears_of_the_last_one_again():
     assert store.followed == ["loft"]
     control.changes()
     assert store.followed == ["flat"]
+
+
+def test_who_has_arrived_is_still_somewhere():
+    control, _ = control_of(action="explore")
+    assert control.status().nearest_node is None
+    assert control._assignment is not None
+    control._assignment.whereabouts.here = Displacement(7)
+    assert control.status().nearest_node == 7
+    control.handle(MissionRequest(action="cancel"))
+    assert control.status().nearest_node == 7
