@@ -174,7 +174,7 @@ class Fleet:
         while step < max_steps and (waiting or any(robot.has_task for robot in self.robots)):
             self._desk.now_s = step * STEP_S
             self._send_away()
-            for move in choose(waiting, *self._idle_and_all(), self._way_m, overtaken):
+            for move in choose(waiting, *self._idle_and_all(), (), self._way_m, overtaken):
                 waiting.remove(move.task)
                 overtaken.update(move.overtaken)
                 by_name[move.to].begin(_goal(move.task), task=True)

@@ -7,7 +7,7 @@ one robot alone keeps to the queue.
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from services.fleet.condition import Condition
@@ -55,6 +55,7 @@ def choose(
     waiting: Iterable[Task],
     free: Iterable[Robot],
     robots: Sequence[Robot],
+    working: Container[str],
     way_m: Way,
     overtaken: Mapping[str, int],
 ) -> Iterator[Move]:
@@ -64,14 +65,16 @@ def choose(
         waiting: tasks that no robot has, in the order of the queue.
         free: robots that can take one now; each gets one at most.
         robots: all that were heard of.
+        working: names of those that have a task of the fleet.
         way_m: asked only of robots in the map of the task.
         overtaken: how often tasks that wait were overtaken so far, by id.
     """
     left, idle, counts = list(waiting), list(free), Counter(overtaken)
+    sharing = [robot for robot in robots if _shares(robot, working)]
     while True:
         pairs = [
             (_way_m(task, robot, way_m), left.index(task), robot.name, robot)
-            for task in _whose_turn_is_near(left, robots, counts)
+            for task in _whose_turn_is_near(left, sharing, counts)
             for robot in able(task, idle, robots)
         ]
         if not pairs:
@@ -95,12 +98,18 @@ def able(task: Task, robots: Sequence[Robot], known: Sequence[Robot]) -> list[Ro
     return [robot for robot in robots if may_be_there(robot)]
 
 
-def _whose_turn_is_near(left: Sequence[Task], known: Sequence[Robot], counts: Counter[str]) -> Iterator[Task]:
+def _shares(robot: Robot, working: Container[str]) -> bool:
+    """Whether it takes tasks, now or after the one that it has; who drives something else does not."""
+    return robot.condition.is_ready or (robot.condition.kind == "kept" and robot.name in working)
+
+
+def _whose_turn_is_near(
+    left: Sequence[Task], sharing: Sequence[Robot], counts: Counter[str]
+) -> Iterator[Task]:
     """Of each map the first tasks of the highest priority, as many as robots share it."""
-    ready = [robot for robot in known if robot.condition.is_ready]
     for name in dict.fromkeys(task.map for task in left):
         here = [task for task in left if task.map == name]
-        others = len(able(here[0], ready, known)) - 1
+        others = len(able(here[0], sharing, sharing)) - 1
         for task in here[: others + 1]:
             if task.priority != here[0].priority:
                 break

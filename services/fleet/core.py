@@ -57,7 +57,7 @@ def decide(
     loaded = {task.robot for task in tasks}
     free = [r for r in known.values() if r.condition.is_ready and not r.has_tasks and r.name not in loaded]
     waiting = [task for task in tasks if task.state == "queued" and task.robot == ANY]
-    given = list(choose(waiting, free, list(known.values()), way_m, overtaken))
+    given = list(choose(waiting, free, list(known.values()), loaded, way_m, overtaken))
     why = _waits_for(known) if len(given) < len(waiting) else ""
     return Plan((*moves, *given), why, _alarm(tasks, known, limits))
 

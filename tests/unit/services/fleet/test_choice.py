@@ -17,8 +17,15 @@ def task(node: int, **fields) -> Task:
     )
 
 
+DRIVES = Condition("kept", "mission t-7 is running")
+
+
 def robot(name: str, node: int, at: str = "flat", condition: Condition = READY) -> Robot:
     return Robot(name, condition, map=at, node=node)
+
+
+def at_work(name: str) -> Robot:
+    return robot(name, 20, condition=DRIVES)
 
 
 def along_a_line(asked: Task, one: Robot) -> float:
@@ -28,7 +35,7 @@ def along_a_line(asked: Task, one: Robot) -> float:
 
 
 def chosen(waiting, free, busy=(), overtaken=None):
-    moves = choose(waiting, free, [*free, *busy], along_a_line, overtaken or {})
+    moves = choose(waiting, free, [*free, *busy], {one.name for one in busy}, along_a_line, overtaken or {})
     return [(move.task.task_id, move.to, move.overtaken) for move in moves]
 
 
@@ -39,14 +46,20 @@ def test_the_shortest_way_goes_first():
 
 def test_as_many_tasks_compete_as_robots_share_the_map():
     waiting = [task(50), task(40), task(30), task(1)]
-    busy = [robot("r2", 20), robot("r3", 20)]
+    busy = [at_work("r2"), at_work("r3")]
     assert chosen(waiting, [robot("r1", 0)], busy) == [("t-30", "r1", ("t-50", "t-40"))]
-    elsewhere = [robot("r2", 20, at="loft"), robot("r3", 20, condition=Condition("kept", "stopped"))]
+    elsewhere = [robot("r2", 20, at="loft"), robot("r3", 20, condition=Condition("silent", "gone"))]
     assert chosen(waiting, [robot("r1", 0)], elsewhere) == [("t-50", "r1", ())]
 
 
+def test_who_drives_something_else_shares_no_tasks():
+    others, alone = [at_work("r2"), at_work("r3")], robot("r1", 0)
+    moves = choose([task(50), task(1)], [alone], [alone, *others], (), along_a_line, {})
+    assert [(move.task.task_id, move.to) for move in moves] == [("t-50", "r1")]
+
+
 def test_nothing_overtakes_a_task_more_often_than_there_are_other_robots():
-    waiting, busy = [task(50), task(2), task(1)], [robot("r2", 20), robot("r3", 20)]
+    waiting, busy = [task(50), task(2), task(1)], [at_work("r2"), at_work("r3")]
     assert chosen(waiting, [robot("r1", 0)], busy, {"t-50": 1}) == [("t-1", "r1", ("t-50", "t-2"))]
     assert chosen(waiting, [robot("r1", 0)], busy, {"t-50": 2}) == [("t-50", "r1", ())]
     assert chosen(waiting, [robot("r1", 0)], busy, {"t-2": 2}) == [("t-2", "r1", ("t-50",))]
@@ -71,7 +84,7 @@ def test_in_a_queue_that_never_ends_each_task_is_overtaken_a_few_times_at_most(r
     waiting = [task(1000), *(task(node) for node in range(2, 12))]
     for number in range(100):
         who = fleet[int(rng.integers(robots))]
-        (move,) = choose(waiting, [who], fleet, along_a_line, overtaken)
+        (move,) = choose(waiting, [who], fleet, (), along_a_line, overtaken)
         waiting.remove(move.task)
         overtaken.update(move.overtaken)
         most = max(most, overtaken[move.task.task_id])

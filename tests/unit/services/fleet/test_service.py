@@ -96,6 +96,12 @@ class Stage:
                 self.bus.subscribe(topic, robot=name).waiting.append(message)
             self.bus.subscribe(STATUS, robot="*").waiting.append(status)
 
+    def works(self, name: str) -> None:
+        """It drives, for a task."""
+        self.free(name)
+        status = MissionStatus(robot=name, mission_id="z", map="flat", state="running")
+        self.bus.subscribe(STATUS, robot=name).waiting.append(status)
+
     def step(self, now_s: float) -> QueueStatus:
         self.fleet.step(now_s)
         return self.bus.said[-1]
@@ -200,7 +206,8 @@ def test_what_was_overtaken_once_by_each_other_robot_comes_next():
     far, *near = (task(name, parameters={"goal_node": node}) for name, node in (("a", 3), ("b", 1), ("c", 0)))
     stage.step(0.0)
     for now_s, waiting, given in ((LISTENS_S, (far, *near), "b"), (LISTENS_S + 1.0, (far, near[1]), "a")):
-        stage.free("r1", "r2", node=0)
+        stage.free("r1", node=0)
+        stage.works("r2")
         stage.bus.tasks = (*waiting, task("z", "r2", state="running"))
         stage.step(now_s)
         assert stage.bus.moved.pop() == (given, ANY, "r1")
