@@ -109,18 +109,25 @@ class Planner:
             deltas.follow(name)
             assert wait_until(lambda: loaded(maps), START_S, 0.1)
             for at_s, operations in self._due():
-                while time.time() < begin_s + at_s:
-                    for delta in deltas.take_all():
-                        maps.follow(delta)
-                    time.sleep(min(0.1, max(0.0, begin_s + at_s - time.time())))
-                wanted = operations or self._driven(maps)
-                since_s = time.perf_counter()
+                since_s = None
                 try:
+                    self._follow(maps, deltas, begin_s + at_s)
+                    wanted = operations or self._driven(maps)
+                    since_s = time.perf_counter()
                     maps.commit(wanted)
                 except QueryError as error:
                     wrong.append(str(error))
-                took_s.append(time.perf_counter() - since_s)
+                if since_s is not None:
+                    took_s.append(time.perf_counter() - since_s)
         return took_s, wrong
+
+    @staticmethod
+    def _follow(maps: RemoteMap, deltas: MapChanges, until_s: float) -> None:
+        """As a planner does between its writes."""
+        while time.time() < until_s:
+            for delta in deltas.take_all():
+                maps.follow(delta)
+            time.sleep(min(0.1, max(0.0, until_s - time.time())))
 
     def _due(self):
         """What to write and when, each planner from a moment of its own on."""
