@@ -105,6 +105,10 @@ export class Mission {
     return this.ask("missions", { action: "goto", map: this.where().map, parameters: { place } });
   }
 
+  goToSign(sign) {
+    return this.ask("missions", { action: "goto", map: this.where().map, parameters: { sign } });
+  }
+
   driveRoute(route, reverse) {
     return this.ask("missions", { action: "route", map: this.where().map, parameters: { route, reverse } });
   }

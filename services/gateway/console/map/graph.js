@@ -36,13 +36,13 @@ export class Graph {
     $("graph").addEventListener("keydown", (event) => this.key(event));
     new ResizeObserver(() => this.resized()).observe($("graph"));
     setInterval(() => this.load(), POLL_MS);
-    this.onMarks = []; // called when places, rules or routes may be others
+    this.onMarks = []; // called when places, rules, routes or signs may be others
     this.clear("");
   }
 
   clear(map) {
     Object.assign(this, { map, nodes: [], edges: [], spots: new Map(), revision: null, truth: null, moved: false });
-    Object.assign(this, { places: [], rules: [], routes: [], route: null, seen: new Set(), picked: new Set() });
+    Object.assign(this, { places: [], rules: [], routes: [], signs: [], route: null, seen: new Set(), picked: new Set() });
     this.picks?.();
     this.onMarks.forEach((hear) => hear());
     this.cy.elements().remove();
@@ -166,12 +166,12 @@ export class Graph {
     try {
       const facts = await get(`/api/maps/${map}`);
       if (map !== this.map || facts.revision === this.revision) return;
-      const [nodes, edges, places, rules, routes] = await Promise.all(
-        ["nodes", "edges", "places", "rules", "routes"].map((part) => get(`/api/maps/${map}/${part}`)));
+      const [nodes, edges, places, rules, routes, signs] = await Promise.all(
+        ["nodes", "edges", "places", "rules", "routes", "signs"].map((part) => get(`/api/maps/${map}/${part}`)));
       if (map !== this.map) return;
       const spots = await this.layOut(nodes, edges);
       if (map !== this.map) return;
-      Object.assign(this, { revision: facts.revision, nodes, edges, spots, places, rules, routes });
+      Object.assign(this, { revision: facts.revision, nodes, edges, spots, places, rules, routes, signs });
       this.draw();
       this.onMarks.forEach((hear) => hear());
       $("graph-facts").textContent = TEXT.graphFacts(nodes.length, edges.length, facts.revision);

@@ -72,6 +72,9 @@ export const TEXT = {
     const hours = rule.hours.map((span) => `${span.days.join(" ")} ${span.opens}–${span.closes}`).join("; ");
     return `open ${hours || "never"} (${rule.time_zone}): ${edges}`;
   },
+  signColumns: ["sign", "best read at", ""],
+  moreSigns: (count) => `${count} more: search for them.`,
+  forgetSign: (name) => `Forget the sign ${name}? It is read again where a robot maps anew; an undo brings it back.`,
   routeColumns: ["route", "nodes", ""],
   route: ({ nodes, gaps }) =>
     gaps.length ? `broken between ${gaps.map(([a, b]) => `${a} and ${b}`).join(", ")}: teach it anew` : `${nodes.length} nodes`,
