@@ -94,17 +94,8 @@ class Bus:
         self._declared.append(declared)
         return Publisher(declared, topic)
 
-    def subscribe(
-        self, topic: Topic[M], wake: threading.Event | None = None, *, past: bool = True, **names: str
-    ) -> Inbox[M]:
-        """Declare a subscriber.
-
-        Args:
-            topic: what to hear.
-            wake: replaces the bus's own event.
-            past: of a recovered topic, get the last messages from before as well.
-            names: of whom; "*" for all.
-        """
+    def subscribe(self, topic: Topic[M], wake: threading.Event | None = None, **names: str) -> Inbox[M]:
+        """Declare a subscriber; `wake` replaces the bus's own event."""
         inbox = Inbox(
             topic.message, topic.max_bytes, CAPACITY[topic.delivery], wake or self.wake, self.counters
         )
@@ -120,9 +111,7 @@ class Bus:
                 self._session,
                 key,
                 store,
-                history=ext.HistoryConfig(detect_late_publishers=True, max_samples=RECOVERY_CACHE)
-                if past
-                else None,
+                history=ext.HistoryConfig(detect_late_publishers=True, max_samples=RECOVERY_CACHE),
                 recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
             )
         else:

@@ -18,21 +18,21 @@ class MapChanges:
         self._first: list[MapDelta] = []
 
     def follow(self, name: str) -> None:
-        """Hear of this map from now on; to be called before the map is read, as what came before is not told.
-
-        What was said of a map of that name in the past may be of another one, which has been renamed since.
-        """
+        """Hear of this map from now on, and once more of its last changes; to be called before it is read."""
         if name == self._name:
             return
         if self._inbox is not None:
             self._bus.unsubscribe(self._inbox)
         self._name, self._first = name, []
-        self._inbox = self._bus.subscribe(MAP_DELTA, self._wake, past=False, map=name)
+        self._inbox = self._bus.subscribe(MAP_DELTA, self._wake, map=name)
 
     def take_all(self) -> list[MapDelta]:
-        """Those since the last call."""
-        first, self._first = self._first, []
-        return first + ([] if self._inbox is None else self._inbox.take_all())
+        """Those since the last call; of those before the last reset only what the map is called since."""
+        taken, self._first = self._first, []
+        if self._inbox is not None:
+            taken += self._inbox.take_all()
+        last = max((place for place, delta in enumerate(taken) if delta.reset), default=0)
+        return [delta for delta in taken[:last] if delta.renamed_to] + taken[last:]
 
     def wait(self, timeout_s: float) -> list[MapDelta]:
         """Those since the last call; where there are none, the next that comes in time."""

@@ -161,11 +161,11 @@ class MissionControl:
         """A map changed: follow, if it is this one and somebody else did it. One gone ends the mission."""
         if self.map is None or delta.map != self.map.name:
             return
-        if delta.renamed_to:
-            self._rename(self.map, delta.renamed_to)
-            return
         try:
-            self.map.follow(delta)
+            if delta.renamed_to:
+                self._follow_name(self.map, delta.renamed_to)
+            else:
+                self.map.follow(delta)
         except RefusedError as error:
             if error.code != "missing":
                 raise
@@ -176,6 +176,20 @@ class MissionControl:
         decision, progress = assignment.mission.decide(observation), assignment.mission.progress
         self._keep_checkpoint(progress)
         return at_speed(decision, assignment.map.graph, progress.nearest_node, self._profile)
+
+    def _follow_name(self, maps: RemoteMap, name: str) -> None:
+        """Go on under the new name, unless an earlier map of this name was meant: the past is told, too."""
+        revision = maps.revision
+        try:
+            maps.load(create=False)
+        except RefusedError as error:
+            if error.code != "missing":
+                raise
+            self._rename(maps, name)
+            return
+        if maps.revision < revision:  # it is a new one that has the name already
+            self._rename(maps, name)
+            maps.load(create=False)
 
     def _rename(self, maps: RemoteMap, name: str) -> None:
         log.info("map %s is called %s now", maps.name, name)

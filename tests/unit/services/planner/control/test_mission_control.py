@@ -34,9 +34,9 @@ class Store:
         self.map = record.map
         self.saves, self.away = 0, False
         self.followed = []
+        self.revision = 1
 
-    def subscribe(self, _topic, _wake, *, past, **names):
-        assert not past
+    def subscribe(self, _topic, _wake, **names):
         self.followed.append(names["map"])
         return self
 
@@ -58,7 +58,7 @@ class Store:
         assert isinstance(request, MapRequest)
         if names["map"] != self.map:
             raise RefusedError(f"no map {names['map']!r}", "missing")
-        return MapReply(map=self.map, revision=1, nodes=(Node(node_id=0),))
+        return MapReply(map=self.map, revision=self.revision, nodes=(Node(node_id=0),))
 
 
 def control_of(gone=False, **record):
@@ -258,3 +258,21 @@ def test_who_has_arrived_is_still_somewhere():
     assert control.status().nearest_node == 7
     control.handle(MissionRequest(action="cancel"))
     assert control.status().nearest_node == 7
+
+
+def test_that_an_earlier_map_of_the_name_was_renamed_is_not_followed():
+    control, store = control_of(action="explore")
+    store.revision = 3
+    control.follow_store(MapDelta(map="flat", revision=1, reset=True, renamed_to="attic"))
+    assert control.status().map == "flat"
+    assert control.map is not None
+    assert control.map.revision == 3
+
+
+def test_a_map_whose_old_name_another_one_has_already_is_followed():
+    control, store = control_of(action="explore")
+    assert control.map is not None
+    control.map.revision, asked = 9, store.ask
+    store.ask = lambda *args, map="", **names: (setattr(store, "map", map), asked(*args, map=map, **names))[1]
+    control.follow_store(MapDelta(map="flat", revision=9, reset=True, renamed_to="attic"))
+    assert (control.status().map, control.map.revision) == ("attic", 1)
