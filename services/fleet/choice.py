@@ -75,7 +75,7 @@ def choose(
         pairs = [
             (_way_m(task, robot, way_m), left.index(task), robot.name, robot)
             for task in _whose_turn_is_near(left, sharing, counts)
-            for robot in able(task, idle, robots)
+            for robot in _able(task, idle, robots)
         ]
         if not pairs:
             return
@@ -85,17 +85,6 @@ def choose(
         passed = tuple(earlier.task_id for earlier in left[:place] if earlier.map == task.map)
         counts.update(passed)
         yield Move(task, robot.name, _told(metres), passed)
-
-
-def able(task: Task, robots: Sequence[Robot], known: Sequence[Robot]) -> list[Robot]:
-    """Those of the robots that may be in the task's map; all, where none that is heard of may be."""
-
-    def may_be_there(robot: Robot) -> bool:
-        return robot.map in ("", task.map)
-
-    if not any(may_be_there(robot) for robot in known if robot.condition.kind != "silent"):
-        return list(robots)
-    return [robot for robot in robots if may_be_there(robot)]
 
 
 def _shares(robot: Robot, working: Container[str]) -> bool:
@@ -109,13 +98,24 @@ def _whose_turn_is_near(
     """Of each map the first tasks of the highest priority, as many as robots share it."""
     for name in dict.fromkeys(task.map for task in left):
         here = [task for task in left if task.map == name]
-        others = len(able(here[0], sharing, sharing)) - 1
+        others = len(_able(here[0], sharing, sharing)) - 1
         for task in here[: others + 1]:
             if task.priority != here[0].priority:
                 break
             yield task
             if counts[task.task_id] >= others:
                 break  # nothing overtakes it any more
+
+
+def _able(task: Task, robots: Sequence[Robot], known: Sequence[Robot]) -> list[Robot]:
+    """Those of the robots that may be in the task's map; all, where none that is heard of may be."""
+
+    def may_be_there(robot: Robot) -> bool:
+        return robot.map in ("", task.map)
+
+    if not any(may_be_there(robot) for robot in known if robot.condition.kind != "silent"):
+        return list(robots)
+    return [robot for robot in robots if may_be_there(robot)]
 
 
 def _way_m(task: Task, robot: Robot, way_m: Way) -> float:
