@@ -72,6 +72,7 @@ EDGE_FILES = {
     "remote.py",
     "traffic.py",
     "assignment.py",
+    "map_changes.py",
     "mission_control.py",
     "records.py",
 }  # where a service meets the world

@@ -213,6 +213,7 @@ def _stored(path: str, nodes: int, body: bytes) -> Response:
         "maps/flat/places": [],
         "maps/flat/rules": [],
         "maps/flat/routes": [],
+        "maps/flat/signs": [],
         "maps/flat/inspections": [],
         "maps/flat/compare": {"map": "flat", "from": 5, "to": 9, "nodes_added": [3]},
         "maps/flat/undo": {"map": "flat", "revision": 10, "undone": 9},
