@@ -134,7 +134,14 @@ def late_clock(codec, frame):
 def test_what_cannot_be_used_is_named_in_a_line_and_nothing_moves(
     stack, monkeypatch, checked, what, fault, named
 ):
-    monkeypatch.setattr(body, what, fault)
+    sent = []
+
+    def faulty(codec, message):
+        sent.append(message)
+        return fault(codec, message)
+
+    monkeypatch.setattr(body, what, faulty)
+    assert wait_until(lambda: len(sent) > 2, SOON_S)  # what was sent sound has arrived by then
     truths = stack.bus.subscribe(TRUTH, robot=stack.robot)
     assert checked.check.senses() == (fault is late_clock)
     assert named in checked.text
