@@ -84,6 +84,16 @@ class Clicks:
         self.page.mouse.up()
 
 
+def require_accessible(page: Any, folder: Path) -> None:
+    """Nothing serious is wrong by day or by night; pictures of both are kept."""
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        page.wait_for_timeout(300)
+        found = Axe().run(page).response["violations"]
+        assert [(v["id"], v["nodes"][0]["html"][:120]) for v in found if v["impact"] in SERIOUS] == []
+        page.screenshot(path=folder / f"{scheme}.png")
+
+
 def places_of(store: MapStore) -> dict[str, tuple[int, ...]]:
     return {place.name: place.nodes for place in store.graph("flat")[1].marks.places}
 
@@ -157,9 +167,4 @@ def test_the_view_with_places_and_rules_is_accessible(page: Any, store: MapStore
     page.wait_for_selector('#graph[data-places="2"]', timeout=WAIT_MS)
     assert page.get_attribute("#graph", "data-forbidden") == "2"
     page.wait_for_selector("#rules td:has-text('30 % of the speed')", timeout=WAIT_MS)
-    for scheme in ("light", "dark"):
-        page.emulate_media(color_scheme=scheme)
-        page.wait_for_timeout(300)
-        found = Axe().run(page).response["violations"]
-        assert [(v["id"], v["nodes"][0]["html"][:120]) for v in found if v["impact"] in SERIOUS] == []
-        page.screenshot(path=tmp_path / f"{scheme}.png")
+    require_accessible(page, tmp_path)

@@ -3,8 +3,6 @@
 from pathlib import Path
 from typing import Any
 
-from axe_playwright_python.sync_playwright import Axe
-
 from services.map_store.store import MapStore
 from shared.bus import wait_until
 from shared.messages.maps import DeleteNode
@@ -12,7 +10,7 @@ from shared.messages.places import PutRoute, Route
 from tests.browser import WAIT_MS, needs_chromium
 from tests.integration.gateway.gateway_process import WAIT_S
 from tests.integration.gateway.standins import Planner
-from tests.integration.gateway.test_places_page import SERIOUS, Clicks
+from tests.integration.gateway.test_places_page import Clicks, require_accessible
 from tests.integration.gateway.test_places_page import page as page
 from tests.integration.gateway.test_places_page import store as store
 
@@ -87,9 +85,4 @@ def test_the_view_with_routes_is_accessible(page: Any, store: MapStore, tmp_path
     store.transact("flat", [PutRoute(route=TOUR), PutRoute(route=Route(name="Round", nodes=(5, 6, 7, 0)))])
     page.wait_for_selector('#graph[data-routes="2"]', timeout=WAIT_MS)
     page.click("#routes button:text-is('Tour')")
-    for scheme in ("light", "dark"):
-        page.emulate_media(color_scheme=scheme)
-        page.wait_for_timeout(300)
-        found = Axe().run(page).response["violations"]
-        assert [(v["id"], v["nodes"][0]["html"][:120]) for v in found if v["impact"] in SERIOUS] == []
-        page.screenshot(path=tmp_path / f"{scheme}.png")
+    require_accessible(page, tmp_path)

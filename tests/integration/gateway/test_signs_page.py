@@ -3,16 +3,14 @@
 from pathlib import Path
 from typing import Any
 
-from axe_playwright_python.sync_playwright import Axe
-
 from services.map_store.store import MapStore
 from shared.bus import wait_until
 from shared.messages.places import PutSign, Sighting, Sign
 from tests.browser import WAIT_MS, needs_chromium
 from tests.integration.gateway.gateway_process import WAIT_S
 from tests.integration.gateway.standins import Planner
-from tests.integration.gateway.test_places_page import SERIOUS
 from tests.integration.gateway.test_places_page import page as page
+from tests.integration.gateway.test_places_page import require_accessible
 from tests.integration.gateway.test_places_page import store as store
 
 pytestmark = needs_chromium
@@ -54,9 +52,4 @@ def test_of_hundreds_the_first_are_shown_and_the_view_is_accessible(
     store.transact("flat", [read(f"room {number}", number % 8) for number in range(100, 130)])
     page.wait_for_selector("#signs:has-text('10 more: search for them.')", timeout=WAIT_MS)
     assert page.locator("#signs td .link").count() == 20
-    for scheme in ("light", "dark"):
-        page.emulate_media(color_scheme=scheme)
-        page.wait_for_timeout(300)
-        found = Axe().run(page).response["violations"]
-        assert [(v["id"], v["nodes"][0]["html"][:120]) for v in found if v["impact"] in SERIOUS] == []
-        page.screenshot(path=tmp_path / f"{scheme}.png")
+    require_accessible(page, tmp_path)
