@@ -1,4 +1,4 @@
-"""Answers the experimenter's requests: reset, placing robots and furniture, pictures from anywhere."""
+"""Answers the experimenter's requests: reset, robots, furniture, light, pictures from anywhere."""
 
 from shared.messages.sensors import Frame
 from shared.messages.simulation import SimulationReply, SimulationRequest
@@ -47,6 +47,10 @@ class Experimenter:
             frame = self._maker.look(pose, seq, stamp_ns)
         elif request.action in {"set_item", "place_obstacle"}:
             self._change_world(request)
+        elif request.action == "set_light":
+            if request.illumination is None:
+                raise RequestError("set_light needs the time of day (illumination, 0 to 1), got none")
+            self._simulation.set_light(request.illumination)
         changed = request.action not in {"look", "truth"}
         return SimulationReply(
             seq=seq, stamp_ns=stamp_ns, truth=self._maker.truth(seq, stamp_ns), frame=frame

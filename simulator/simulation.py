@@ -112,6 +112,11 @@ class Simulation:
         """
         self._change(with_obstacle(self._file, self._changes, name, kind, pose))
 
+    def set_light(self, illumination: float) -> None:
+        """Let it become another time of day, from noon (0) to lamps only (1): seen from now on."""
+        if self._view is not None:
+            self._view.set_light(illumination, self.world, (self._parts, self._lights))
+
     def command(
         self, forward_mps: float, left_mps: float = 0.0, turn_radps: float = 0.0, ttl_s: float = math.inf
     ) -> None:

@@ -50,6 +50,7 @@ class Rounds:
         world: as the map saw it.
         places: true poses of the nodes with a name, by name.
         rng: draws what is altered.
+        illumination: of every other round, see `Disturbances`; the others are at noon.
     """
 
     def __init__(
@@ -60,7 +61,9 @@ class Rounds:
         world: WorldFile,
         places: Mapping[str, Pose],
         rng: np.random.Generator,
+        illumination: float = 0.0,
     ) -> None:
+        self._illumination = illumination
         self._game, self._store, self._map, self._places, self._rng = game, store, map_name, places, rng
         self._world, self._local = world, simulated(world)
         self._altered: list[Alteration] = []
@@ -72,6 +75,8 @@ class Rounds:
             drawn = self._altered or self._draw(changes)
             back = bool(self._altered)
             self._alter(self._game.experimenter, drawn, back)
+            if self._illumination:
+                self._game.experimenter.set_light(self._illumination * (number % 2))
             seen = self._drive(seed + number)
             before = self._pictures(seen)
             self._alter(self._local, drawn, back)

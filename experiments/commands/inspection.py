@@ -18,12 +18,18 @@ def inspection(
     places: Annotated[int, typer.Option(min=1, max=64, help="Places of a round.")] = 6,
     rounds: Annotated[int, typer.Option(min=1, help="Rounds after the first.")] = 5,
     changes: Annotated[int, typer.Option(min=1, help="Pieces changed before each round.")] = 6,
+    illumination: Annotated[
+        float, typer.Option(min=0, max=1, help="Light of every other round; 0.3 is half of the daylight.")
+    ] = 0.0,
     seed: options.Seed = 1,
     json_file: options.JsonFile = None,
     data_dir: options.DataDir = options.DATA_DIR,
     timeout_s: options.TimeoutS = options.START_TIMEOUT_S,
 ) -> int:
-    """Inspect places of a map in rounds; pieces are taken away, moved and put back between them."""
+    """Inspect places of a map in rounds; pieces are taken away, moved and put back between them.
+
+    With an illumination every round is compared with one in other light.
+    """
     import numpy as np
 
     from experiments.changes.places import named_places
@@ -43,8 +49,10 @@ def inspection(
         game.begin(seed)
         chosen = named_places(stack, data_dir, map_name, places)
         rows = []
-        for row in Rounds(game, store, map_name, loaded, chosen, rng).play(rounds, changes, seed):
+        told = {"world": world, "seed": seed, "map": map_name, "illumination": illumination}
+        played = Rounds(game, store, map_name, loaded, chosen, rng, illumination)
+        for row in played.play(rounds, changes, seed):
             rows.append(row)
-            write_json(json_file, {"world": world, "seed": seed, "map": map_name, "rounds": rows})
+            write_json(json_file, {**told, "rounds": rows})
     print_rows("rounds of inspecting", rows)
     return len(rows)

@@ -40,22 +40,33 @@ class SimulationRequest(Message):
     Attributes:
         action: reset puts the robot at the start pose and draws noise from seed; place_robot; place_hider and
             look reply with a picture; set_item takes the furniture `item` away, puts it back or moves it;
-            place_obstacle adds furniture of a `kind` at `pose`, with `item` as its name.
+            place_obstacle adds furniture of a `kind` at `pose`, with `item` as its name; set_light lets it
+            become another time of day.
         item: name of a piece of furniture: its own, or kind and number as in "chair-2".
         kind: of the furniture catalogue.
         present: false takes the item away, true puts it back where the world file has it.
+        illumination: the time of day, from noon (0) over dusk (0.5) to lamps only (1).
     """
 
     SCHEMA: ClassVar[str] = "simulation_request.v1"
 
     action: Literal[
-        "reset", "place_robot", "place_hider", "remove_hider", "look", "truth", "set_item", "place_obstacle"
+        "reset",
+        "place_robot",
+        "place_hider",
+        "remove_hider",
+        "look",
+        "truth",
+        "set_item",
+        "place_obstacle",
+        "set_light",
     ]
     pose: Pose | None = None
     seed: int | None = Field(default=None, ge=0)
     item: Item | None = None
     kind: Item | None = None
     present: bool | None = None
+    illumination: float | None = Field(default=None, ge=0.0, le=1.0)
 
 
 class SimulationReply(Message):

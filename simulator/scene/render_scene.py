@@ -68,9 +68,16 @@ class RenderScene:
         self._warp = CubeToEquirect(camera.width_px, self._cameras[0].width)
         self._faces = np.empty((6 * self._cameras[0].width, self._cameras[0].width, 4), np.uint8)
 
-    def change_static(self, world: WorldFile, contents: Contents, painter: Painter, cache: DiskCache) -> None:
+    def change_static(
+        self,
+        world: WorldFile,
+        contents: Contents,
+        painter: Painter,
+        cache: DiskCache,
+        sky_brightness: float,
+    ) -> None:
         """Show another state of the world; its light is computed anew unless the cache has it."""
-        self._painter = painter
+        self._painter, self._sky_brightness = painter, sky_brightness
         self._scene.remove_entity(self._static)
         self._static = self._add_static(world, *contents, cache)
 
@@ -92,6 +99,10 @@ class RenderScene:
         entity.add_component(body)
         self._scene.add_entity(entity)
         return entity
+
+    def remove_body(self, entity: sapien.Entity) -> None:
+        """Take something that moves out of the scene for good."""
+        self._scene.remove_entity(entity)
 
     def move(self, entity: sapien.Entity, pose: sapien.Pose | None) -> None:
         """Put a body at a pose, or out of sight."""

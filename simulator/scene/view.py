@@ -35,27 +35,31 @@ class View:
             settings: camera, robot, cache and levels of the disturbances.
             figures: people, carts and other robots, in the order in which `Bodies` has their poses.
         """
-        self._settings, self._levels = settings, settings.disturbances
+        self._settings, self._levels, self._figures = settings, settings.disturbances, figures
         self._cache = DiskCache(settings.cache_dir, settings.cache_limit_mb * 1_000_000)
-        level, robot = self._levels.illumination, settings.robot
+        level = self._levels.illumination
         shown, lit = illuminated(world, contents, level)
-        shade = body_brightness(level)
         with Painter(self._cache) as painter:
             sky = view_brightness(level)
             self._scene = RenderScene(shown, lit, settings.camera, painter, self._cache, sky)
-            looks = link_parts(robot, SEEKER)
-            self._links = {name: self._scene.add_body(parts, shade) for name, parts in looks.items()}
-            self._hider = self._scene.add_body(whole_robot(robot, HIDER), shade)
-            self._walkers = [self._scene.add_body(figure.looks, shade) for figure in figures]
-        fog = fog_of(self._levels.fog, self._levels.rain, level, world.environment)
-        self._scene.set_fog(fog.extinction, fog.grey)
+            self._add_bodies()
+        self._add_fog(world)
         self._cache.tidy()
 
     def change(self, world: WorldFile, contents: Contents) -> None:
         """Show another state of the world."""
-        shown, lit = illuminated(world, contents, self._levels.illumination)
         with Painter(self._cache) as painter:
-            self._scene.change_static(shown, lit, painter, self._cache)
+            self._change(world, contents, painter)
+
+    def set_light(self, illumination: float, world: WorldFile, contents: Contents) -> None:
+        """Show the same world at another time of day, from noon (0) to lamps only (1)."""
+        self._levels = self._levels.model_copy(update={"illumination": illumination})
+        for body in (*self._links.values(), self._hider, *self._walkers):
+            self._scene.remove_body(body)
+        with Painter(self._cache) as painter:
+            self._change(world, contents, painter)
+            self._add_bodies()
+        self._add_fog(world)
 
     def picture(
         self, camera: Pose2, motion: Motion, lean: Quaternion, bodies: Bodies, moment: Moment
@@ -79,6 +83,24 @@ class View:
             self._scene.move_flat(entity, pose)
         self._place_robot(bodies, 0.0, 0.0)
         return self._scene.measured_panorama(camera, lean)
+
+    def _change(self, world: WorldFile, contents: Contents, painter: Painter) -> None:
+        level = self._levels.illumination
+        shown, lit = illuminated(world, contents, level)
+        self._scene.change_static(shown, lit, painter, self._cache, view_brightness(level))
+
+    def _add_bodies(self) -> None:
+        """Everything that moves, as bright as it is at this time of day."""
+        robot, shade = self._settings.robot, body_brightness(self._levels.illumination)
+        looks = link_parts(robot, SEEKER)
+        self._links = {name: self._scene.add_body(parts, shade) for name, parts in looks.items()}
+        self._hider = self._scene.add_body(whole_robot(robot, HIDER), shade)
+        self._walkers = [self._scene.add_body(figure.looks, shade) for figure in self._figures]
+
+    def _add_fog(self, world: WorldFile) -> None:
+        levels = self._levels
+        fog = fog_of(levels.fog, levels.rain, levels.illumination, world.environment)
+        self._scene.set_fog(fog.extinction, fog.grey)
 
     def _place_robot(self, bodies: Bodies, dx_m: float, dy_m: float) -> None:
         """Put the robot's links where they were, which during an exposure is a little further back."""

@@ -559,6 +559,7 @@ def simulated() -> tuple[Message, ...]:
             item="box-1",
             kind="basket",
             present=True,
+            illumination=0.5,
         ),
         simulation.SimulationReply(**AT, truth=truth(), frame=frame()),
     )

@@ -56,6 +56,10 @@ class Experimenter:
         request = SimulationRequest(action="place_obstacle", kind=kind, pose=pose, item=name)
         return self._ask(request).truth
 
+    def set_light(self, illumination: float) -> Truth:
+        """Let it become another time of day, from noon (0) to lamps only (1)."""
+        return self._ask(SimulationRequest(action="set_light", illumination=illumination)).truth
+
     def look(self, pose: Pose) -> Frame:
         """Take a picture from any pose."""
         return _picture(self._ask(SimulationRequest(action="look", pose=pose)), "look")

@@ -55,6 +55,18 @@ def test_lamps_only_is_darker_where_there_is_even_light(world, clear_picture):
     assert night.mean() < clear_picture.mean() - 3
 
 
+def test_light_that_changes_shows_what_a_world_of_that_light_shows(world):
+    changed, dusk = simulated(world, fog=0.5), simulated(world, fog=0.5, illumination=0.5)
+    noon = changed.panorama_at(*HERE)
+    for each in (changed, dusk):
+        each.place_hider(HERE[0] + 1.0, HERE[1], 0.0)
+    changed.set_light(0.5)
+    assert (changed.panorama_at(*HERE) == dusk.panorama_at(*HERE)).all()
+    changed.remove_hider()
+    changed.set_light(0.0)
+    assert (changed.panorama_at(*HERE) == noon).all()
+
+
 def test_tilt_turns_the_picture_by_what_it_says(world, clear_picture):
     tilted = simulated(world, tilt=1.0)
     picture = tilted.panorama_at(*HERE)

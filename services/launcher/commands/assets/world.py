@@ -136,6 +136,23 @@ def move(
 
 
 @app.command()
+def light(
+    illumination: Annotated[float, typer.Argument(min=0, max=1, help="0 noon, 0.5 dusk, 1 lamps only.")],
+    robot: Annotated[str, typer.Option(help="Whose simulator.")] = "r1",
+    data_dir: options.DataDir = options.DATA_DIR,
+    endpoint: options.Endpoint = None,
+) -> None:
+    """Let it become another time of day in the world of a running stack."""
+    from services.launcher.client.address import running_address
+    from services.launcher.client.experimenter import Experimenter
+    from services.launcher.client.failure import one_line_errors
+
+    with one_line_errors(), running_address(endpoint, data_dir).open() as bus:
+        Experimenter(bus, robot).set_light(illumination)
+    typer.echo(f"light: {illumination:g}, where noon is 0 and lamps only 1")
+
+
+@app.command()
 def gallery(
     into: Annotated[Path, typer.Option(help="Folder for the page, world files and pictures.")],
     count: Annotated[int, typer.Option(min=1, max=1000, help="Worlds: kinds and sizes in turn.")] = 60,

@@ -42,6 +42,13 @@ def drive_ahead(simulation, seconds=4.0):
     return simulation.truth()
 
 
+def test_light_needs_a_time_of_day(ask):
+    with pytest.raises(RequestError, match="needs the time of day"):
+        ask(action="set_light")
+    _, changed = ask(action="set_light", illumination=0.5)
+    assert changed, "the frame in flight shows the light before"
+
+
 def test_items_without_a_name_are_numbered_by_kind(world):
     assert item_names(world) == ["dining_table-1", "gate"]
 
