@@ -22,10 +22,10 @@ import pytest
 import zenoh
 
 from services.drive.limits import DriveLimits
-from services.planner.control.map_changes import MapChanges
 from services.planner.missions.explore import FrontierExploration
 from services.planner.profiles import DEFAULT
-from services.planner.remote import RemoteMap
+from services.planner.remote.map_changes import MapChanges
+from services.planner.remote.remote_map import RemoteMap
 from shared.bus import Bus, open_bus, wait_until
 from shared.messages.maps import AddNode, Operation, PutEdge
 from shared.queries import AbsentError, QueryError, TimedOutError

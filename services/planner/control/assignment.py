@@ -4,15 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from services.planner.control.map_changes import MapChanges
 from services.planner.control.records import parameters_of
-from services.planner.inspector import RemoteInspector
 from services.planner.mission_kinds import MissionContext, MissionKinds
 from services.planner.ports import Mission
 from services.planner.profiles import Profile
-from services.planner.remote import RemoteMap, RemoteMatcher
+from services.planner.remote.map_changes import MapChanges
+from services.planner.remote.remote_inspector import RemoteInspector
+from services.planner.remote.remote_map import RemoteMap
+from services.planner.remote.remote_matcher import RemoteMatcher
+from services.planner.remote.traffic import Traffic
 from services.planner.settings import PlannerSettings
-from services.planner.traffic import Traffic
 from services.planner.travel.whereabouts import Whereabouts
 from shared.bus import Bus
 from shared.mapgraph.graph import MapGraph

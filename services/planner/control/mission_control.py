@@ -10,7 +10,7 @@ from services.planner.control.standing import Standing, status_of
 from services.planner.mission_kinds import MissionError, MissionKinds
 from services.planner.ports import Accompanying, Decision, Mission, Observation, Progress
 from services.planner.profiles import Profile
-from services.planner.remote import RemoteMap
+from services.planner.remote.remote_map import RemoteMap
 from services.planner.settings import PlannerSettings
 from services.planner.surroundings import at_speed
 from shared.bus import Bus

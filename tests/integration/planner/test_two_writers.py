@@ -6,12 +6,12 @@ from itertools import pairwise
 
 import pytest
 
-from services.planner.control.map_changes import MapChanges
 from services.planner.mapping.edges import NewEdges
 from services.planner.mapping.nodes import add_node
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT
-from services.planner.remote import RemoteMap
+from services.planner.remote.map_changes import MapChanges
+from services.planner.remote.remote_map import RemoteMap
 from shared.bus import open_bus, wait_until
 from shared.mapgraph.frontiers import sector_rad
 from shared.messages.base import SECTORS
@@ -98,7 +98,7 @@ def test_directions_explored_at_once_are_both_kept(two, bus):
 @pytest.mark.usefixtures("two")
 def test_dozens_of_writes_of_two_planners_are_all_there(bus, router_endpoint, monkeypatch):
     # Where each answer takes as long as the pause, the same one may come second ten times in a row.
-    monkeypatch.setattr("services.planner.remote.WRITE_TRIES", 10 * PLACES)
+    monkeypatch.setattr("services.planner.remote.remote_map.WRITE_TRIES", 10 * PLACES)
     made = {}
 
     def work(which):

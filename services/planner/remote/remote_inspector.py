@@ -1,6 +1,7 @@
 """Visits to places: pictures compared by the feature service, kept by the map store."""
 
-from services.planner.remote import RemoteMap, RemoteMatcher
+from services.planner.remote.remote_map import RemoteMap
+from services.planner.remote.remote_matcher import RemoteMatcher
 from shared.bus import Bus
 from shared.messages.inspections import CompareRequest, Inspection, InspectionRequest
 from shared.topics import COMPARE, INSPECTION

@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
-from services.planner import traffic
 from services.planner.ports import RightOfWay
-from services.planner.traffic import MISSED_S, RENEWED_S, UNHEARD, Traffic
+from services.planner.remote import traffic
+from services.planner.remote.traffic import MISSED_S, RENEWED_S, UNHEARD, Traffic
 from shared.messages.traffic import WayReply, WayRequest
 from shared.queries import TimedOutError
 

@@ -1,6 +1,6 @@
 """What a planner hears of its map: of one at a time, and of the past no more than it needs."""
 
-from services.planner.control.map_changes import MapChanges
+from services.planner.remote.map_changes import MapChanges
 from shared.messages.maps import MapDelta
 
 

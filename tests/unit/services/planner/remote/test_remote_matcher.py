@@ -2,11 +2,12 @@
 
 import pytest
 
-from services.planner.remote import RemoteMap, RemoteMatcher
+from services.planner.remote.remote_map import RemoteMap
+from services.planner.remote.remote_matcher import RemoteMatcher
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.routing import GOAL
 from shared.messages.features import PhotoView
-from shared.messages.maps import Edge, MapDelta, MapReply, Node, PutEdge
+from shared.messages.maps import Node
 from shared.messages.matching import MatchReply, NodeMatch
 from tests.plane_world import picture
 
@@ -56,17 +57,3 @@ def test_only_of_a_photo_the_matches_themselves_are_asked_for(photo):
     matcher.locate(picture((0.0, 0.0, 0.0)).model_copy(update={"photo": photo}), 60)
     (asked,) = bus.asked
     assert (asked.best_k, asked.with_matches) == (60, photo is not None)
-
-
-class Store:
-    """A bus on which every question about maps has the same answer."""
-
-    def ask(self, _query, _request, _timeout_s, **_names):
-        return MapReply(map="flat", revision=7, nodes=(Node(node_id=1), Node(node_id=2)))
-
-
-def test_a_delta_that_does_not_fit_the_copy_has_the_map_read_again():
-    maps = RemoteMap(Store(), "flat", 1.0)
-    maps.graph, maps.revision = MapGraph([Node(node_id=1)]), 6
-    maps.follow(MapDelta(map="flat", revision=7, operations=(PutEdge(edge=Edge(a=1, b=2)),)))
-    assert (set(maps.graph.nodes), maps.revision) == ({1, 2}, 7)

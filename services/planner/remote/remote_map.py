@@ -1,22 +1,20 @@
-"""The mission's view of other services: matches from the feature service, the map from the map store."""
+"""The mission's map: a copy of the one in the map store."""
 
 from collections.abc import Sequence
 
-from services.planner.control.map_changes import MapChanges
-from services.planner.ports import Matches, RightOfWay
-from services.planner.traffic import Traffic
+from services.planner.ports import RightOfWay
+from services.planner.remote.map_changes import MapChanges
+from services.planner.remote.traffic import Traffic
 from shared.bus import Bus
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.keep_clear import current_limits
 from shared.mapgraph.operations import GraphError
 from shared.mapgraph.rebasing import rebased
-from shared.mapgraph.routing import GOAL
 from shared.mapgraph.rules import Limits
 from shared.messages.features import Features
 from shared.messages.maps import AddNode, DeleteNode, MapDelta, MapReply, MapRequest, Operation
-from shared.messages.matching import MatchRequest
 from shared.queries import RefusedError
-from shared.topics import MAP, MATCH
+from shared.topics import MAP
 from shared.wall_clock import WallClock
 
 AUTHOR = "planner"
@@ -154,55 +152,3 @@ class RemoteMap:
 
     def _ask(self, request: MapRequest) -> MapReply:
         return self._bus.ask(MAP, request, self._timeout_s, map=self.name)
-
-
-class RemoteMatcher:
-    """Asks the feature service about one frame, set before each step.
-
-    Attributes:
-        match_ms: time the service spent on matching for this frame, all answers together; verify_ms alike.
-    """
-
-    def __init__(self, bus: Bus, robot: str, maps: RemoteMap, timeout_s: float) -> None:
-        self._bus, self.robot, self._maps, self._timeout_s = bus, robot, maps, timeout_s
-        self.frame_seq = 0
-        self.frame_stamp_ns = 0
-        self.match_ms = self.verify_ms = 0.0
-
-    def begin(self, frame_seq: int, frame_stamp_ns: int) -> None:
-        """Ask about this frame from now on; what its answers cost is counted from zero."""
-        self.frame_seq, self.frame_stamp_ns = frame_seq, frame_stamp_ns
-        self.match_ms = self.verify_ms = 0.0
-
-    def match(self, node_ids: Sequence[int], best_k: int = 0, targets: Sequence[Features] = ()) -> Matches:
-        """Matches of the current frame by node id; the first target is GOAL."""
-        return self._ask(
-            MatchRequest(
-                seq=self.frame_seq,
-                stamp_ns=self.frame_stamp_ns,
-                map=self._maps.name,
-                map_revision=self._maps.revision,
-                node_ids=tuple(n for n in node_ids if n != GOAL),
-                best_k=best_k,
-                targets=tuple(targets),
-            )
-        )
-
-    def locate(self, features: Features, best_k: int) -> Matches:
-        """Matches of any picture with the most similar nodes."""
-        return self._ask(
-            MatchRequest(
-                map=self._maps.name,
-                map_revision=self._maps.revision,
-                features=features,
-                best_k=best_k,
-                with_matches=features.photo is not None,
-            )
-        )
-
-    def _ask(self, request: MatchRequest) -> Matches:
-        reply = self._bus.ask(MATCH, request, self._timeout_s, robot=self.robot)
-        self.match_ms += reply.match_ms
-        self.verify_ms += reply.verify_ms
-        known = self._maps.graph.nodes  # the service may know of nodes of another robot before we do
-        return {m.node_id: m for m in reply.results if m.node_id in known or m.node_id == GOAL}
