@@ -19,6 +19,7 @@ test check: export OMP_NUM_THREADS = 1
 test check: export OPENCV_FOR_THREADS_NUM = 1
 # Hundreds of processes start in a run of the tests: without bytecode on disk each compiles for two seconds.
 unexport PYTHONDONTWRITEBYTECODE
+NOT_IN_TEST := --ignore=tests/faults --ignore=tests/benchmarks
 FUZZ_ARGS ?= --seconds 60 --json runs/fuzz/report.json
 
 BIN := $(VENV)/bin
@@ -48,8 +49,10 @@ ros-demo: setup
 
 test: setup
 	@bash deploy/setup/test_programs.sh
-	@bash deploy/setup/ros.sh $(BIN)/python .venv-ros || echo "No Python with ROS: the tests that need it are skipped." >&2
-	$(BIN)/python -m pytest -n $(WORKERS) --ignore=tests/faults --ignore=tests/benchmarks $(PYTEST_ARGS)
+	@# All workers begin at once and would each compile every test: a minute of two cores.
+	@$(BIN)/python -m pytest --collect-only -qq $(NOT_IN_TEST) >/dev/null 2>&1 & \
+		bash deploy/setup/ros.sh $(BIN)/python .venv-ros || echo "No Python with ROS: the tests that need it are skipped." >&2; wait
+	$(BIN)/python -m pytest -n $(WORKERS) $(NOT_IN_TEST) $(PYTEST_ARGS)
 
 faults: setup
 	$(BIN)/python -m pytest tests/faults $(PYTEST_ARGS)
