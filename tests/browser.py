@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe is not installed")
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium in PATH")
 
@@ -25,6 +26,7 @@ FLAGS = [
 ]
 WAIT_MS = 60_000
 """Long, for machines that render and drive meanwhile; a condition that holds is not waited for."""
+SERIOUS = {"serious", "critical"}
 
 
 @contextmanager
@@ -56,3 +58,12 @@ def _is_fault(message: Any) -> bool:
 
 def _own(url: str, address: str) -> bool:
     return url.startswith((address, "blob:", "data:"))
+
+
+def inaccessible(page: Any) -> list[tuple[str, list[str]]]:
+    """What axe finds seriously wrong with the page as it is: rules, and the first that break them."""
+    return [
+        (violation["id"], [node["html"][:120] for node in violation["nodes"]][:3])
+        for violation in axe.Axe().run(page).response["violations"]
+        if violation["impact"] in SERIOUS
+    ]

@@ -8,7 +8,6 @@ from typing import Any
 
 import httpx
 import pytest
-from axe_playwright_python.sync_playwright import Axe
 from PIL import Image
 
 from services.recorder.player import Player, play
@@ -19,7 +18,7 @@ from shared.bus import open_bus, wait_until
 from shared.lifecycle import in_thread
 from shared.messages.sensors import Frame
 from shared.topics import FRAME
-from tests.browser import WAIT_MS, listen, needs_chromium
+from tests.browser import WAIT_MS, inaccessible, listen, needs_chromium
 from tests.e2e.near_node import hiding_place_near_a_node
 from tests.e2e.one_stack.conftest import MAP, Explored
 
@@ -32,7 +31,6 @@ COLOURS = """() => {
     const context = document.querySelector(".pair").getContext("2d");
     return new Set(context.getImageData(0, 0, 720, 740).data).size;
 }"""
-SERIOUS = {"serious", "critical"}
 
 
 class Late:
@@ -207,17 +205,12 @@ def test_a_recording_plays_as_if_live(page: Any, explored: Explored, tmp_path: A
 
 
 def test_every_view_is_accessible_and_well_behaved(page: Any) -> None:
-    axe = Axe()
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
         for view in VIEWS:
             page.click(f"nav a[data-view={view}]")
             page.wait_for_timeout(400)
-            found = axe.run(page).response["violations"]
-            bad = [
-                (v["id"], [n["html"][:120] for n in v["nodes"]][:3]) for v in found if v["impact"] in SERIOUS
-            ]
-            assert bad == [], f"{view}, {scheme}"
+            assert inaccessible(page) == [], f"{view}, {scheme}"
 
 
 def test_the_policy_allows_no_inline_scripts_and_the_page_is_small(browser: Any, explored: Explored) -> None:

@@ -5,14 +5,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from axe_playwright_python.sync_playwright import Axe
 
 from services.map_store.storage.database import Database
 from services.map_store.store import MapStore
 from shared.bus import wait_until
 from shared.messages.maps import Edge, PutEdge
 from shared.messages.places import KeepOut, Place, PutPlace, PutRule, Slow
-from tests.browser import WAIT_MS, listen, needs_chromium
+from tests.browser import WAIT_MS, inaccessible, listen, needs_chromium
 from tests.integration.gateway.conftest import serve_gateway
 from tests.integration.gateway.gateway_process import WAIT_S
 from tests.integration.gateway.standins import Planner, served
@@ -20,7 +19,6 @@ from tests.unit.services.map_store.conftest import add, app_of
 
 pytestmark = needs_chromium
 COUNT = 8
-SERIOUS = {"serious", "critical"}
 SPOT = """(id) => {
     const box = document.getElementById("graph").getBoundingClientRect();
     const at = document.getElementById("graph")._cyreg.cy.getElementById(id).renderedPosition();
@@ -89,8 +87,7 @@ def require_accessible(page: Any, folder: Path) -> None:
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
         page.wait_for_timeout(300)
-        found = Axe().run(page).response["violations"]
-        assert [(v["id"], v["nodes"][0]["html"][:120]) for v in found if v["impact"] in SERIOUS] == []
+        assert inaccessible(page) == [], scheme
         page.screenshot(path=folder / f"{scheme}.png")
 
 

@@ -5,16 +5,14 @@ from typing import Any
 
 import httpx
 import pytest
-from axe_playwright_python.sync_playwright import Axe
 
 from shared.bus import wait_until
-from tests.browser import WAIT_MS, listen, needs_chromium
+from tests.browser import WAIT_MS, inaccessible, listen, needs_chromium
 from tests.integration.gateway.gateway_process import WAIT_S
 from tests.integration.gateway.test_tasks import ERRAND, FLEET_URL, SCHEDULES_URL, TASKS_URL, Store
 from tests.integration.gateway.test_tasks import store as store
 
 pytestmark = needs_chromium
-SERIOUS = {"serious", "critical"}
 
 
 @pytest.fixture
@@ -112,6 +110,4 @@ def test_the_view_is_accessible(page: Any, http: httpx.Client, store: Store):
     page.wait_for_selector("#task-list span.state:text-is('running')", timeout=WAIT_MS)
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
-        found = Axe().run(page).response["violations"]
-        bad = [(v["id"], [n["html"][:120] for n in v["nodes"]]) for v in found if v["impact"] in SERIOUS]
-        assert bad == [], scheme
+        assert inaccessible(page) == [], scheme
