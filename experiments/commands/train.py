@@ -14,7 +14,7 @@ app = typer.Typer(
 WORLDS, SHARDS, PAIRS = 40, 4, 64  # 10,240 pairs, some 10 GB
 JUDGED = (
     "sift,aliked-t16,aliked-n16,sift/equirectangular/topnav-attention,topnav-keypoints,topnav-slim,"
-    "topnav-hardnet"
+    "topnav-hardnet,topnav-sift-slim,topnav-sift-hardnet"
 )
 DATA, MODELS = Path("data/training/pairs"), Path("data/training")
 RecipeFile = Annotated[

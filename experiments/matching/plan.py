@@ -25,6 +25,8 @@ DESCRIPTORS = (
     "mkd",
     "topnav-slim",
     "topnav-hardnet",
+    "topnav-sift-slim",
+    "topnav-sift-hardnet",
     "topnav-keypoints",
     "aliked-t16",
     "hardnet",

@@ -7,11 +7,12 @@ from services.features.networks.own_weights import folded, own_weights
 from services.features.networks.patch_network import PatchNetwork
 from services.features.networks.patch_shapes import Shape as PatchShape
 from services.features.networks.patch_shapes import network_named
+from services.features.networks.sift_patches import SiftPatches
 from services.features.networks.spherical_keypoints import described, network_of, strongest
 from services.features.pipeline.interfaces import Profile
 
 
-class _Patches(PatchNetwork):
+class _Trained:
     """128 numbers per patch, in the shape of HardNet (Mishchuk et al. 2017)."""
 
     weights: str
@@ -24,14 +25,26 @@ class _Patches(PatchNetwork):
         return folded(network.eval())
 
 
-class Slim(_Patches):
+class Slim(_Trained, PatchNetwork):
     """A quarter of HardNet's channels."""
 
     weights, shape = "topnav-slim", "slim"
 
 
-class FullHardNet(_Patches):
+class FullHardNet(_Trained, PatchNetwork):
     """All of HardNet's channels."""
+
+    weights, shape = "topnav-hardnet", "hardnet"
+
+
+class SiftSlim(_Trained, SiftPatches):
+    """`Slim` on SIFT's keypoints."""
+
+    weights, shape = "topnav-slim", "slim"
+
+
+class SiftHardNet(_Trained, SiftPatches):
+    """`FullHardNet` on SIFT's keypoints."""
 
     weights, shape = "topnav-hardnet", "hardnet"
 

@@ -74,36 +74,39 @@ def _repository(name: str, repository: str, origin: str, pipeline: str) -> Train
     )
 
 
-def _own(name: str, plugin: str, size_bytes: int, sha256: str) -> TrainedModel:
+def _own(name: str, size_bytes: int, sha256: str, *plugins: str) -> TrainedModel:
     """A file in services/features/weights, see deploy/TRAINING.md."""
     file, origin = f"{name}.safetensors", "trained here"
-    return TrainedModel(name, file, "Apache-2.0", origin, (plugin,), size_bytes, sha256, source="topnav")
+    return TrainedModel(
+        name, file, "Apache-2.0", origin, plugins or (name,), size_bytes, sha256, source="topnav"
+    )
 
 
 OWN: tuple[TrainedModel, ...] = (
     _own(
         "topnav-slim",
-        "topnav-slim",
         563_984,
         "48f9ded9bf4187f32a51ebca5db1d7cfd781858cae222b267412c8cf296def60",
+        "topnav-slim",
+        "topnav-sift-slim",
     ),
     _own(
-        "topnav-hardnet",
         "topnav-hardnet",
         2_674_520,
         "01878c3814afe70ce8c7fd0bd946a5b3f8a02d1eda97534da8abb8602c99c3bb",
+        "topnav-hardnet",
+        "topnav-sift-hardnet",
     ),
     _own(
-        "topnav-keypoints",
         "topnav-keypoints",
         787_920,
         "02c9d19ef3d62bf101e4f67983df86c03b83dc03587e216d0fec74d5708552a7",
     ),
     _own(
         "topnav-attention-sift",
-        "topnav-attention",
         576_550,
         "3260514f0b78c20591800b91ea9526b86e6f17702f555ae83abaae9a597a072e",
+        "topnav-attention",
     ),
 )
 MODELS: tuple[TrainedModel, ...] = (

@@ -22,6 +22,8 @@ PATCH_NETWORKS = {
     "topnav-slim": "Slim",
     "topnav-hardnet": "FullHardNet",
 }
+SIFT_NETWORKS = {"topnav-sift-slim": "SiftSlim", "topnav-sift-hardnet": "SiftHardNet"}
+"""Networks that describe patches round SIFT's keypoints."""
 KEYPOINT_NETWORKS = {
     "aliked-t16": "Aliked",
     "aliked-n16": "Aliked",
@@ -37,7 +39,7 @@ OWN_MATCHERS = {"topnav-attention": "AttentionMatcher"}
 """Trained here, as are the extractors whose names begin with topnav: nobody is to take one for another's."""
 CLASSIC_MATCHERS = {"mutual_ratio": "MutualRatio", "brute_force": "BruteForce"}
 PLUGINS = {
-    "extractor": CLASSIC | PATCH_NETWORKS | KEYPOINT_NETWORKS,
+    "extractor": CLASSIC | PATCH_NETWORKS | SIFT_NETWORKS | KEYPOINT_NETWORKS,
     "representation": {"equirectangular": "Equirectangular", "tangent": "Tangent", "planar": "Planar"},
     "matcher": CLASSIC_MATCHERS
     | OWN_MATCHERS

@@ -19,6 +19,7 @@ from services.features.pipeline.pipeline import Pipeline  # noqa: E402
 from services.features.pipeline.plugins import (  # noqa: E402
     KEYPOINT_NETWORKS,
     PATCH_NETWORKS,
+    SIFT_NETWORKS,
     create_matcher,
 )
 from shared.geometry.sphere import wrap_rad  # noqa: E402
@@ -40,6 +41,7 @@ TRAINED = (
     "topnav-slim",
     "topnav-hardnet",
     "topnav-keypoints",
+    *SIFT_NETWORKS,
 )
 
 
@@ -61,7 +63,9 @@ def untrained(profile: Profile) -> Pipeline:
     return Pipeline(profile, runtime=UNTRAINED)
 
 
-@pytest.mark.parametrize("name", [n for n in (*KEYPOINT_NETWORKS, *PATCH_NETWORKS) if n not in SLOW])
+@pytest.mark.parametrize(
+    "name", [n for n in (*KEYPOINT_NETWORKS, *PATCH_NETWORKS, *SIFT_NETWORKS) if n not in SLOW]
+)
 def test_untrained_networks_give_features_of_the_right_shape(room, name):
     profile = replace(combined(name, "equirectangular", "mutual_ratio"), keypoints=60)
     pipeline = untrained(profile)
@@ -152,7 +156,7 @@ def test_cuda_without_a_gpu_is_refused():
 
 def test_every_learned_extractor_has_an_entry_in_the_catalogue_of_weights():
     covered = {name for model in MODELS for name in model.pipelines} | {"dedode"}
-    assert {*KEYPOINT_NETWORKS, *PATCH_NETWORKS} <= covered
+    assert {*KEYPOINT_NETWORKS, *PATCH_NETWORKS, *SIFT_NETWORKS} <= covered
 
 
 @pytest.mark.parametrize(
