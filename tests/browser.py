@@ -3,6 +3,7 @@
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -67,3 +68,12 @@ def inaccessible(page: Any) -> list[tuple[str, list[str]]]:
         for violation in axe.Axe().run(page).response["violations"]
         if violation["impact"] in SERIOUS
     ]
+
+
+def require_accessible(page: Any, folder: Path) -> None:
+    """Nothing serious is wrong by day or by night; pictures of both are kept."""
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        page.wait_for_timeout(300)
+        assert inaccessible(page) == [], scheme
+        page.screenshot(path=folder / f"{scheme}.png")

@@ -37,10 +37,7 @@ class PatchNetwork(ABC):
                 self._steps.append(kf.LAFOrienter(PATCH_PX, angle_detector=kf.OriNet(pretrained=trained)))
         for step in self._steps:
             step.to(self._device).eval()
-        network = self._build(trained=trained).eval()
-        self._describe = (
-            kf.LAFDescriptor(network, PATCH_PX, grayscale_descriptor=True).to(self._device).eval()
-        )
+        self._describe = describing(self._build(trained=trained), self._device)
 
     @abstractmethod
     def _build(self, *, trained: bool) -> torch.nn.Module:
@@ -68,6 +65,11 @@ class PatchNetwork(ABC):
             for step in self._steps:
                 frames = step(frames, picture)
             return chosen, unit_descriptors(self._describe(picture, frames)[0])
+
+
+def describing(network: torch.nn.Module, device: torch.device) -> torch.nn.Module:
+    """Cuts patches out of a picture and has a network describe them."""
+    return kf.LAFDescriptor(network.eval(), PATCH_PX, grayscale_descriptor=True).to(device).eval()
 
 
 def _detector(profile: Profile, *, trained: bool) -> torch.nn.Module:

@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 import torch
 
-from services.features.extractors.sift import WIDTH, Sift
-from services.features.networks.patch_network import PATCH_PX
+from services.features.extractors.sift import Sift
+from services.features.networks.patch_network import describing
+from services.features.networks.patch_shapes import WIDTH
 from services.features.networks.runtime import batch_of, device_named, unit_descriptors
 from services.features.pipeline.interfaces import Detections, Image, IndexArray, Profile, Runtime
 
@@ -23,8 +24,7 @@ class SiftPatches(Sift, ABC):
     def __init__(self, profile: Profile, runtime: Runtime) -> None:
         super().__init__(profile)
         self._device = device_named(runtime.device)
-        network = self._build(trained=runtime.trained).eval()
-        self._network = kf.LAFDescriptor(network, PATCH_PX, grayscale_descriptor=True).to(self._device).eval()
+        self._describe = describing(self._build(trained=runtime.trained), self._device)
 
     @abstractmethod
     def _build(self, *, trained: bool) -> torch.nn.Module:
@@ -38,7 +38,7 @@ class SiftPatches(Sift, ABC):
             return chosen, np.zeros((0, WIDTH), np.float16)
         with torch.inference_mode():
             frames = self._frames([detections.handle[index] for index in chosen]).to(self._device)
-            return chosen, unit_descriptors(self._network(batch_of([gray], 1, self._device), frames)[0])
+            return chosen, unit_descriptors(self._describe(batch_of([gray], 1, self._device), frames)[0])
 
     def _frames(self, keypoints: list[Any]) -> torch.Tensor:
         """Local affine frames (1, N, 2, 3); OpenCV's angles turn the other way."""

@@ -11,7 +11,7 @@ from services.map_store.store import MapStore
 from shared.bus import wait_until
 from shared.messages.maps import Edge, PutEdge
 from shared.messages.places import KeepOut, Place, PutPlace, PutRule, Slow
-from tests.browser import WAIT_MS, inaccessible, listen, needs_chromium
+from tests.browser import WAIT_MS, listen, needs_chromium, require_accessible
 from tests.integration.gateway.conftest import serve_gateway
 from tests.integration.gateway.gateway_process import WAIT_S
 from tests.integration.gateway.standins import Planner, served
@@ -80,15 +80,6 @@ class Clicks:
         self.page.mouse.down()
         self.page.mouse.move(right, bottom, steps=4)
         self.page.mouse.up()
-
-
-def require_accessible(page: Any, folder: Path) -> None:
-    """Nothing serious is wrong by day or by night; pictures of both are kept."""
-    for scheme in ("light", "dark"):
-        page.emulate_media(color_scheme=scheme)
-        page.wait_for_timeout(300)
-        assert inaccessible(page) == [], scheme
-        page.screenshot(path=folder / f"{scheme}.png")
 
 
 def places_of(store: MapStore) -> dict[str, tuple[int, ...]]:

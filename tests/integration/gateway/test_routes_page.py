@@ -7,10 +7,10 @@ from services.map_store.store import MapStore
 from shared.bus import wait_until
 from shared.messages.maps import DeleteNode
 from shared.messages.places import PutRoute, Route
-from tests.browser import WAIT_MS, needs_chromium
+from tests.browser import WAIT_MS, needs_chromium, require_accessible
 from tests.integration.gateway.gateway_process import WAIT_S
 from tests.integration.gateway.standins import Planner
-from tests.integration.gateway.test_places_page import Clicks, require_accessible
+from tests.integration.gateway.test_places_page import Clicks
 from tests.integration.gateway.test_places_page import page as page
 from tests.integration.gateway.test_places_page import store as store
 

@@ -1,13 +1,14 @@
 """The queue in the console: added to, moved, cancelled, scheduled; in four clicks at most."""
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
 
 from shared.bus import wait_until
-from tests.browser import WAIT_MS, inaccessible, listen, needs_chromium
+from tests.browser import WAIT_MS, listen, needs_chromium, require_accessible
 from tests.integration.gateway.gateway_process import WAIT_S
 from tests.integration.gateway.test_tasks import ERRAND, FLEET_URL, SCHEDULES_URL, TASKS_URL, Store
 from tests.integration.gateway.test_tasks import store as store
@@ -99,7 +100,7 @@ def test_a_wrong_schedule_is_told(page: Any):
     page.wait_for_selector("#said:has-text('field hour cannot be')", timeout=WAIT_MS)
 
 
-def test_the_view_is_accessible(page: Any, http: httpx.Client, store: Store):
+def test_the_view_is_accessible(page: Any, http: httpx.Client, store: Store, tmp_path: Path):
     for task_id in ("one", "two", "three"):
         http.post(TASKS_URL, json={**ERRAND, "task_id": task_id})
     http.delete(f"{TASKS_URL}/three")
@@ -108,6 +109,4 @@ def test_the_view_is_accessible(page: Any, http: httpx.Client, store: Store):
     assert http.put(f"{SCHEDULES_URL}/night", json=errand).status_code == 200
     page.wait_for_selector("#schedules td time", timeout=WAIT_MS)
     page.wait_for_selector("#task-list span.state:text-is('running')", timeout=WAIT_MS)
-    for scheme in ("light", "dark"):
-        page.emulate_media(color_scheme=scheme)
-        assert inaccessible(page) == [], scheme
+    require_accessible(page, tmp_path)
