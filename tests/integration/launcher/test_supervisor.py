@@ -191,11 +191,20 @@ def test_a_failing_up_is_one_line_and_exit_1(tmp_path):
     assert len(up.stderr.splitlines()) == 1
 
 
+def stands(folder):
+    """Whether the folder could be made; not while the launcher writes a file of that name."""
+    try:
+        folder.mkdir()
+    except FileExistsError:
+        return False
+    return True
+
+
 def test_a_state_that_cannot_be_written_ends_nothing_and_is_written_once_it_can_be(launch, tmp_path):
     """As on a full disk: the file cannot be replaced while something stands where its new version goes."""
     stack = launch(a=SLEEP, b=SLEEP)
     way = tmp_path / "data" / "launcher" / "state.new"
-    way.mkdir()
+    assert wait_until(lambda: stands(way), SOON_S)
     other = stack.pid("b")
     old = stack.kill("a")
     stack.wait_healthy("a", SOON_S, other_than=old)
