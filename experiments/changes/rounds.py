@@ -10,6 +10,7 @@ import numpy as np
 
 from experiments.changes.alterations import Alteration, draw_alteration
 from experiments.changes.judging import Truth
+from experiments.changes.passages import shuts_off
 from experiments.changes.sights import FAR_M, Measured, labels_of
 from experiments.rendered.frames import simulated
 from services.launcher.client.failure import ExperimentError
@@ -96,7 +97,8 @@ class Rounds:
             shut = one.after is not None and any(
                 math.dist(one.after, at) < one.reach_m + CLEAR_M for at in spots
             )
-            if near and not shut and self._is_possible(one):
+            possible = near and not shut and self._is_possible(one)
+            if possible and not shuts_off(self._world, [*drawn, one], spots):
                 drawn.append(one)
             if len(drawn) == count:
                 return drawn
