@@ -66,7 +66,7 @@ REASONS = {
     "passing": "it is about a moment that is gone or not there yet; ask about the newest",
     "unavailable": "what the service depends on does not answer; the same question may succeed later",
     "forbidden": "a rule of the map is against it",
-    "busy": "too many questions wait; the same question may succeed later",
+    "busy": "too many questions wait, or something has to be done first; the same one may succeed later",
 }
 """Codes of refusals; services may add some, so an asker must bear with ones it does not know."""
 

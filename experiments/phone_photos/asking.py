@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from services.features.map_features.map_features import MapFeatures
+from services.features.map_features.pictured import PicturedNodes
 from services.features.matching.requests import match_candidates, verify_candidates
 from services.features.pipeline.named_pipelines import find_profile
 from services.features.pipeline.pipeline import Pipeline
@@ -27,10 +28,15 @@ SEED = 0
 
 @dataclass(frozen=True)
 class KnownMap:
-    """A map with the features of its nodes, and the pipeline that made them."""
+    """A map with the features of its nodes, and the pipeline that made them.
+
+    Attributes:
+        pictured: the same nodes as photos are compared with them.
+    """
 
     graph: MapGraph
     features: MapFeatures
+    pictured: PicturedNodes
     pipeline: Pipeline
 
 
@@ -48,6 +54,7 @@ def read_map(data_dir: Path, name: str, profile: str = "sift") -> KnownMap:
         store = MapStore(database, lambda: 0, lambda _: None)
         _, stored = store.recorded_graph(name)
         _, nodes = store.contents.features(name, ())
+        _, pictures = store.contents.pictures(name, ())
     except MapError as error:
         raise ExperimentError(f"map {name!r} of {data_dir}: {error}") from None
     finally:
@@ -56,8 +63,11 @@ def read_map(data_dir: Path, name: str, profile: str = "sift") -> KnownMap:
     features = MapFeatures.of(pipeline)
     for node in nodes:
         features.put(node.node_id, node.features)
+    pictured = PicturedNodes(pipeline)
+    for shown in pictures:
+        pictured.put(shown.node_id, shown.picture)
     graph = MapGraph([each.node for each in stored.nodes.values()], stored.edges.values())
-    return KnownMap(graph, features, pipeline)
+    return KnownMap(graph, features, pictured, pipeline)
 
 
 def ask(known: KnownMap, name: str, photo: Photo) -> PhotoAnswer:
@@ -73,6 +83,6 @@ def ask(known: KnownMap, name: str, photo: Photo) -> PhotoAnswer:
 def _ask(known: KnownMap, name: str, photo: Photo) -> PhotoAnswer:
     features = known.pipeline.features_of_photo(photo)
     request = MatchRequest(map=name, features=features, best_k=PHOTO_NODES)
-    raw = match_candidates(known.pipeline, request, features, known.features)
+    raw = match_candidates(known.pipeline, request, features, known.features, lambda _: known.pictured.nodes)
     matches = photo_matches(photo.view, verify_candidates(known.pipeline, request, raw))
     return located(known.graph, matches, np.random.default_rng(SEED))

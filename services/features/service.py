@@ -2,6 +2,8 @@
 
 import logging
 import time
+from collections.abc import Sequence
+from functools import partial
 from threading import Event
 
 import cv2
@@ -12,8 +14,10 @@ from services.features.freed_memory import keep_freed_memory
 from services.features.map_features.map_cache import CachedMap, MapCache
 from services.features.map_features.map_features import MapFeatures
 from services.features.map_features.map_reader import MapReader
+from services.features.map_features.pictured import PicturedNodes
 from services.features.matching.requests import (
     FrameNotKeptError,
+    NotReadyError,
     RequestError,
     match_candidates,
     verify_candidates,
@@ -31,6 +35,9 @@ from shared.topics import EXTRACT, EXTRACT_PHOTO
 
 log = logging.getLogger(__name__)
 
+LOOKING_S, LOOKED_AT = 1.0, 4
+"""For how long pictures are looked at for one question, and how many are read at once; chosen: each takes a
+tenth of a second, once."""
 IDLE_S = 0.5
 """How soon it notices that it is to end; whatever arrives wakes it before."""
 
@@ -125,7 +132,8 @@ class FeatureService:
         else:
             known = CachedMap(0, self._no_nodes())
         start_s = time.perf_counter()
-        raw = match_candidates(self._pipeline, request, current, known.nodes)
+        detailed = partial(self._looked_at, request.map, known)
+        raw = match_candidates(self._pipeline, request, current, known.nodes, detailed)
         matched_s = time.perf_counter()
         answered = robot.answered.of(current, known, request.with_matches)
         results = verify_candidates(self._pipeline, request, raw, answered)
@@ -140,6 +148,18 @@ class FeatureService:
             match_ms=(matched_s - start_s) * 1e3,
             verify_ms=(time.perf_counter() - matched_s) * 1e3,
         )
+
+    def _looked_at(self, name: str, known: CachedMap, node_ids: Sequence[int]) -> MapFeatures:
+        """Nodes as photos are compared with them; frames have their turn while that takes long."""
+        pictured = known.pictured = known.pictured or PicturedNodes(self._pipeline)
+        missing, until_s = pictured.missing(node_ids), time.monotonic() + LOOKING_S
+        while missing and time.monotonic() < until_s:
+            piece, missing = missing[:LOOKED_AT], missing[LOOKED_AT:]
+            for node_id, picture in self._maps.pictures(name, piece).items():
+                pictured.put(node_id, picture)
+        if missing:
+            raise NotReadyError(f"{len(missing)} pictures of map {name!r} have to be looked at: ask again")
+        return pictured.nodes
 
     def _no_nodes(self) -> MapFeatures:
         return MapFeatures.of(self._pipeline)

@@ -24,7 +24,8 @@ class FeaturesSettings(ServiceSettings):
         threads: cores OpenCV may use.
         frames_kept: newest frames whose features a MATCH can name by number.
         map_timeout_s: longest wait for the map store.
-        thumbnail_width_px: width of the picture sent along, for people and for look-alikes; half as high.
+        thumbnail_width_px: width of the picture sent along, half as high: for people, for look-alikes, and
+            kept with nodes to compare ordinary photos with.
         thumbnail_quality: JPEG quality of it, percent.
     """
 
@@ -38,8 +39,8 @@ class FeaturesSettings(ServiceSettings):
     threads: int = Field(default=2, ge=1, le=64)
     frames_kept: int = Field(default=8, ge=1, le=1024)
     map_timeout_s: PositiveFloat = 5.0
-    thumbnail_width_px: int = Field(default=320, ge=16, le=1024)
-    thumbnail_quality: int = Field(default=70, ge=1, le=100)
+    thumbnail_width_px: int = Field(default=800, ge=16, le=1024)
+    thumbnail_quality: int = Field(default=75, ge=1, le=100)
 
     def profile(self) -> Profile:
         """The pipeline's profile with what these settings replace."""

@@ -26,7 +26,7 @@ log = logging.getLogger(__name__)
 PERIOD_S = 0.5
 """A signal to stop is seen after at most this long; questions and deltas end the wait at once."""
 
-READING = frozenset({"read", "read_features"})
+READING = frozenset({"read", "read_features", "read_pictures"})
 
 
 class Deltas:
@@ -70,6 +70,9 @@ def answer_map(store: MapStore, name: str, request: MapRequest) -> MapReply:
     if request.action == "read_features":
         found, features = store.contents.features(name, request.node_ids)
         return MapReply(map=name, revision=found.revision, features=features)
+    if request.action == "read_pictures":
+        found, pictures = store.contents.pictures(name, request.node_ids)
+        return MapReply(map=name, revision=found.revision, pictures=pictures)
     revision, graph = store.graph(name)
     nodes = tuple(stored.node for stored in graph.nodes.values())
     edges, marks = tuple(graph.edges.values()), graph.marks

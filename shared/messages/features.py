@@ -10,7 +10,7 @@ from shared.messages.sensors import Frame
 
 MAX_KEYPOINTS = 4096
 MAX_THUMBNAIL_BYTES = 200_000
-"""Chosen: ten times what the widest that settings allow takes."""
+"""Chosen: four times what one of 800 columns takes."""
 
 
 MAX_PHOTO_PX = 1600
@@ -31,7 +31,7 @@ class PhotoView(Part):
 
 
 class Features(Message):
-    """Keypoints and descriptors of one frame; what a map node keeps instead of the picture.
+    """Keypoints and descriptors of one frame; what a map node keeps of it.
 
     Attributes:
         pipeline: extractor, representation and count that made them; only equals can be matched.
@@ -39,7 +39,7 @@ class Features(Message):
         scores: (N,) detector response, larger is better.
         descriptors: (N, D).
         sizes_rad: (N,) diameter of each keypoint, above 0: what is nearer is larger; None where unknown.
-        thumbnail: small JPEG of the frame for people, and to compare look-alikes by; may be empty.
+        thumbnail: small JPEG of the frame: for people, to tell look-alikes apart, for photos; may be empty.
         photo: of an ordinary photo, its camera: it looks to longitude and latitude 0; None for a panorama.
         extract_ms: time the feature service took for this picture, decoding and thumbnail included.
     """

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from shared.messages.base import SECTORS, Bearing, Message, Name, Part
-from shared.messages.features import Features
+from shared.messages.features import MAX_THUMBNAIL_BYTES, Features
 from shared.messages.missions import FailureKind, KindName, Parameters, PausedBy
 from shared.messages.places import (
     DeletePlace,
@@ -142,8 +142,8 @@ Operation = Annotated[
 class MapRequest(Message):
     """Read or write one map.
 
-    Actions: create (fails if it exists), read (graph only), read_features (of node_ids, all if empty),
-    transact (all operations or none; refused when base_revision is given and is not the newest).
+    Actions: create (fails if it exists), read (graph only), read_features and read_pictures (of node_ids, all
+    if empty), transact (all operations or none; refused when base_revision is given and is not the newest).
 
     Attributes:
         request_id: of a write; asked again with the same one it is answered again and not done again.
@@ -152,7 +152,7 @@ class MapRequest(Message):
     SCHEMA: ClassVar[str] = "map_request.v1"
     MAX_ITEMS: ClassVar[int] = MAP_ITEMS
 
-    action: Literal["create", "read", "read_features", "transact"]
+    action: Literal["create", "read", "read_features", "read_pictures", "transact"]
     author: str = Field(default="", max_length=64)
     base_revision: int | None = None
     request_id: str = Field(default_factory=lambda: uuid.uuid4().hex, pattern=r"^[A-Za-z0-9_-]{0,64}$")
@@ -165,6 +165,13 @@ class NodeFeatures(Part):
 
     node_id: int
     features: Features
+
+
+class NodePicture(Part):
+    """What one node looks like: the `thumbnail` of its features, a JPEG; empty where it has none."""
+
+    node_id: int
+    picture: bytes = Field(max_length=MAX_THUMBNAIL_BYTES)
 
 
 class MapReply(Message):
@@ -182,6 +189,7 @@ class MapReply(Message):
     routes: tuple[Route, ...] = Field(default=(), fail_fast=True)
     signs: tuple[Sign, ...] = Field(default=(), fail_fast=True)
     features: tuple[NodeFeatures, ...] = Field(default=(), fail_fast=True)
+    pictures: tuple[NodePicture, ...] = Field(default=(), fail_fast=True)
 
 
 class MapDelta(Message):

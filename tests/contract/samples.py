@@ -384,6 +384,7 @@ def mapped() -> tuple[Message, ...]:
             routes=marks().routes,
             signs=marks().signs,
             features=(maps.NodeFeatures(node_id=1, features=features()),),
+            pictures=(maps.NodePicture(node_id=1, picture=b"\xff\xd8 a picture"),),
         ),
         maps.MapDelta(
             **AT,

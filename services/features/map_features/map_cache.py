@@ -4,15 +4,36 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from services.features.map_features.map_features import MapFeatures
+from services.features.map_features.pictured import PicturedNodes
+from shared.messages.features import Features
 from shared.messages.maps import AddNode, DeleteNode, MapDelta, NodeFeatures
 
 
 @dataclass
 class CachedMap:
-    """One map at one revision."""
+    """One map at one revision.
+
+    Attributes:
+        pictured: nodes with what ordinary photos are compared with; None before the first.
+    """
 
     revision: int
     nodes: MapFeatures
+    pictured: PicturedNodes | None = None
+
+    def put(self, node_id: int, features: Features) -> None:
+        """Add a node or replace it."""
+        self.nodes.put(node_id, features)
+        self._forget_picture(node_id)
+
+    def remove(self, node_id: int) -> None:
+        """Forget a node."""
+        self.nodes.remove(node_id)
+        self._forget_picture(node_id)
+
+    def _forget_picture(self, node_id: int) -> None:
+        if self.pictured is not None:
+            self.pictured.remove(node_id)
 
 
 class MapCache:
@@ -34,7 +55,7 @@ class MapCache:
         """Take over a whole map, node by node."""
         kept = CachedMap(revision, self._empty())
         for part in features:
-            kept.nodes.put(part.node_id, part.features)
+            kept.put(part.node_id, part.features)
         kept.nodes.prepare()
         self._maps[name] = kept
         return kept
@@ -58,7 +79,7 @@ class MapCache:
             return
         for operation in delta.operations:
             if isinstance(operation, AddNode):
-                kept.nodes.put(operation.node.node_id, operation.features)
+                kept.put(operation.node.node_id, operation.features)
             elif isinstance(operation, DeleteNode):
-                kept.nodes.remove(operation.node_id)
+                kept.remove(operation.node_id)
         kept.revision = delta.revision

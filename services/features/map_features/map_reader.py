@@ -2,6 +2,7 @@
 
 import logging
 import time
+from collections.abc import Sequence
 
 from services.features.map_features.map_cache import CachedMap, MapCache
 from services.features.matching.requests import RequestError
@@ -50,6 +51,20 @@ class MapReader:
         if kept is not None and all(node_id in kept.nodes for node_id in node_ids):
             return kept
         return self._read_whole(name)
+
+    def pictures(self, name: str, node_ids: Sequence[int]) -> dict[int, bytes]:
+        """Pictures of nodes; b"" of those that have none, or that were deleted meanwhile.
+
+        Raises:
+            RequestError: the store does not answer.
+        """
+        found = dict.fromkeys(node_ids, b"")
+        try:
+            reply = self._ask(name, MapRequest(action="read_pictures", node_ids=tuple(node_ids)))
+        except RefusedError as error:
+            log.info("map %r gives no pictures of nodes %s: %s", name, list(node_ids), error)
+            return found
+        return found | {each.node_id: each.picture for each in reply.pictures}
 
     def _await(self, name: str, revision: int) -> CachedMap | None:
         """The kept map once deltas have brought it to `revision`; None if they do not come or leave a gap."""

@@ -11,16 +11,14 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from services.features.pipeline.thumbnail import from_thumbnail
 from shared.geometry.perspective import pixel_centres
 from shared.geometry.sphere import EquirectGrid, FloatArray
-from shared.jpeg import BadPictureError, jpeg_size
 
 WIDTH_PX, HEIGHT_PX = 256, 128
 """Pixels compared; chosen: 1.4 degrees each, a hundredth of a picture's area is a rug 2 m away."""
 OVERLAP_PX = 32
 """Columns repeated beyond the seam, so that flow crosses it; chosen: 45 degrees."""
-MOST_PIXELS = 2_000_000
-"""Of a thumbnail; chosen: four times those of the widest in the settings. A few bytes may announce more."""
 PATCH_PX = 9
 """Side of the patches in which a difference is averaged; chosen: 13 degrees, a picture on a wall 2 m away."""
 LARGEST_SHARE = 0.01
@@ -72,13 +70,7 @@ def _unexplained(here: Picture, there: Picture) -> FloatArray:
 
 
 def _decoded(jpeg: bytes) -> Picture | None:
-    try:
-        width_px, height_px = jpeg_size(jpeg)
-    except BadPictureError:
-        return None
-    if width_px * height_px > MOST_PIXELS:
-        return None
-    picture = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
+    picture = from_thumbnail(jpeg)
     if picture is None:
         return None
     return np.asarray(cv2.resize(picture, (WIDTH_PX, HEIGHT_PX), interpolation=cv2.INTER_AREA), np.uint8)

@@ -1,7 +1,7 @@
 """One MATCH question, answered in two steps so that each can be timed: match, then verify. Pure."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from services.features.map_features.map_features import MapFeatures
@@ -31,6 +31,16 @@ class FrameNotKeptError(RequestError):
     code = "passing"
 
 
+class NotReadyError(RequestError):
+    """The service has something to do first: the same question will succeed later."""
+
+    code = "busy"
+
+
+Detailed = Callable[[Sequence[int]], MapFeatures]
+"""Nodes with more keypoints, as far as there are; NotReadyError where that takes a while."""
+
+
 @dataclass(frozen=True, eq=False)
 class RawMatches:
     """Matches by descriptor alone: the candidates by id, their pairs, and who was shortlisted."""
@@ -45,14 +55,20 @@ class RawMatches:
 
 
 def match_candidates(
-    pipeline: Pipeline, request: MatchRequest, current: Features, nodes: MapFeatures
+    pipeline: Pipeline,
+    request: MatchRequest,
+    current: Features,
+    nodes: MapFeatures,
+    detailed: Detailed | None = None,
 ) -> RawMatches:
     """Match the descriptors of the current frame with every candidate.
 
-    In a large map the candidates for `best_k` are the nodes that resemble the frame as a whole.
+    In a large map the candidates for `best_k` are the nodes that resemble the frame as a whole. A photo is
+    compared with their `detailed` features.
 
     Raises:
         RequestError: something was made by another pipeline, or a node is not in the map.
+        NotReadyError: of a photo whose candidates have to be looked at first.
     """
     _require_pipeline("frame", current, pipeline)
     missing = sorted(node_id for node_id in set(request.node_ids) if node_id not in nodes)
@@ -61,7 +77,8 @@ def match_candidates(
     _require_comparable(request, nodes, pipeline)
     query = feature_set(current)
     wanted = _wanted(request, query, nodes)
-    candidates = {node_id: Candidate(node_id, nodes.features(node_id)) for node_id in wanted}
+    shown = detailed(wanted) if detailed is not None and current.photo is not None else nodes
+    candidates = {n: Candidate(n, (shown if n in shown else nodes).features(n)) for n in wanted}
     for number, target in enumerate(request.targets, start=1):
         _require_pipeline(f"target {number}", target, pipeline)
         candidates[-number] = Candidate(-number, feature_set(target))

@@ -15,8 +15,8 @@ from shared.geometry.photo.plane import focal_of
 from shared.geometry.sphere import bearings_from_lonlat
 from shared.messages.features import PhotoView
 
-KEYPOINTS = 1000
-"""Most of a photo: of a node's only some lie in it, and which ones nobody knows; 110 degrees have 400."""
+KEYPOINTS = 2500
+"""Most of a photo: of a node's only some lie in it, and which ones nobody knows."""
 BORDER_SIZES = 0.5
 """Sizes of a keypoint that must lie between it and the photo's border."""
 NATIVE_COLUMNS = 1024

@@ -1,19 +1,18 @@
 """One pipeline put together from its plugins: frame -> features message, and matches of two. Pure."""
 
-import cv2
+from dataclasses import replace
+
 import numpy as np
 
 from services.features.matching.verification import two_view_settings
 from services.features.pipeline.extraction import extract
-from services.features.pipeline.interfaces import Image, Profile, Runtime
-from services.features.pipeline.photograph import extract_photo
+from services.features.pipeline.interfaces import FeatureSet, Image, Profile, Runtime
+from services.features.pipeline.photograph import NATIVE_COLUMNS, extract_photo
 from services.features.pipeline.plugins import create_extractor, create_matcher, create_representation
+from services.features.pipeline.thumbnail import thumbnail
 from shared.frames.decoding import decode_picture
 from shared.messages.features import Features, Photo
 from shared.messages.sensors import Frame
-
-MOST_THUMBNAIL_BYTES = 200_000
-"""A larger one is left out: the limit of the message (shared/messages/features.py)."""
 
 
 class Pipeline:
@@ -22,8 +21,8 @@ class Pipeline:
     def __init__(
         self,
         profile: Profile,
-        thumbnail_width_px: int = 320,
-        thumbnail_quality: int = 70,
+        thumbnail_width_px: int = 800,
+        thumbnail_quality: int = 75,
         runtime: Runtime | None = None,
     ) -> None:
         runtime = runtime or Runtime()
@@ -36,6 +35,11 @@ class Pipeline:
         self._enough_px = profile.resize[1] if profile.resize is not None else None
         self._thumbnail = (thumbnail_width_px, thumbnail_quality)
 
+    @property
+    def columns(self) -> int:
+        """Of a panorama as extractors see it."""
+        return self._enough_px or NATIVE_COLUMNS
+
     def features_of(self, frame: Frame) -> Features:
         """Extract a frame's features; the number, time and robot of the frame go with them.
 
@@ -44,36 +48,33 @@ class Pipeline:
         """
         picture = decode_picture(frame, self._enough_px)
         found = extract(picture, self.extractor, self.representation, self.profile)
-        return Features(
-            seq=frame.seq,
-            stamp_ns=frame.stamp_ns,
-            robot=frame.robot,
-            lockstep=frame.lockstep,
-            pipeline=self.identity,
-            lonlat_rad=found.lonlat_rad,
-            scores=found.scores,
-            descriptors=found.descriptors,
-            sizes_rad=found.sizes_rad,
-            thumbnail=_thumbnail(picture, *self._thumbnail),
+        return self._told(found).model_copy(
+            update={
+                "seq": frame.seq,
+                "stamp_ns": frame.stamp_ns,
+                "robot": frame.robot,
+                "lockstep": frame.lockstep,
+                "thumbnail": thumbnail(picture, *self._thumbnail),
+            }
         )
+
+    def features_of_picture(self, picture: Image, keypoints: int) -> Features:
+        """Extract another number of keypoints from (H, 2H, 3) BGR."""
+        profile = replace(self.profile, keypoints=keypoints)
+        return self._told(extract(picture, self.extractor, self.representation, profile))
 
     def features_of_photo(self, photo: Photo) -> Features:
         """Extract an ordinary photo's features; they compare with those of frames."""
         flat = np.frombuffer(photo.data, dtype=np.uint8)
         picture = flat.reshape(photo.height_px, photo.width_px, 3)
         found = extract_photo(picture, photo.view, self.extractor, self.profile)
+        return self._told(found).model_copy(update={"photo": photo.view})
+
+    def _told(self, found: FeatureSet) -> Features:
         return Features(
             pipeline=self.identity,
             lonlat_rad=found.lonlat_rad,
             scores=found.scores,
             descriptors=found.descriptors,
             sizes_rad=found.sizes_rad,
-            photo=photo.view,
         )
-
-
-def _thumbnail(picture: Image, width_px: int, quality: int) -> bytes:
-    """JPEG of (H, 2H, 3) BGR for people, width_px columns; empty when it would not fit into a message."""
-    small = cv2.resize(picture, (width_px, width_px // 2), interpolation=cv2.INTER_AREA)
-    packed, data = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, quality])
-    return data.tobytes() if packed and data.size <= MOST_THUMBNAIL_BYTES else b""

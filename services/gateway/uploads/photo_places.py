@@ -1,5 +1,6 @@
 """Where in the map a photo was taken: asked twice where its field of view has to be found first."""
 
+import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,10 @@ from shared.messages.features import ExtractPhotoRequest, Features, Photo
 from shared.messages.maps import MapReply, MapRequest
 from shared.messages.matching import MatchReply, MatchRequest
 from shared.topics import EXTRACT_PHOTO, MAP, MATCH
+from shared.web.problems import ProblemError
 
+LOOKING_S = 60.0
+"""For how long it is asked again; chosen: five times what sixty nodes take on two cores."""
 SEED = 0
 """Of the draws of an answer: one question, one answer."""
 
@@ -47,8 +51,19 @@ async def _asked(gateway: Gateway, robot: str, found: MapReply, photo: Photo) ->
     wish = ExtractPhotoRequest(photo=photo)
     features = await gateway.asker.ask("features", EXTRACT_PHOTO, wish, timeout_s)
     question = MatchRequest(map=found.map, features=features, best_k=PHOTO_NODES)
-    reply = await gateway.asker_for(robot).ask("features", MATCH, question, timeout_s, robot=robot)
+    reply = await _matched(gateway, robot, question)
     graph = MapGraph(found.nodes, found.edges)
     matches = photo_matches(photo.view, reply.results)
     answer = await gateway.work(lambda: located(graph, matches, np.random.default_rng(SEED)))
     return LocatedPhoto(answer, features, reply)
+
+
+async def _matched(gateway: Gateway, robot: str, question: MatchRequest) -> MatchReply:
+    """The photo's matches; the first photo of a map waits until its nodes' pictures were looked at."""
+    timeout_s, until_s = gateway.settings.compute_timeout_s, time.monotonic() + LOOKING_S
+    while True:
+        try:
+            return await gateway.asker_for(robot).ask("features", MATCH, question, timeout_s, robot=robot)
+        except ProblemError as problem:
+            if problem.members.get("reason") != "busy" or time.monotonic() > until_s:
+                raise

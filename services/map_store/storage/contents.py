@@ -1,8 +1,8 @@
 """What nodes look like: features and thumbnails, checked on every read, damaged ones left out and named."""
 
 import logging
-from collections.abc import Iterable, Sequence
-from typing import Literal
+from collections.abc import Callable, Iterable, Sequence
+from typing import Literal, TypeVar
 
 from sqlalchemy import Connection
 
@@ -12,11 +12,12 @@ from services.map_store.storage.catalogue import MapRecord
 from services.map_store.storage.database import Database
 from services.map_store.storage.graph import Graph, StoredNode
 from services.map_store.storage.graphs import Graphs
-from shared.messages.maps import NodeFeatures
+from shared.messages.maps import NodeFeatures, NodePicture
 
 log = logging.getLogger(__name__)
 
 Kind = Literal["features", "thumbnail"]
+Told = TypeVar("Told", NodeFeatures, NodePicture)
 MAX_ANSWER_BYTES = 400_000_000
 """Features in one answer; the 512 MB that `shared.topics.MAP` carries leave room for the rest of it."""
 
@@ -33,29 +34,43 @@ class Contents:
 
         A node whose features are damaged is logged and left out: the others stay of use.
         """
-        answers: list[NodeFeatures] = []
+
+        def told(node_id: int, data: bytes) -> NodeFeatures:
+            return NodeFeatures(node_id=node_id, features=blobs.unpack_features(data))
+
+        return self._told(name, node_ids, "features", told)
+
+    def pictures(self, name: str, node_ids: Sequence[int]) -> tuple[MapRecord, tuple[NodePicture, ...]]:
+        """The same of their thumbnails."""
+        return self._told(name, node_ids, "thumbnail", lambda n, data: NodePicture(node_id=n, picture=data))
+
+    def _told(
+        self, name: str, node_ids: Sequence[int], kind: Kind, told: Callable[[int, bytes], Told]
+    ) -> tuple[MapRecord, tuple[Told, ...]]:
+        answers: list[Told] = []
         with self._database.read() as connection:
             found = catalogue.find(connection, name)
             graph = self._graphs.get(connection, found)
             chosen = [node_of(graph, name, node_id) for node_id in (node_ids or sorted(graph.nodes))]
-            size = blobs.sizes(connection, {stored.features for stored in chosen})
+            size = blobs.sizes(connection, {_checksum(stored, kind) for stored in chosen})
             if size > MAX_ANSWER_BYTES:
                 raise InvalidError(
-                    f"map {name!r}: {size} bytes of features, at most {MAX_ANSWER_BYTES} go into one answer; "
+                    f"map {name!r}: {size} bytes of {kind}, at most {MAX_ANSWER_BYTES} go into one answer; "
                     "ask for fewer nodes at a time"
                 )
             for stored in chosen:
+                checksum = _checksum(stored, kind)
                 try:
-                    features = blobs.unpack_features(blobs.get(connection, stored.features))
-                    answers.append(NodeFeatures(node_id=stored.node_id, features=features))
+                    data = blobs.get(connection, checksum) if checksum else b""
+                    answers.append(told(stored.node_id, data))
                 except CorruptError as error:
                     log.error("map %s: node %d is left out: %s", name, stored.node_id, error)
-                    self._seen_damaged.add(stored.features)
+                    self._seen_damaged.add(checksum)
         return found, tuple(answers)
 
     def read(self, name: str, stored: StoredNode, kind: Kind) -> bytes:
         """Bytes of one blob of a node, b"" when it has no thumbnail; CorruptError names map and node."""
-        sha256 = stored.thumbnail if kind == "thumbnail" else stored.features
+        sha256 = _checksum(stored, kind)
         if not sha256:
             return b""
         with self._database.read() as connection:
@@ -68,6 +83,10 @@ class Contents:
     def damaged(self, connection: Connection, checksums: Iterable[str]) -> set[str]:
         """Those of these features that were damaged when somebody asked for them, and still are."""
         return set(blobs.unreadable(connection, self._seen_damaged.intersection(checksums)))
+
+
+def _checksum(stored: StoredNode, kind: Kind) -> str:
+    return stored.thumbnail if kind == "thumbnail" else stored.features
 
 
 def node_of(graph: Graph, name: str, node_id: int) -> StoredNode:

@@ -10,6 +10,9 @@ from shared.messages.features import Features
 from shared.messages.matching import MatchRequest
 from shared.topics import MATCH
 
+PHOTO_S = 30.0
+"""At least so long an answer about a photo is waited for; chosen: ten times what sixty nodes take."""
+
 
 class RemoteMatcher:
     """Asks the feature service about one frame, set before each step.
@@ -56,7 +59,9 @@ class RemoteMatcher:
         )
 
     def _ask(self, request: MatchRequest) -> Matches:
-        reply = self._bus.ask(MATCH, request, self._timeout_s, robot=self.robot)
+        of_photo = request.features is not None and request.features.photo is not None
+        timeout_s = max(PHOTO_S, self._timeout_s) if of_photo else self._timeout_s
+        reply = self._bus.ask(MATCH, request, timeout_s, robot=self.robot)
         self.match_ms += reply.match_ms
         self.verify_ms += reply.verify_ms
         known = self._maps.graph.nodes  # the service may know of nodes of another robot before we do

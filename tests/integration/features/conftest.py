@@ -9,7 +9,7 @@ from services.features.service import run
 from services.features.settings import FeaturesSettings
 from shared.bus import Bus, Request, open_bus, wait_until
 from shared.messages.features import Features
-from shared.messages.maps import AddNode, MapDelta, MapReply, MapRequest, Node, NodeFeatures
+from shared.messages.maps import AddNode, MapDelta, MapReply, MapRequest, Node, NodeFeatures, NodePicture
 from shared.messages.matching import MatchRequest
 from shared.queries import RefusedError
 from shared.topics import MAP_DELTA, MAP_READ, MATCH
@@ -25,6 +25,8 @@ class StandInStore:
         self.name, self.revision, self.reads = name, 0, 0
         self.nodes: dict[int, Features] = {}
         self.pieces: list[int] = []
+        self.pictured: list[int] = []
+        """Nodes whose pictures were read."""
         self.going: tuple[int, ...] = ()
         """Nodes that are deleted right after the graph was read."""
         self._bus = bus
@@ -52,10 +54,15 @@ class StandInStore:
             self.nodes = {n: f for n, f in self.nodes.items() if n not in self.going}
             self.going = ()
             return
-        assert asked.action == "read_features"
+        assert asked.action in ("read_features", "read_pictures")
         assert asked.node_ids
         if gone := [node_id for node_id in asked.node_ids if node_id not in self.nodes]:
             request.refuse(f"no node {gone}")
+            return
+        if asked.action == "read_pictures":
+            pictures = tuple(NodePicture(node_id=n, picture=self.nodes[n].thumbnail) for n in asked.node_ids)
+            self.pictured.extend(asked.node_ids)
+            request.reply(MapReply(map=self.name, revision=self.revision, pictures=pictures))
             return
         features = tuple(NodeFeatures(node_id=n, features=self.nodes[n]) for n in asked.node_ids)
         self.pieces.append(len(features))

@@ -7,23 +7,28 @@ import cv2
 import numpy as np
 import pytest
 
-from services.features import early_questions
+from experiments.phone_photos.taking import Shot, taken
+from services.features import early_questions, service
 from services.features.map_features.map_reader import PIECE
 from shared.bus import Bus, wait_until
-from shared.messages.features import ExtractRequest, Features
+from shared.geometry.photo.plane import USUAL_RAD
+from shared.messages.features import ExtractPhotoRequest, ExtractRequest, Features
 from shared.messages.inspections import CompareReply, CompareRequest
 from shared.messages.matching import MatchReply, MatchRequest
 from shared.messages.sensors import Frame
+from shared.messages.simulation import Pose
 from shared.queries import RefusedError
-from shared.topics import COMPARE, EXTRACT, FEATURES, FRAME, MATCH
+from shared.topics import COMPARE, EXTRACT, EXTRACT_PHOTO, FEATURES, FRAME, MATCH
 from tests.integration.features.conftest import ANSWER_S
 from tests.unit.services.features.room import render_room
 
 PLACES_M = ((0.4, 0.0), (0.8, 0.3), (-1.0, 0.2), (-1.5, -0.6))
 
 
-def frame_at(x_m: float, y_m: float, seq: int = 0, stamp_ns: int = 1, lockstep: bool = True) -> Frame:
-    picture = render_room(x_m, y_m, 0.0, 256)
+def frame_at(
+    x_m: float, y_m: float, seq: int = 0, stamp_ns: int = 1, lockstep: bool = True, height_px: int = 256
+) -> Frame:
+    picture = render_room(x_m, y_m, 0.0, height_px)
     data = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, 92])[1].tobytes()
     return Frame(
         robot="r1",
@@ -31,8 +36,8 @@ def frame_at(x_m: float, y_m: float, seq: int = 0, stamp_ns: int = 1, lockstep: 
         stamp_ns=stamp_ns,
         lockstep=lockstep,
         encoding="jpeg",
-        width_px=512,
-        height_px=256,
+        width_px=2 * height_px,
+        height_px=height_px,
         data=data,
     )
 
@@ -68,7 +73,7 @@ def test_a_frame_becomes_features_and_the_same_frame_again_the_same_features(bus
     assert (first.seq, first.stamp_ns, first.robot, first.lockstep) == (4, 77, "r1", True)
     assert first.extract_ms == again.extract_ms > 0.0
     assert len(first.lonlat_rad) > 100
-    assert cv2.imdecode(np.frombuffer(first.thumbnail, np.uint8), cv2.IMREAD_COLOR).shape == (160, 320, 3)
+    assert cv2.imdecode(np.frombuffer(first.thumbnail, np.uint8), cv2.IMREAD_COLOR).shape == (400, 800, 3)
     np.testing.assert_array_equal(first.descriptors, again.descriptors)
 
 
@@ -149,6 +154,52 @@ def test_a_large_map_is_read_in_pieces_and_a_place_that_goes_meanwhile_means_onc
     assert (store.reads, store.pieces) == (2, [PIECE, PIECE, 2])
     with pytest.raises(RefusedError, match=r"no node \[251\]"):
         match(bus, features=current, node_ids=(PIECE + 1,))
+
+
+def photo_features(bus: Bus) -> Features:
+    """Of a photo taken at 0, 0 that looks to the left."""
+    pose = Pose(x_m=0.0, y_m=0.0, yaw_rad=1.0)
+    shot = Shot(pose, pitch_rad=0.0, roll_rad=0.0, fov_rad=1.4, fov_known=True, portrait=False)
+    photo = taken(shot, lambda at: render_room(at.x_m, at.y_m, at.yaw_rad, 1024), USUAL_RAD)
+    return bus.ask(EXTRACT_PHOTO, ExtractPhotoRequest(photo=photo), ANSWER_S)
+
+
+@pytest.mark.usefixtures("service")
+def test_a_photo_is_compared_with_the_pictures_of_places_each_looked_at_once(
+    bus: Bus, store, monkeypatch
+) -> None:
+    """A frame has its turn in between: whoever asks meanwhile is told to ask again."""
+    monkeypatch.setattr(service, "LOOKING_S", 1e-3)
+    monkeypatch.setattr(service, "LOOKED_AT", 1)
+    places = [extract(bus, frame_at(x, y, height_px=512)) for x, y in PLACES_M]
+    for node_id, features in enumerate(places):
+        store.add(node_id, features)
+    photo, refusals = photo_features(bus), []
+
+    def compared() -> MatchReply | None:
+        try:
+            return match(bus, map_revision=store.revision, features=photo, best_k=4)
+        except RefusedError as error:
+            refusals.append((error.code, str(error)[:10]))
+            return None
+
+    assert wait_until(lambda: compared() is not None, ANSWER_S)
+    assert refusals == [("busy", f"{left} pictures") for left in (3, 2, 1)]
+    assert sorted(store.pictured) == [0, 1, 2, 3]
+    with_pictures = compared()
+    store.add(1, places[1].model_copy(update={"thumbnail": b""}))
+    assert wait_until(lambda: compared() is not None, ANSWER_S)
+    assert store.pictured[4:] == [1]
+    counts = [{m.node_id: m.raw_matches for m in reply.results} for reply in (with_pictures, compared())]
+    assert counts[0][1] > 1.5 * counts[1][1], "it has no picture any more: only what frames are compared by"
+    assert {n: c for n, c in counts[0].items() if n != 1} == {n: c for n, c in counts[1].items() if n != 1}
+
+
+@pytest.mark.usefixtures("service")
+def test_a_frame_asks_for_no_pictures(bus: Bus, store) -> None:
+    store.add(0, extract(bus, frame_at(*PLACES_M[0])))
+    match(bus, map_revision=1, features=extract(bus, frame_at(0.0, 0.0)), best_k=1)
+    assert store.pictured == []
 
 
 @pytest.mark.usefixtures("service")

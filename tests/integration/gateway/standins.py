@@ -69,6 +69,7 @@ class FeatureService:
         self.photographed: list[ExtractPhotoRequest] = []
         self.matched: list[MatchRequest] = []
         self.behind = 0  # so many frames it does not have yet
+        self.busy = 0  # for so many questions
         self.results: tuple[NodeMatch, ...] = (
             NodeMatch(node_id=3, raw_matches=20, inliers=9, status="inconsistent"),
             NodeMatch(
@@ -98,6 +99,10 @@ class FeatureService:
                 if self.behind:
                     self.behind -= 1
                     question.refuse(f"frame {question.message.seq} is not kept", "passing")
+                    continue
+                if self.busy:
+                    self.busy -= 1
+                    question.refuse("9 pictures have to be looked at: ask again", "busy")
                     continue
                 if question.message.map == "nowhere":
                     question.refuse("no map 'nowhere'")

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from services.gateway.uploads import photo_places
 from shared.mapgraph.local.hypotheses import COMPARED_NODES
 from tests.integration.gateway.standins import FeatureService, Planner
 
@@ -103,6 +104,20 @@ def test_an_ordinary_photo_is_asked_about_as_one_and_gets_a_typed_answer(
     assert question.features is not None
     assert question.features.photo == asked.view
     assert (question.best_k, question.with_matches) == (60, True)
+
+
+def test_a_photo_waits_until_the_pictures_of_places_were_looked_at(
+    http: httpx.Client, features: FeatureService, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    url = "/api/robots/r1/goal-check?map=flat&field_of_view_deg=70"
+    headers = {"content-type": "image/jpeg"}
+    asked, features.busy = len(features.matched), 3
+    assert http.post(url, content=photo(), headers=headers).status_code == 200
+    assert len(features.matched) - asked == 4
+    monkeypatch.setattr(photo_places, "LOOKING_S", 0.0)
+    features.busy = 1
+    refused = http.post(url, content=photo(), headers=headers)
+    assert (refused.status_code, refused.json()["reason"]) == (409, "busy")
 
 
 @pytest.mark.parametrize(

@@ -50,6 +50,8 @@ def test_maps_are_written_read_and_followed_over_the_bus(bus: Bus):
     read = ask(bus, "flat", action="read")
     assert ([node.node_id for node in read.nodes], read.edges, read.revision) == ([1], (), 2)
     assert [entry.node_id for entry in ask(bus, "flat", action="read_features").features] == [1]
+    shown = ask(bus, "flat", action="read_pictures").pictures
+    assert [(entry.node_id, entry.picture) for entry in shown] == [(1, add(1).features.thumbnail)]
 
 
 REMOVE = {"action": "transact", "operations": (DeleteNode(node_id=1),)}
@@ -62,6 +64,7 @@ REFUSED: tuple[tuple[str, dict[str, Any], str, str], ...] = (
     ("flat", REMOVE, "node 1 does not exist", "missing"),
     ("flat", LATE, "at revision 0, not 7", "conflict"),
     ("flat", {"action": "read_features", "node_ids": (4,)}, "node 4 does not exist", "missing"),
+    ("flat", {"action": "read_pictures", "node_ids": (4,)}, "node 4 does not exist", "missing"),
 )
 
 

@@ -58,3 +58,15 @@ def test_a_gap_forgets_the_map(cache):
 def test_a_reset_forgets_the_map_whatever_its_revision(cache, revision):
     cache.apply(MapDelta(map="flat", revision=revision, reset=True))
     assert cache.get("flat") is None
+
+
+def test_a_place_that_changes_or_goes_loses_what_was_seen_on_its_picture(cache):
+    seen = []
+
+    class Pictured:
+        def remove(self, node_id):
+            seen.append(node_id)
+
+    cache.get("flat").pictured = Pictured()
+    cache.apply(MapDelta(map="flat", revision=4, operations=(add(2), DeleteNode(node_id=1))))
+    assert seen == [2, 1]

@@ -3,7 +3,7 @@
 import pytest
 
 from services.planner.remote.remote_map import RemoteMap
-from services.planner.remote.remote_matcher import RemoteMatcher
+from services.planner.remote.remote_matcher import PHOTO_S, RemoteMatcher
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.routing import GOAL
 from shared.messages.features import PhotoView
@@ -17,9 +17,11 @@ class Answers:
 
     def __init__(self):
         self.asked = []
+        self.waited_s = 0.0
 
-    def ask(self, _query, request, _timeout_s, **_names):
+    def ask(self, _query, request, timeout_s, **_names):
         self.asked.append(request)
+        self.waited_s = timeout_s
         results = tuple(NodeMatch(node_id=n, raw_matches=9, inliers=9, status="ok") for n in (GOAL, 1, 2))
         return MatchReply(map="flat", match_ms=2.0, verify_ms=7.5, results=results)
 
@@ -51,9 +53,10 @@ def test_a_place_of_another_robot_that_the_planner_has_not_heard_of_yet_is_left_
 
 
 @pytest.mark.parametrize("photo", [None, PhotoView(fov_rad=1.2, fov_known=True, aspect=0.75)])
-def test_only_of_a_photo_the_matches_themselves_are_asked_for(photo):
+def test_only_of_a_photo_the_matches_themselves_are_asked_for_and_waited_for_longer(photo):
     bus = Answers()
     matcher = RemoteMatcher(bus, "r1", RemoteMap(bus, "flat", 1.0), 1.0)
     matcher.locate(picture((0.0, 0.0, 0.0)).model_copy(update={"photo": photo}), 60)
     (asked,) = bus.asked
     assert (asked.best_k, asked.with_matches) == (60, photo is not None)
+    assert bus.waited_s == (1.0 if photo is None else PHOTO_S)
