@@ -7,7 +7,7 @@ import numpy as np
 
 from services.gateway.state import Gateway
 from shared.mapgraph.graph import MapGraph
-from shared.mapgraph.photographs.photo_matches import PHOTO_NODES, photo_matches
+from shared.mapgraph.photographs.photo_matches import LOOKING_S, PHOTO_NODES, photo_matches
 from shared.mapgraph.photographs.verdict import PhotoAnswer, located
 from shared.messages.features import ExtractPhotoRequest, Features, Photo
 from shared.messages.maps import MapReply, MapRequest
@@ -15,8 +15,6 @@ from shared.messages.matching import MatchReply, MatchRequest
 from shared.topics import EXTRACT_PHOTO, MAP, MATCH
 from shared.web.problems import ProblemError
 
-LOOKING_S = 60.0
-"""For how long it is asked again; chosen: five times what sixty nodes take on two cores."""
 SEED = 0
 """Of the draws of an answer: one question, one answer."""
 

@@ -1,6 +1,7 @@
 """Ordinary photos from files, and where in a map they were taken, asked over the bus."""
 
 import math
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,11 +13,12 @@ from shared.bus import Bus
 from shared.geometry.photo.exif import read_facts, upright
 from shared.geometry.photo.plane import USUAL_RAD
 from shared.mapgraph.graph import MapGraph
-from shared.mapgraph.photographs.photo_matches import PHOTO_NODES, photo_matches
+from shared.mapgraph.photographs.photo_matches import LOOKING_S, PHOTO_NODES, photo_matches
 from shared.mapgraph.photographs.verdict import PhotoAnswer, located
 from shared.messages.features import MAX_PHOTO_PX, ExtractPhotoRequest, Features, Photo, PhotoView
 from shared.messages.maps import MapReply
-from shared.messages.matching import MatchRequest
+from shared.messages.matching import MatchReply, MatchRequest
+from shared.queries import RefusedError
 from shared.topics import EXTRACT_PHOTO, MATCH
 
 TIMEOUT_S = 60.0
@@ -71,6 +73,17 @@ def locate_photo(bus: Bus, robot: str, known: MapReply, photo: Photo) -> Located
 def _asked(bus: Bus, robot: str, known: MapReply, photo: Photo) -> LocatedPhoto:
     features = bus.ask(EXTRACT_PHOTO, ExtractPhotoRequest(photo=photo), TIMEOUT_S)
     question = MatchRequest(map=known.map, features=features, best_k=PHOTO_NODES)
-    reply = bus.ask(MATCH, question, TIMEOUT_S, robot=robot)
+    reply = _matched(bus, robot, question)
     graph, matches = MapGraph(known.nodes, known.edges), photo_matches(photo.view, reply.results)
     return LocatedPhoto(located(graph, matches, np.random.default_rng(SEED)), features)
+
+
+def _matched(bus: Bus, robot: str, question: MatchRequest) -> MatchReply:
+    """The photo's matches; the first photo of a map waits until its nodes' pictures were looked at."""
+    until_s = time.monotonic() + LOOKING_S
+    while True:
+        try:
+            return bus.ask(MATCH, question, TIMEOUT_S, robot=robot)
+        except RefusedError as error:
+            if error.code != "busy" or time.monotonic() > until_s:
+                raise

@@ -18,6 +18,9 @@ AROUND_M = 2.5
 """Nodes so near to one are reckoned with; chosen: at this distance few matches are left."""
 PHOTO_NODES = 60
 """Nodes, most alike first, whose matches are asked for; chosen: more than any ten places of three nodes."""
+LOOKING_S = 60.0
+"""For how long a question about a photo is asked again while pictures are looked at; chosen: five times what
+sixty nodes take on two cores."""
 PART_NODES = 40
 """Nodes whose places are solved for together; chosen: those within some three metres."""
 

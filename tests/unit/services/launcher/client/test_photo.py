@@ -6,9 +6,15 @@ import numpy as np
 import pytest
 from PIL import ExifTags, Image
 
+from services.launcher.client import photo as client_photo
 from services.launcher.client.failure import ExperimentError
-from services.launcher.client.photo import photo_from_file
+from services.launcher.client.photo import locate_photo, photo_from_file
 from shared.geometry.photo.plane import USUAL_RAD
+from shared.messages.features import ExtractPhotoRequest
+from shared.messages.maps import MapReply
+from shared.messages.matching import MatchReply
+from shared.queries import RefusedError
+from tests import bare_places
 
 
 @pytest.fixture
@@ -61,3 +67,34 @@ def test_half_a_photo_is_refused_by_name(saved):
     path.write_bytes(path.read_bytes()[:3000])
     with pytest.raises(ExperimentError, match=r"phone\.jpg is not a picture that can be read"):
         photo_from_file(path, None)
+
+
+class Looking:
+    """A feature service that looks at pictures before it answers the last of so many questions."""
+
+    def __init__(self, busy: int, code: str = "busy") -> None:
+        self.asked, self._busy, self._code = 0, busy, code
+
+    def ask(self, _query, request, _timeout_s, **_names):
+        if isinstance(request, ExtractPhotoRequest):
+            return bare_places.FEATURES.model_copy(update={"photo": request.photo.view})
+        self.asked += 1
+        if self.asked <= self._busy:
+            raise RefusedError("9 pictures have to be looked at: ask again", self._code)
+        return MatchReply(map=request.map)
+
+
+def test_a_photo_is_asked_about_again_while_pictures_are_looked_at(saved):
+    photo, known = photo_from_file(saved(800, 600), 70.0), MapReply(map="flat", revision=1)
+    bus = Looking(busy=3)
+    assert locate_photo(bus, "r1", known, photo).answer.verdict == "not_found"
+    assert bus.asked == 4
+
+
+@pytest.mark.parametrize(("code", "patience_s"), [("missing", 60.0), ("busy", 0.0)])
+def test_another_refusal_or_one_for_too_long_is_the_answer(saved, monkeypatch, code, patience_s):
+    monkeypatch.setattr(client_photo, "LOOKING_S", patience_s)
+    photo, bus = photo_from_file(saved(800, 600), 70.0), Looking(busy=3, code=code)
+    with pytest.raises(RefusedError, match="looked at"):
+        locate_photo(bus, "r1", MapReply(map="flat", revision=1), photo)
+    assert bus.asked == 1
