@@ -132,12 +132,12 @@ def test_poses_of_one_place_with_equal_evidence_are_weak_where_they_are_far_apar
     assert (middle.places[0].node, middle.places[0].x_m) == (0, pytest.approx(0.0, abs=1e-6))
 
 
-@pytest.mark.parametrize(("score", "keypoints"), [(39.0, 10), (60.0, 7), (45.0, 40)])
+@pytest.mark.parametrize(("score", "keypoints"), [(29.0, 10), (60.0, 7), (45.0, 40)])
 def test_little_evidence_few_keypoints_or_many_poor_ones_are_no_claim(score, keypoints):
     assert judged(graph_of(1), [place(0, 0.0, 0.0, score, keypoints)]).verdict == "not_found"
     assert judged(graph_of(1), [place(0, 0.0, 0.0, 60.0, 20)]).verdict == "found"
 
 
 def test_a_weak_look_alike_counts_as_a_rival_though_it_is_no_claim_by_itself():
-    answer = judged(graph_of(2), [place(0, 0.0, 0.0, 58.0, 10), place(4, 0.0, 0.0, 32.0, 8)])
+    answer = judged(graph_of(2), [place(0, 0.0, 0.0, 48.0, 10), place(4, 0.0, 0.0, 27.0, 8)])
     assert answer.verdict == "ambiguous"
