@@ -13,21 +13,21 @@ GAP_M = 0.82
 
 
 def shuts_off(world: WorldFile, altered: Sequence[Alteration], places: Sequence[Point]) -> bool:
-    """Whether a place could be reached from the first one before, and not past the altered pieces.
+    """Whether one of the places cannot be reached from the first one past the altered pieces.
 
     Args:
         world: as it is first.
         altered: pieces that are elsewhere, or gone.
-        places: metres.
+        places: metres, all reached as the world is first.
     """
     changes: Changes = {}
     for each in altered:
         pose = None if each.pose is None else (each.pose.x_m, each.pose.y_m, each.pose.yaw_rad)
         changes = with_item(world, changes, each.name, None if pose else False, pose)
-    before, after = _reached(world, places), _reached(changed_world(world, changes), places)
-    return any(was and not is_still for was, is_still in zip(before, after, strict=True))
+    return len(reached(changed_world(world, changes), places)) < len(places)
 
 
-def _reached(world: WorldFile, places: Sequence[Point]) -> list[bool]:
+def reached(world: WorldFile, places: Sequence[Point]) -> list[Point]:
+    """Those of the places that can be reached from the first one through gaps of GAP_M."""
     wide = ground_clearance(world, GAP_M / 2)
-    return [math.isfinite(wide.shortest_path_m(places[0], place)) for place in places]
+    return [place for place in places if math.isfinite(wide.shortest_path_m(places[0], place))]

@@ -10,7 +10,7 @@ import numpy as np
 
 from experiments.changes.alterations import Alteration, draw_alteration
 from experiments.changes.judging import Truth
-from experiments.changes.passages import shuts_off
+from experiments.changes.passages import reached, shuts_off
 from experiments.changes.sights import FAR_M, Measured, labels_of
 from experiments.rendered.frames import simulated
 from services.launcher.client.failure import ExperimentError
@@ -89,16 +89,17 @@ class Rounds:
     def _draw(self, count: int) -> list[Alteration]:
         """Alterations of pieces near a place that shut no place off; the simulator takes each of them."""
         drawn: list[Alteration] = []
+        spots = [(pose.x_m, pose.y_m) for pose in self._places.values()]
+        within = reached(self._world, spots)
         for _ in range(TRIES):
             one = draw_alteration(self._world, self._rng, {each.name for each in drawn})
-            spots = [(pose.x_m, pose.y_m) for pose in self._places.values()]
             away = [math.dist(spot, at) for spot in one.spots for at in spots]
             near = min(away) < FAR_M / 2
             shut = one.after is not None and any(
                 math.dist(one.after, at) < one.reach_m + CLEAR_M for at in spots
             )
             possible = near and not shut and self._is_possible(one)
-            if possible and not shuts_off(self._world, [*drawn, one], spots):
+            if possible and not shuts_off(self._world, [*drawn, one], within):
                 drawn.append(one)
             if len(drawn) == count:
                 return drawn

@@ -48,20 +48,18 @@ class RemoteMatcher:
 
     def locate(self, features: Features, best_k: int) -> Matches:
         """Matches of any picture with the most similar nodes."""
-        return self._ask(
-            MatchRequest(
-                map=self._maps.name,
-                map_revision=self._maps.revision,
-                features=features,
-                best_k=best_k,
-                with_matches=features.photo is not None,
-            )
+        of_photo = features.photo is not None
+        request = MatchRequest(
+            map=self._maps.name,
+            map_revision=self._maps.revision,
+            features=features,
+            best_k=best_k,
+            with_matches=of_photo,
         )
+        return self._ask(request, PHOTO_S if of_photo else 0.0)
 
-    def _ask(self, request: MatchRequest) -> Matches:
-        of_photo = request.features is not None and request.features.photo is not None
-        timeout_s = max(PHOTO_S, self._timeout_s) if of_photo else self._timeout_s
-        reply = self._bus.ask(MATCH, request, timeout_s, robot=self.robot)
+    def _ask(self, request: MatchRequest, least_s: float = 0.0) -> Matches:
+        reply = self._bus.ask(MATCH, request, max(self._timeout_s, least_s), robot=self.robot)
         self.match_ms += reply.match_ms
         self.verify_ms += reply.verify_ms
         known = self._maps.graph.nodes  # the service may know of nodes of another robot before we do
