@@ -20,8 +20,9 @@ from services.features.networks.loaders import PARTS
 from services.features.networks.runtime import WeightsError, unit_descriptors
 from services.features.pipeline.extraction import extract
 from services.features.pipeline.interfaces import FeatureSet, Profile
-from services.features.pipeline.named_pipelines import find_profile
+from services.features.pipeline.named_pipelines import ATTENTION, find_profile
 from services.features.pipeline.pipeline import Pipeline
+from services.features.pipeline.plugins import OWN_MATCHERS
 from services.launcher.client.failure import ExperimentError
 
 OURS = "residual"
@@ -93,9 +94,12 @@ def trained_residual(folder: Path) -> Model:
 
 
 def _weights_bytes(profile: Profile) -> int:
-    plugins = {profile.extractor, profile.matcher}
+    own = ATTENTION.get(profile.extractor) if profile.matcher in OWN_MATCHERS else None
+    plugins = {profile.extractor, profile.matcher} - {*OWN_MATCHERS}
     return sum(
-        model.size_bytes for model in MODELS if plugins & {*model.pipelines} and model.name not in PARTS
+        model.size_bytes
+        for model in MODELS
+        if model.name == own or (plugins & {*model.pipelines} and model.name not in PARTS)
     )
 
 

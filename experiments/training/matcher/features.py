@@ -1,16 +1,14 @@
-"""The keypoints of all panoramas as tensors: of a pipeline without a network, or of our own detector."""
+"""The keypoints of panoramas as tensors: of a pipeline, or of a detector that was trained here."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 import torch
 
-from experiments.training.data.shards import trainable
 from experiments.training.panoramas.store import Panoramas
 from experiments.training.panoramas.strips import continued, grid_of, lonlat_of_strip
-from experiments.work.workers import workers
+from experiments.training.sights import Sight
 from services.features.networks.attention import Keypoints, context_of
 from services.features.networks.spherical_keypoints import KeypointNet, described, strongest
 from services.features.pipeline.extraction import extract
@@ -51,62 +49,53 @@ class FeatureTable:
 
     def to(self, device: torch.device) -> "FeatureTable":
         """The same elsewhere."""
-        parts = self.lonlat_rad, self.descriptors, self.context, self.present
-        return FeatureTable(*(part.to(device) for part in parts))
+        return FeatureTable(*(part.to(device) for part in vars(self).values()))
 
 
-def extracted(paths: Sequence[Path], pipeline: str, keypoints: int, jobs: int) -> FeatureTable:
-    """Keypoints of all panoramas of shards, by a pipeline's name.
+def table_of(found: Sequence[FeatureSet], keypoints: int) -> FeatureTable:
+    """Rows for the keypoints of N panoramas, at most so many of each."""
+    columns = zip(*(_filled(features, keypoints) for features in found), strict=True)
+    return FeatureTable(*(torch.from_numpy(np.stack(column)) for column in columns))
+
+
+def extracted(sights: Sequence[Sight], name: str, keypoints: int) -> list[FeatureSet]:
+    """At most so many keypoints of each panorama, by a pipeline's name.
 
     Raises:
-        ExperimentError: a shard is corrupted, or of a world by which training is judged, or all are empty.
+        ExperimentError: its descriptors are bits, which attention cannot weigh.
+        ValueError: no such pipeline.
     """
-    with workers(jobs, None) as pool:
-        parts = list(pool.map(_of_shard, paths, [pipeline] * len(paths), [keypoints] * len(paths)))
-    filled = [part for part in parts if part]
-    if not filled:
-        raise ExperimentError(f"no pair in any of {len(paths)} shards: draw more with 'topnav train data'")
-    return FeatureTable(*(torch.from_numpy(np.concatenate(column)) for column in zip(*filled, strict=True)))
+    pipeline = Pipeline(replace(find_profile(name), keypoints=keypoints))
+    if pipeline.extractor.distance == "hamming":
+        raise ExperimentError(f"the descriptors of {name} are bits: a matcher is trained on numbers")
+    parts = pipeline.extractor, pipeline.representation, pipeline.profile
+    return [extract(sight.picture, *parts) for sight in sights]
 
 
-def found_by(network: KeypointNet, panoramas: Panoramas, keypoints: int) -> FeatureTable:
+def found_by(network: KeypointNet, panoramas: Panoramas, keypoints: int) -> list[FeatureSet]:
     """Keypoints of all panoramas by our own detector, as its extractor finds them."""
-    parts = []
     with torch.inference_mode():
-        for numbers in torch.arange(len(panoramas), device=panoramas.device).split(BATCH):
-            parts.append(_by_network(network, panoramas, numbers, keypoints))
-    return FeatureTable(*(torch.cat(column) for column in zip(*parts, strict=True)))
+        return [
+            features
+            for numbers in torch.arange(len(panoramas), device=panoramas.device).split(BATCH)
+            for features in _by_network(network, panoramas, numbers, keypoints)
+        ]
 
 
 def _by_network(
     network: KeypointNet, panoramas: Panoramas, numbers: torch.Tensor, keypoints: int
-) -> tuple[torch.Tensor, ...]:
+) -> list[FeatureSet]:
     grays = panoramas.strips[numbers][:, None].float() / 255.0
     scores, maps = network(continued(grays))
     pixels, values = strongest(scores.float(), keypoints, PAD_COLUMNS)
-    vectors = described(maps, network.strides, pixels)
-    grid = grid_of(panoramas.ranges_m.shape[-2])
+    vectors = described(maps, network.strides, pixels).half().cpu().numpy()
     own = pixels - torch.tensor([PAD_COLUMNS, 0.0], device=pixels.device)
-    lonlat_rad = lonlat_of_strip(own, grid)
-    context = np.stack(
-        [
-            context_of(FeatureSet(where, strength, np.zeros((len(strength), 0))))
-            for where, strength in zip(lonlat_rad.cpu().numpy(), values.sigmoid().cpu().numpy(), strict=True)
-        ]
-    )
-    present = torch.isfinite(values)
-    return lonlat_rad, vectors.half(), torch.from_numpy(context).to(numbers.device), present
-
-
-def _of_shard(path: Path, name: str, keypoints: int) -> tuple[np.ndarray, ...]:
-    """Columns of a table; none of a shard whose world had no room."""
-    pipeline = Pipeline(replace(find_profile(name), keypoints=keypoints))
-    rows = []
-    for pair in trainable(path).pairs:
-        for sight in (pair.here, pair.there):
-            found = extract(sight.picture, pipeline.extractor, pipeline.representation, pipeline.profile)
-            rows.append(_filled(found, keypoints))
-    return tuple(np.stack(column) for column in zip(*rows, strict=True))
+    lonlat_rad = lonlat_of_strip(own, grid_of(panoramas.ranges_m.shape[-2])).cpu().numpy()
+    present, likely = torch.isfinite(values).cpu().numpy(), values.sigmoid().cpu().numpy()
+    return [
+        FeatureSet(where[there], how[there], what[there])
+        for where, how, what, there in zip(lonlat_rad, likely, vectors, present, strict=True)
+    ]
 
 
 def _filled(found: FeatureSet, keypoints: int) -> tuple[np.ndarray, ...]:

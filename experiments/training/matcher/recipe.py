@@ -5,10 +5,9 @@ import torch
 from pydantic import Field, NonNegativeFloat, PositiveFloat, PositiveInt
 
 from experiments.training.learning.running import Schedule
-from experiments.training.matcher.features import FeatureTable
-from experiments.training.matcher.losses import loss_of, truth_of
+from experiments.training.matcher.examples import Examples
+from experiments.training.matcher.losses import loss_of
 from experiments.training.panoramas.drawing import Pairs
-from experiments.training.panoramas.store import Panoramas
 from experiments.training.recipe import Recipe
 from services.features.networks.attention import Attention, Keypoints
 
@@ -56,32 +55,34 @@ def beginning(recipe: MatcherRecipe, dimension: int) -> Attention:
 
 
 def batch_loss(
-    network: Attention,
-    panoramas: Panoramas,
-    table: FeatureTable,
-    pairs: Pairs,
-    recipe: MatcherRecipe,
-    rng: np.random.Generator,
+    network: Attention, examples: Examples, pairs: Pairs, recipe: MatcherRecipe, rng: np.random.Generator
 ) -> torch.Tensor:
     """Loss of a batch of pairs drawn from `rng`."""
-    device = panoramas.device
+    device = examples.device
     chosen = torch.from_numpy(pairs.draw(recipe.batch, rng, recipe.others)).to(device)
     generator = torch.Generator(device).manual_seed(int(rng.integers(2**62)))
-    kept = round(recipe.keypoints * float(np.linspace(recipe.fewest, 1.0, COUNTS)[rng.integers(COUNTS)]))
-    one, other = (_thinned(table.of(side), kept, generator) for side in chosen.T)
-    truth = truth_of(panoramas, chosen, one, other)
+    count = round(recipe.keypoints * float(np.linspace(recipe.fewest, 1.0, COUNTS)[rng.integers(COUNTS)]))
+    both = [examples.table.of(side) for side in chosen.T]
+    kept = [_drawn(points, count, generator) for points in both]
+    one, other = (
+        _shaken(_thinned(points, rows), recipe.jitter_rad, generator)
+        for points, rows in zip(both, kept, strict=True)
+    )
+    truth = examples.truth(chosen, *kept)
     with torch.autocast(device.type, torch.bfloat16, enabled=device.type == "cuda"):
-        answers = network(
-            _shaken(one, recipe.jitter_rad, generator), _shaken(other, recipe.jitter_rad, generator)
-        )
+        answers = network(one, other)
     return loss_of(answers, truth, recipe.pair_weight)
 
 
-def _thinned(points: Keypoints, kept: int, generator: torch.Generator) -> Keypoints:
-    """So many keypoints of each picture, drawn."""
+def _drawn(points: Keypoints, count: int, generator: torch.Generator) -> torch.Tensor:
+    """(B, n) numbers of so many keypoints of each picture, those that are missing last."""
     assert points.present is not None
     luck = torch.rand(points.present.shape, generator=generator, device=points.present.device)
-    rows = (luck + points.present).topk(min(kept, luck.shape[1]), dim=1).indices
+    return (luck + points.present).topk(min(count, luck.shape[1]), dim=1).indices
+
+
+def _thinned(points: Keypoints, rows: torch.Tensor) -> Keypoints:
+    assert points.present is not None
     lonlat_rad, descriptors, context = (
         part.gather(1, rows[..., None].expand(-1, -1, part.shape[-1]))
         for part in (points.lonlat_rad, points.descriptors, points.context)

@@ -1,19 +1,39 @@
 """Pairs of panoramas for a step of training, every two of one shard a possible pair."""
 
+from typing import Protocol
+
 import numpy as np
 import numpy.typing as npt
 import torch
 
-from experiments.training.panoramas.store import Panoramas
 from services.launcher.client.failure import ExperimentError
 
 Numbers = npt.NDArray[np.int64]
 
 
+class Placed(Protocol):
+    """N panoramas of which is known where they are, and what they see of one another (`store.Panoramas`)."""
+
+    @property
+    def positions_m(self) -> torch.Tensor:
+        """(N, 3) of the cameras."""
+
+    @property
+    def shard(self) -> torch.Tensor:
+        """(N,) number of the shard of each."""
+
+    @property
+    def overlap(self) -> torch.Tensor:
+        """(N, N) share of the directions of each that another sees."""
+
+    def __len__(self) -> int:
+        """N."""
+
+
 class Pairs:
     """Draws pairs that see the same things, and others."""
 
-    def __init__(self, panoramas: Panoramas, least: float, apart_m: float) -> None:
+    def __init__(self, panoramas: Placed, least: float, apart_m: float) -> None:
         """Find those that can be had.
 
         Args:

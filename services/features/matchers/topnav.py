@@ -12,6 +12,7 @@ from services.features.networks.runtime import device_named
 from services.features.pipeline.interfaces import (
     Distance,
     FeatureSet,
+    Float32Array,
     IndexArray,
     Matched,
     Profile,
@@ -19,8 +20,9 @@ from services.features.pipeline.interfaces import (
 )
 from services.features.pipeline.named_pipelines import ATTENTION
 
-LEAST_RIGHT = 0.1
-"""Matches less likely right than this are left out (LightGlue's threshold)."""
+LEAST_RIGHT = 0.2
+"""Matches less likely right than this are left out. On five validation worlds 0.49 of those that stay are right,
+0.42 at LightGlue's 0.1, for a twelfth of the right ones from 2 to 3 m."""
 HOPELESS = 0.02
 """Probability of the same place below which the layers that are left are not asked."""
 LOOKED_AT = 8
@@ -48,30 +50,50 @@ class AttentionMatcher:
         """Matches with each other frame; beyond LOOKED_AT frames those of nearest neighbours."""
         quick = self._quick.match(query, others)
         ranked = sorted(range(len(others)), key=lambda k: (-len(quick[k]), k))[:LOOKED_AT]
-        one = self._keypoints(query) if ranked and len(query) else None
-        for number in ranked:
-            if one is not None and len(others[number]):
-                quick[number] = self._matched(one, self._keypoints(others[number]))
+        looked_at = [number for number in ranked if len(others[number])]
+        if len(query) and looked_at:
+            found = self._matched(query, [others[number] for number in looked_at])
+            for number, matched in zip(looked_at, found, strict=True):
+                quick[number] = matched
         return quick
 
-    def _matched(self, one: Keypoints, other: Keypoints) -> Matched:
+    def _matched(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[Matched]:
+        """All at once: one picture is prepared once, and a large product takes less time than small ones."""
+        found = [Matched.alike(np.zeros((0, 2), dtype=np.intp))] * len(others)
         with torch.inference_mode():
-            answer = self._network.last(one, other, HOPELESS)
-        if answer is None:
-            return Matched.alike(np.zeros((0, 2), dtype=np.intp))
-        right = answer.log_right[0].exp().cpu().numpy()
-        nearest = right.argmax(axis=1)
-        rows = np.arange(len(right))
-        mutual = right.argmax(axis=0)[nearest] == rows
-        likely = right[rows, nearest].astype(np.float64)
-        kept: IndexArray = np.flatnonzero(mutual & (likely >= LEAST_RIGHT))
-        return Matched(np.stack([kept, nearest[kept]], axis=1), likely[kept])
+            numbers, answer = self._network.last(self._keypoints([query]), self._keypoints(others), HOPELESS)
+        if answer is not None:
+            right = answer.log_right.exp().cpu().numpy()
+            for row, number in enumerate(numbers):
+                found[number] = _mutual(right[row, :, : len(others[number])])
+        return found
 
-    def _keypoints(self, features: FeatureSet) -> Keypoints:
-        vectors = torch.from_numpy(features.descriptors.astype(np.float32))
-        parts = (
-            torch.from_numpy(np.ascontiguousarray(features.lonlat_rad, np.float32)),
-            torch.nn.functional.normalize(vectors, dim=-1),
-            torch.from_numpy(context_of(features)),
+    def _keypoints(self, frames: Sequence[FeatureSet]) -> Keypoints:
+        """A batch, filled up to the most keypoints of a frame."""
+        most = max(map(len, frames))
+        filled = [[np.pad(part, [(0, most - len(part)), (0, 0)]) for part in _parts(f)] for f in frames]
+        lonlat, vectors, context = (
+            torch.from_numpy(np.stack(column)).to(self._device) for column in zip(*filled, strict=True)
         )
-        return Keypoints(*(part[None].to(self._device) for part in parts))
+        present = torch.arange(most) < torch.tensor([len(frame) for frame in frames])[:, None]
+        return Keypoints(
+            lonlat,
+            torch.nn.functional.normalize(vectors, dim=-1),
+            context,
+            None if bool(present.all()) else present.to(self._device),
+        )
+
+
+def _parts(features: FeatureSet) -> tuple[Float32Array, Float32Array, Float32Array]:
+    lonlat, vectors = features.lonlat_rad.astype(np.float32), features.descriptors.astype(np.float32)
+    return lonlat, vectors, context_of(features)
+
+
+def _mutual(right: Float32Array) -> Matched:
+    """Those that are each other's most likely partner."""
+    nearest = right.argmax(axis=1)
+    rows = np.arange(len(right))
+    mutual = right.argmax(axis=0)[nearest] == rows
+    likely = right[rows, nearest].astype(np.float64)
+    kept: IndexArray = np.flatnonzero(mutual & (likely >= LEAST_RIGHT))
+    return Matched(np.stack([kept, nearest[kept]], axis=1), likely[kept])

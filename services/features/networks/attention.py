@@ -19,6 +19,8 @@ SIZE_RAD, SCORE = 0.05, 0.1
 """Typical size and strength of SIFT's keypoints, so that their logarithms are about 0."""
 SHARPNESS = 15.0
 """Factor of the descriptors' cosines with which training begins: that of `topnav train keypoints`."""
+LISTENING = 8.0
+"""The same factor where a keypoint chooses whom of the other picture it hears: less, as it hears many."""
 ANSWERS = 3
 """Of a pair: logit of the same place, logit of the overlap, logarithm of the metres between them."""
 
@@ -89,29 +91,38 @@ class Attention(nn.Module):  # type: ignore[misc] # torch is not followed, see p
         cosines = one.descriptors @ other.descriptors.transpose(1, 2)
         answers = []
         for layer, answer in zip(self.layers, self.heads_out, strict=True):
-            first, second = layer(first, second, turned, turned_other, one.present, other.present)
+            first, second = layer(first, second, turned, turned_other, cosines, one.present, other.present)
             answers.append(answer(first, second, cosines, one.present, other.present))
         return answers
 
-    def last(self, one: Keypoints, other: Keypoints, hopeless: float) -> Assignment | None:
-        """The last layer's answer of a batch of one; None where one before finds the place another.
+    def last(self, one: Keypoints, others: Keypoints, hopeless: float) -> tuple[list[int], Assignment | None]:
+        """The last layer's answer for one picture and B others.
 
         Args:
             one: keypoints of one picture.
-            other: those of the other.
+            others: those of the others.
             hopeless: probability of the same place below which layers stop.
+
+        Returns:
+            Numbers of the others that no layer before found another place, and what the last one says of
+            them; None where there are none.
         """
-        first, second = self.entered(one), self.entered(other)
-        turned, turned_other = self.rotary(one.lonlat_rad), self.rotary(other.lonlat_rad)
+        first, second = self.entered(one), self.entered(others)
+        turned, turned_other = self.rotary(one.lonlat_rad), self.rotary(others.lonlat_rad)
+        cosines, present = one.descriptors @ others.descriptors.transpose(1, 2), others.present
+        numbers = torch.arange(len(second), device=second.device)
         for number, layer in enumerate(self.layers):
-            first, second = layer(first, second, turned, turned_other, one.present, other.present)
+            first, second = layer(first, second, turned, turned_other, cosines, one.present, present)
             if number % 2 and number + 1 < len(self.layers):
-                pair = self.heads_out[number].of_pair(first, second, one.present, other.present)
-                if float(torch.sigmoid(pair[0, 0])) < hopeless:
-                    return None
-        cosines = one.descriptors @ other.descriptors.transpose(1, 2)
-        answer: Assignment = self.heads_out[-1](first, second, cosines, one.present, other.present)
-        return answer
+                pair = self.heads_out[number].of_pair(first, second, one.present, present)
+                hopeful = torch.sigmoid(pair[:, 0]) >= hopeless
+                if not bool(hopeful.any()):
+                    return [], None
+                first, second, cosines, numbers = (x[hopeful] for x in (first, second, cosines, numbers))
+                turned_other = turned_other[0][hopeful], turned_other[1][hopeful]
+                present = None if present is None else present[hopeful]
+        answer: Assignment = self.heads_out[-1](first, second, cosines, one.present, present)
+        return numbers.tolist(), answer
 
     def entered(self, points: Keypoints) -> torch.Tensor:
         """(B, N, width) what the first layer gets."""
@@ -137,6 +148,7 @@ class Layer(nn.Module):  # type: ignore[misc]
         self.within_mix = _mix(width)
         self.across, self.across_out = nn.Linear(width, 2 * width), nn.Linear(width, width)
         self.across_mix = _mix(width)
+        self.listening = nn.Parameter(torch.full((heads, 1, 1), LISTENING))
 
     def forward(
         self,
@@ -144,15 +156,21 @@ class Layer(nn.Module):  # type: ignore[misc]
         other: torch.Tensor,
         turned: Turned,
         turned_other: Turned,
+        cosines: torch.Tensor,
         present: torch.Tensor | None,
         present_other: torch.Tensor | None,
     ) -> tuple[torch.Tensor, torch.Tensor]:
-        """Both pictures' keypoints, (B, N, width) and (B, M, width), knowing more."""
+        """Both pictures' keypoints, (B, N, width) and (B, M, width), knowing more.
+
+        Across, a keypoint hears most of those whose descriptors (cosines, (B, N, M)) are like its own.
+        """
         one, other = self._inside(one, turned, present), self._inside(other, turned_other, present_other)
+        one = one.expand(len(other), -1, -1)  # what it sees within itself is the same for all others
         key, value = self._split(self.across(one), 2)
         key_other, value_other = self._split(self.across(other), 2)
-        from_other = self._gathered(key, key_other, value_other, present_other)
-        from_one = self._gathered(key_other, key, value, present)
+        alike = (self.listening * cosines[:, None]).to(key.dtype)
+        from_other = self._gathered(key, key_other, value_other, _heard(alike, present_other))
+        from_one = self._gathered(key_other, key, value, _heard(alike.transpose(2, 3), present))
         return (
             one + self.across_mix(torch.cat([one, self.across_out(from_other)], dim=-1)),
             other + self.across_mix(torch.cat([other, self.across_out(from_one)], dim=-1)),
@@ -160,7 +178,8 @@ class Layer(nn.Module):  # type: ignore[misc]
 
     def _inside(self, points: torch.Tensor, turned: Turned, present: torch.Tensor | None) -> torch.Tensor:
         query, key, value = self._split(self.within(points), 3)
-        seen = self._gathered(_turn(query, turned), _turn(key, turned), value, present)
+        mask = None if present is None else present[:, None, None, :]
+        seen = self._gathered(_turn(query, turned), _turn(key, turned), value, mask)
         return points + self.within_mix(torch.cat([points, self.within_out(seen)], dim=-1))
 
     def _split(self, joined: torch.Tensor, parts: int) -> tuple[torch.Tensor, ...]:
@@ -170,9 +189,8 @@ class Layer(nn.Module):  # type: ignore[misc]
 
     @staticmethod
     def _gathered(
-        query: torch.Tensor, key: torch.Tensor, value: torch.Tensor, present: torch.Tensor | None
+        query: torch.Tensor, key: torch.Tensor, value: torch.Tensor, mask: torch.Tensor | None
     ) -> torch.Tensor:
-        mask = None if present is None else present[:, None, None, :]
         seen = functional.scaled_dot_product_attention(query, key, value, attn_mask=mask)
         return seen.transpose(1, 2).flatten(2)
 
@@ -226,6 +244,10 @@ class Answer(nn.Module):  # type: ignore[misc]
         joined = torch.cat([both[0] + both[1], (both[0] - both[1]).abs()], dim=-1)
         found: torch.Tensor = self.pair(joined).float()
         return found
+
+
+def _heard(alike: torch.Tensor, present: torch.Tensor | None) -> torch.Tensor:
+    return alike if present is None else alike.masked_fill(~present[:, None, None, :], -1e4)
 
 
 def _mean(points: torch.Tensor, present: torch.Tensor | None) -> torch.Tensor:

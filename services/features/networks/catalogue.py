@@ -104,8 +104,14 @@ OWN: tuple[TrainedModel, ...] = (
     ),
     _own(
         "topnav-attention-sift",
-        576_550,
-        "3260514f0b78c20591800b91ea9526b86e6f17702f555ae83abaae9a597a072e",
+        576_642,
+        "3c64cd9c5cf3419f9df07cf9969ee75cd9c440b272bfc50ffbd2899a5b5c44ca",
+        "topnav-attention",
+    ),
+    _own(
+        "topnav-attention-keypoints",
+        568_458,
+        "e1fe0a77e8dba4c6c6f5bd8f42edd26f5d967baa377b2201385d2a422e72d353",
         "topnav-attention",
     ),
 )

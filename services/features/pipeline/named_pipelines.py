@@ -45,7 +45,7 @@ LIGHTGLUE = {
 """Extractors for which somebody trained a LightGlue -> kornia's name of those weights."""
 
 
-ATTENTION = {"sift": "topnav-attention-sift"}
+ATTENTION = {"sift": "topnav-attention-sift", "topnav-keypoints": "topnav-attention-keypoints"}
 """Extractors for whose keypoints our matcher was trained -> its weights."""
 
 

@@ -8,8 +8,7 @@ from safetensors import safe_open
 from experiments.training.detector import training as detector
 from experiments.training.detector.recipe import KeypointsRecipe
 from experiments.training.learning.running import Schedule
-from experiments.training.matcher import features, training
-from experiments.training.matcher.features import extracted
+from experiments.training.matcher import examples
 from experiments.training.matcher.recipe import MatcherRecipe
 from experiments.training.matcher.training import train
 from experiments.training.sealed import sealed_files
@@ -27,21 +26,9 @@ RECIPE = MatcherRecipe(
 OWN = RECIPE.model_copy(update={"features": "own"})
 
 
-@pytest.fixture(scope="module")
-def table(places):
-    """Of the pipeline: what takes seconds is done once."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(features, "workers", in_this_process)
-        return extracted(places.files, RECIPE.features, RECIPE.keypoints, 1)
-
-
 @pytest.fixture(autouse=True)
-def _extracted_once(monkeypatch, places, table):
-    def same(files, pipeline, keypoints, jobs):
-        assert (files, pipeline, keypoints, jobs) == (places.files, RECIPE.features, RECIPE.keypoints, 1)
-        return table
-
-    monkeypatch.setattr(training, "extracted", same)
+def _here(monkeypatch):
+    monkeypatch.setattr(examples, "workers", in_this_process)
 
 
 def trained(places, folder, name, recipe=RECIPE, until=None, export=None):

@@ -18,20 +18,21 @@ PROFILE = Profile("sift", matcher="topnav-attention")
 
 
 class Answers:
-    """In place of the network: the same answer to every pair, and how often it was asked."""
+    """In place of the network: the same answer to every pair, and how many it was asked for."""
 
     def __init__(self, right):
         self.right, self.asked = right, 0
 
-    def last(self, one, other, hopeless):
+    def last(self, one, others, hopeless):
         assert 0.0 < hopeless < 0.1
-        assert one.descriptors.shape[0] == other.descriptors.shape[0] == 1
+        assert one.descriptors.shape[0] == 1
         assert torch.allclose(one.descriptors.norm(dim=-1), torch.tensor(1.0), atol=1e-3)
-        self.asked += 1
+        count = len(others.descriptors)
+        self.asked += count
         if self.right is None:
-            return None
-        log_right = torch.log(torch.tensor(self.right, dtype=torch.float32))[None]
-        return Assignment(log_right, (torch.zeros(1, 2), torch.zeros(1, 2)), torch.zeros(1, 3))
+            return [], None
+        log_right = torch.log(torch.tensor(self.right, dtype=torch.float32)).expand(count, -1, -1)
+        return list(range(count)), Assignment(log_right, (torch.zeros(count, 2),) * 2, torch.zeros(count, 3))
 
 
 @pytest.fixture
@@ -84,6 +85,16 @@ def test_of_many_frames_those_most_alike_are_looked_at_and_the_others_keep_their
     for one, other in zip(found[:beyond], plain[:beyond], strict=True):
         np.testing.assert_array_equal(one.pairs, other.pairs)
     assert [len(one) for one in found[beyond:]] == [0] * LOOKED_AT
+
+
+def test_frames_of_other_lengths_are_matched_together_as_each_by_itself(matcher):
+    query, others = some(30, 1), [some(count, count) for count in (30, 12, 25)]
+    together = matcher.match(query, others)
+    for other, found in zip(others, together, strict=True):
+        (alone,) = matcher.match(query, [other])
+        np.testing.assert_array_equal(found.pairs, alone.pairs)
+        np.testing.assert_allclose(found.right, alone.right, rtol=1e-3)
+        assert found.pairs[:, 1].max(initial=0) < len(other)
 
 
 def test_frames_without_keypoints_have_no_matches_and_are_not_looked_at(matcher):

@@ -84,12 +84,29 @@ def test_a_partner_is_shared_by_probabilities_that_sum_to_one_at_most(network):
     assert right.sum(1).max() <= 1.0 + 1e-6
 
 
-def test_the_last_answer_alone_is_that_of_all_layers_unless_the_place_is_another(network):
+def test_the_last_answer_alone_is_that_of_all_layers(network):
     one, other = some(20, 1), some(30, 2)
     with torch.inference_mode():
-        found = network.last(one, other, hopeless=0.0)
-        assert network.last(one, other, hopeless=1.0) is None
+        numbers, found = network.last(one, other, hopeless=0.0)
     plain = last(network, one, other)
+    assert numbers == [0]
     assert found.pair.shape == (1, ANSWERS)
     assert_allclose(found.log_right.numpy(), plain.log_right.numpy(), atol=1e-5)
     assert np.isfinite(found.log_right.numpy()).all()
+
+
+def test_of_many_pictures_those_found_to_be_elsewhere_are_not_asked_further_and_others_say_the_same(network):
+    one, many = some(20, 1), [some(30, seed) for seed in range(2, 7)]
+    short = [changed(other, present=torch.arange(30)[None] < 30 - 3 * k) for k, other in enumerate(many)]
+    together = Keypoints(*(torch.cat([getattr(other, name) for other in short]) for name in vars(short[0])))
+    plain = [network(one, other) for other in short]
+    same = [float(answers[1].pair[0, 0].sigmoid().detach()) for answers in plain]
+    middle = float(np.median(same))
+    with torch.inference_mode():
+        numbers, found = network.last(one, together, hopeless=middle)
+        assert network.last(one, together, hopeless=1.0) == ([], None)
+    assert numbers == [k for k in range(5) if same[k] >= middle]
+    assert len(numbers) == 3
+    for row, number in enumerate(numbers):
+        expected = plain[number][-1].log_right[0].detach()
+        assert_allclose(found.log_right[row].exp().numpy(), expected.exp().numpy(), atol=1e-5)
