@@ -74,6 +74,7 @@ def hide_and_seek(
         profiles=[profile or "default", *([compare] if compare else [])],
         max_steps=max_steps,
         draw=draw,
+        pipeline=pipeline,
     )
     _play_suite(SuiteChoice(suite, plans, data_dir / "suites", jobs, cluster), data_dir, json_file)
 

@@ -14,12 +14,11 @@ import httpx
 from experiments.bench.listener import Listener
 from experiments.bench.resources import peak_memory_mb
 from experiments.bench.stages import stage_durations_ms, table
-from experiments.hide_and_seek.plan import MAP_SEED, RunPlan
+from experiments.hide_and_seek.plan import MAP_SEED, RunPlan, map_label
 from experiments.hide_and_seek.play import Scene, play_rounds
 from experiments.hide_and_seek.report import report
 from services.launcher.client.failure import ExperimentError
 from services.launcher.client.maps import post_archive, store_client
-from services.launcher.client.run_record import world_label
 from services.launcher.client.stack import Stack, StackChoice, open_stack
 from services.launcher.evaluation.exploration import explore, figures
 from services.launcher.evaluation.truth_file import load_truth, save_truth, truth_path
@@ -39,37 +38,40 @@ MapFiles = dict[str, bytes]
 """By name: what `topnav map export` writes, the truth file, and what `topnav explore --json` has."""
 
 
-def make_map(world: str, folder: str) -> MapFiles:
+def make_map(world: str, folder: str, pipeline: str | None = None) -> MapFiles:
     """Explore a world once; a map that is there already is taken.
 
     Args:
         world: name or path of the world.
         folder: where maps are kept, and the stack's files while it runs.
+        pipeline: of the features; None: the default one.
 
     Raises:
         ExperimentError: the exploration did not end by itself.
     """
-    files = map_or_part(world, folder)
+    files = map_or_part(world, folder, pipeline)
     explored = json.loads(files[FIGURES])
     if explored["outcome"] != "succeeded":
-        shutil.rmtree(Path(folder) / world_label(world), ignore_errors=True)  # the next try explores again
+        shutil.rmtree(
+            Path(folder) / map_label(world, pipeline), ignore_errors=True
+        )  # the next try explores again
         raise ExperimentError(f"exploring {world}: {explored['outcome']}: {explored['reason']}")
     return files
 
 
-def map_or_part(world: str, folder: str) -> MapFiles:
+def map_or_part(world: str, folder: str, pipeline: str | None = None) -> MapFiles:
     """The same, of an exploration that was given up as well."""
-    own = Path(folder) / world_label(world)
+    own = Path(folder) / map_label(world, pipeline)
     if not (own / FIGURES).exists():
-        _explore(world, own)
+        _explore(world, own, pipeline)
     return {name: (own / name).read_bytes() for name in (ARCHIVE, TRUTH, FIGURES)}
 
 
-def _explore(world: str, own: Path) -> None:
+def _explore(world: str, own: Path, pipeline: str | None) -> None:
     """Write the files of a map into a folder; the figures come last and mark it as whole."""
     data_dir = own / "stack"
     shutil.rmtree(data_dir, ignore_errors=True)
-    with open_stack(StackChoice(data_dir, world, MAP_SEED, lockstep=True)) as stack:
+    with open_stack(StackChoice(data_dir, world, MAP_SEED, lockstep=True, pipeline=pipeline)) as stack:
         result = explore(stack, world, MAP, MAP_SEED, EXPLORE_STEPS)
         with _store(stack) as store:
             archive = store.get(f"/maps/{MAP}/export").raise_for_status().content
@@ -101,7 +103,9 @@ def play_run(plan: RunPlan, files: MapFiles, folder: str) -> dict[str, Any]:
         data_dir.mkdir(parents=True)
         path.write_bytes(files[TRUTH])
     if len(rounds) < plan.rounds:
-        choice = StackChoice(data_dir, plan.world, plan.seed, lockstep=True, profile=plan.profile)
+        choice = StackChoice(
+            data_dir, plan.world, plan.seed, lockstep=True, profile=plan.profile, pipeline=plan.pipeline
+        )
         scene = Scene(load_world(plan.world), MAP, load_truth(path))
         with open_stack(choice) as stack:
             if fresh:
@@ -126,7 +130,7 @@ def play_run(plan: RunPlan, files: MapFiles, folder: str) -> dict[str, Any]:
                     write_json(record, report(plan.world, plan.profile, plan.seed, rounds))
             stages, memory = table(stage_durations_ms(listener.arrivals)), peak_memory_mb(stack.launcher)
         told = report(plan.world, plan.profile, plan.seed, rounds)
-        write_json(record, {**told, "stages": stages, "memory_mb": memory})
+        write_json(record, {**told, "pipeline": plan.pipeline, "stages": stages, "memory_mb": memory})
     whole: dict[str, Any] = json.loads(record.read_text())
     return whole
 

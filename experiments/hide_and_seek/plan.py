@@ -23,6 +23,7 @@ class RunPlan:
         max_steps: a round is given up after so many frames.
         draw: draw the plan and the final frames of every round.
         record: keep a recording of every round that fails.
+        pipeline: of the features of map and rounds; None: the default one.
     """
 
     world: str
@@ -32,11 +33,17 @@ class RunPlan:
     max_steps: int
     draw: bool = True
     record: bool = False
+    pipeline: str | None = None
 
     @property
     def name(self) -> str:
         """Folder name: short and unique within a suite."""
-        return f"{world_label(self.world)}-{self.profile}-{self.seed}"
+        return f"{map_label(self.world, self.pipeline)}-{self.profile}-{self.seed}"
+
+
+def map_label(world: str, pipeline: str | None) -> str:
+    """Folder name of a map: one of a world and a pipeline."""
+    return "-".join([world_label(world), *(pipeline.split("/") if pipeline else ())])
 
 
 def plan_suite(
@@ -48,6 +55,7 @@ def plan_suite(
     profiles: Sequence[str] = ("default",),
     max_steps: int,
     draw: bool = True,
+    pipeline: str | None = None,
 ) -> list[RunPlan]:
     """All runs of a suite.
 
@@ -59,6 +67,7 @@ def plan_suite(
         profiles: each world is played under each.
         max_steps: bound of a round.
         draw: draw every round.
+        pipeline: of the features; None: the default one.
 
     Raises:
         ValueError: an unknown suite, or a world that the thesis has no rounds in.
@@ -75,7 +84,7 @@ def plan_suite(
             )
     counts = THESIS_ROUNDS if suite == "thesis" else dict.fromkeys(chosen, rounds)
     return [
-        RunPlan(world, profile, counts[world], seed, max_steps, draw)
+        RunPlan(world, profile, counts[world], seed, max_steps, draw, pipeline=pipeline)
         for profile in dict.fromkeys(profiles)
         for world in chosen
     ]

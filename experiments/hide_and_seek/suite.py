@@ -63,8 +63,8 @@ def run_suite(choice: SuiteChoice, json_file: Path | None) -> dict[str, Any]:
 
 
 def _maps(console: Console, pool: Executor, choice: SuiteChoice, folder: Path) -> dict[str, MapFiles]:
-    worlds = list(dict.fromkeys(plan.world for plan in choice.plans))
-    jobs = {world: pool.submit(make_map, world, str(folder)) for world in worlds}
+    worlds = dict.fromkeys((plan.world, plan.pipeline) for plan in choice.plans)
+    jobs = {world: pool.submit(make_map, world, str(folder), pipeline) for world, pipeline in worlds}
     follow(
         console, "worlds mapped", list(jobs.values()), len(jobs), lambda: sum(f.done() for f in jobs.values())
     )

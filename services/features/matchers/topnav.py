@@ -20,9 +20,8 @@ from services.features.pipeline.interfaces import (
 )
 from services.features.pipeline.named_pipelines import ATTENTION
 
-LEAST_RIGHT = 0.2
-"""Matches less likely right than this are left out. On five validation worlds 0.49 of the rest are right, 0.42
-at LightGlue's 0.1, for a twelfth of the right ones from 2 to 3 m."""
+LEAST_RIGHT = 0.1
+"""Matches less likely right than this are left out (LightGlue's threshold)."""
 HOPELESS = 0.02
 """Probability of the same place below which the layers that are left are not asked."""
 LOOKED_AT = 8

@@ -31,6 +31,7 @@ PROFILES: dict[str, Profile] = {
     "beblid_tangent": Profile("beblid", representation="tangent", resize=None),
     "sift_planar": Profile("sift", representation="planar"),
     "superpoint_superglue": Profile("superpoint", matcher="superglue", keypoints=150),
+    "topnav_attention": Profile("topnav-keypoints", matcher="topnav-attention", keypoints=150),
 }
 
 LIGHTGLUE = {

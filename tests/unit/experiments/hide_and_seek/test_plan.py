@@ -32,6 +32,13 @@ def test_a_random_suite_takes_any_world():
     assert world_label("a/b/attic.yml") == "attic"
 
 
+def test_runs_and_maps_of_a_pipeline_have_folders_of_their_own():
+    (plain,) = plan_suite("thesis", 1, rounds=25, worlds=["factory"], max_steps=100)
+    (other,) = plan_suite("thesis", 1, rounds=25, worlds=["factory"], max_steps=100, pipeline="orb/tangent")
+    assert (other.pipeline, other.name) == ("orb/tangent", "factory-orb-tangent-default-1")
+    assert (plain.pipeline, plain.name) == (None, "factory-default-1")
+
+
 @pytest.mark.parametrize(
     ("suite", "worlds", "words"),
     [("all", [], "must be one of"), ("thesis", ["attic.yaml"], "--suite random")],

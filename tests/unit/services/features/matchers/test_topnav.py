@@ -20,8 +20,8 @@ PROFILE = Profile("sift", matcher="topnav-attention")
 class Answers:
     """In place of the network: the same answer to every pair, and how many it was asked for."""
 
-    def __init__(self, right):
-        self.right, self.asked = right, 0
+    def __init__(self, right, elsewhere=()):
+        self.right, self.elsewhere, self.asked = right, elsewhere, 0
 
     def last(self, one, others, hopeless):
         assert 0.0 < hopeless < 0.1
@@ -31,8 +31,9 @@ class Answers:
         self.asked += count
         if self.right is None:
             return [], None
-        log_right = torch.log(torch.tensor(self.right, dtype=torch.float32)).expand(count, -1, -1)
-        return list(range(count)), Assignment(log_right, (torch.zeros(count, 2),) * 2, torch.zeros(count, 3))
+        numbers = [number for number in range(count) if number not in self.elsewhere]
+        log_right = torch.log(torch.tensor(self.right, dtype=torch.float32)).expand(len(numbers), -1, -1)
+        return numbers, Assignment(log_right, (torch.zeros(count, 2),) * 2, torch.zeros(count, 3))
 
 
 @pytest.fixture
@@ -72,6 +73,13 @@ def test_another_place_has_no_matches(matcher):
     matcher._network = Answers(None)
     (found,) = matcher.match(some(3, 1), [some(3, 2)])
     assert (len(found), found.pairs.shape) == (0, (0, 2))
+
+
+def test_of_several_frames_only_another_place_has_no_matches(matcher):
+    matcher._network = Answers([[0.9]], elsewhere=(0, 2))
+    query = some(1, 1)
+    found = matcher.match(query, [query, query, query, query])
+    assert [len(one) for one in found] == [0, 1, 0, 1]
 
 
 def test_of_many_frames_those_most_alike_are_looked_at_and_the_others_keep_their_neighbours(matcher):
