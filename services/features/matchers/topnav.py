@@ -20,8 +20,9 @@ from services.features.pipeline.interfaces import (
 )
 from services.features.pipeline.named_pipelines import ATTENTION
 
-LEAST_RIGHT = 0.1
-"""Matches less likely right than this are left out (LightGlue's threshold)."""
+LEAST_RIGHT = 0.2
+"""Matches less likely right than this are left out (SuperGlue's threshold): at LightGlue's 0.1
+there are more, and two maps of the apartment had one and two false edges."""
 HOPELESS = 0.02
 """Probability of the same place below which the layers that are left are not asked."""
 LOOKED_AT = 8
