@@ -95,4 +95,4 @@ def _rules(profile: str) -> "Profile":
     from services.planner.profile_file import profile_of_file
     from services.planner.profiles import profile_named
 
-    return profile_of_file(Path(profile)) if profile.endswith(".json") else profile_named(profile)
+    return profile_of_file(Path(profile)) if Path(profile).suffix else profile_named(profile)

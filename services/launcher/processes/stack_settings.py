@@ -121,7 +121,7 @@ def profile_variables(profile: str | None) -> dict[str, str | None]:
     Raises:
         ValueError: the file cannot be read.
     """
-    if profile is None or Path(profile).suffix != ".json":
+    if profile is None or not Path(profile).suffix:  # no name of a profile has one
         return {"TOPNAV_PROFILE": profile}
     try:
         base = json.loads(Path(profile).read_text(encoding="utf-8"))["base"]

@@ -35,6 +35,8 @@ def test_the_launcher_gives_the_base_to_everybody_and_the_file_to_the_planner(wr
     path = write({"base": "photo", "thresholds": {"s_edge_min": 33}})
     assert profile_variables(str(path)) == {"TOPNAV_PROFILE": "photo", "TOPNAV_PROFILE_FILE": str(path)}
     assert profile_variables("thesis") == {"TOPNAV_PROFILE": "thesis"}
+    other = path.rename(path.with_suffix(".yaml"))  # whatever --write was told
+    assert profile_variables(str(other))["TOPNAV_PROFILE_FILE"] == str(other)
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ import pytest
 from experiments.training.evaluation.measure import summary
 from experiments.training.evaluation.models import available, trained_residual
 from experiments.training.keypoints.tables import answer_table, recurrence_table
+from services.features.networks.catalogue import MODELS
 from services.launcher.client.failure import ExperimentError
 
 ANSWER = {"matches": 40, "right": 30, "verified": 20, "verified_right": 18, "possible": 60, "answered": True}
@@ -47,6 +48,18 @@ def test_a_pipeline_without_weights_is_named_and_an_unknown_one_refused(monkeypa
     assert models[0].size_bytes == 0
     with pytest.raises(ValueError, match="got 'soft'"):
         available(["soft"])
+
+
+def test_of_a_matcher_the_weights_for_its_keypoints_count_and_no_others():
+    models, absent = available(
+        [f"{whose}/equirectangular/topnav-attention" for whose in ("sift", "topnav-keypoints")]
+    )
+    assert not absent
+    bytes_of = {model.name: model.size_bytes for model in MODELS}
+    assert [model.size_bytes for model in models] == [
+        bytes_of["topnav-attention-sift"],
+        bytes_of["topnav-attention-keypoints"] + bytes_of["topnav-keypoints"],
+    ]
 
 
 def test_a_folder_without_a_checkpoint_says_what_to_do(tmp_path):
