@@ -19,11 +19,23 @@ from tests.unit.services.map_store.conftest import add, app_of
 
 pytestmark = needs_chromium
 COUNT = 8
-SPOT = """(id) => {
-    const box = document.getElementById("graph").getBoundingClientRect();
-    const at = document.getElementById("graph")._cyreg.cy.getElementById(id).renderedPosition();
-    return [box.x + at.x, box.y + at.y];
+SPOT = """async (id) => {
+    const graph = document.getElementById("graph");
+    const spot = () => {
+        const box = graph.getBoundingClientRect(), at = graph._cyreg.cy.getElementById(id).renderedPosition();
+        return [box.x + at.x, box.y + at.y];
+    };
+    let at = spot();
+    for (let still = 0; still < 10; still++) {
+        await new Promise(requestAnimationFrame);
+        const now = spot();
+        if (now[0] !== at[0] || now[1] !== at[1]) still = 0;
+        at = now;
+    }
+    return at;
 }"""
+"""Where a node is drawn once it has stayed there for ten pictures of the screen: while the page fills, the
+drawing is fitted anew."""
 
 
 @pytest.fixture
