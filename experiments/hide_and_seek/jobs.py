@@ -52,9 +52,8 @@ def make_map(world: str, folder: str, pipeline: str | None = None) -> MapFiles:
     files = map_or_part(world, folder, pipeline)
     explored = json.loads(files[FIGURES])
     if explored["outcome"] != "succeeded":
-        shutil.rmtree(
-            Path(folder) / map_label(world, pipeline), ignore_errors=True
-        )  # the next try explores again
+        # The next try explores again.
+        shutil.rmtree(Path(folder) / map_label(world, pipeline), ignore_errors=True)
         raise ExperimentError(f"exploring {world}: {explored['outcome']}: {explored['reason']}")
     return files
 

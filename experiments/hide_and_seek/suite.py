@@ -18,6 +18,9 @@ from services.launcher.terminal.output import print_rows, wide_console, write_js
 
 SHOWN = ("world", "profile", "found", "median left (m)", "SPL", "collisions", "steps/s")
 
+Maps = dict[tuple[str, str | None], MapFiles]
+"""By world and pipeline."""
+
 
 @dataclass(frozen=True)
 class SuiteChoice:
@@ -62,19 +65,21 @@ def run_suite(choice: SuiteChoice, json_file: Path | None) -> dict[str, Any]:
     return result
 
 
-def _maps(console: Console, pool: Executor, choice: SuiteChoice, folder: Path) -> dict[str, MapFiles]:
-    worlds = dict.fromkeys((plan.world, plan.pipeline) for plan in choice.plans)
-    jobs = {world: pool.submit(make_map, world, str(folder), pipeline) for world, pipeline in worlds}
+def _maps(console: Console, pool: Executor, choice: SuiteChoice, folder: Path) -> Maps:
+    wanted = dict.fromkeys((plan.world, plan.pipeline) for plan in choice.plans)
+    jobs = {(world, by): pool.submit(make_map, world, str(folder), by) for world, by in wanted}
     follow(
         console, "worlds mapped", list(jobs.values()), len(jobs), lambda: sum(f.done() for f in jobs.values())
     )
-    return {world: job.result() for world, job in jobs.items()}
+    return {which: job.result() for which, job in jobs.items()}
 
 
 def _runs(
-    console: Console, pool: Executor, choice: SuiteChoice, maps: dict[str, MapFiles], folder: Path
+    console: Console, pool: Executor, choice: SuiteChoice, maps: Maps, folder: Path
 ) -> list[dict[str, Any]]:
-    jobs = [pool.submit(play_run, plan, maps[plan.world], str(folder)) for plan in choice.plans]
+    jobs = [
+        pool.submit(play_run, plan, maps[plan.world, plan.pipeline], str(folder)) for plan in choice.plans
+    ]
     total = sum(plan.rounds for plan in choice.plans)
     records = [folder / plan.name / "rounds.json" for plan in choice.plans]
     follow(console, "rounds played", jobs, total, lambda: sum(_on_record(record) for record in records))
