@@ -8,6 +8,7 @@ from services.features.matching.verification import Candidate, verify
 from services.features.pipeline.interfaces import FeatureSet
 from services.features.pipeline.pipeline import Pipeline
 from services.planner.mapping.edges import CONFIDENCE_MIN
+from services.planner.profiles import Profile
 from shared.messages.matching import NodeMatch
 
 
@@ -43,7 +44,7 @@ def matched(here: FeatureSet, there: FeatureSet, pipeline: Pipeline, seed: int) 
     return verify(here, Candidate(0, there), pairs, seed, pipeline.verification, True)
 
 
-def of_rendering(result: PairResult) -> Pair:
-    """A rendered pair that was measured for all heading methods."""
-    error_rad = result.verified_errors_rad["epipolar"]
-    return Pair(result.verified, error_rad, result.distance_m)
+def of_rendering(result: PairResult, rules: Profile) -> Pair:
+    """A rendered pair that was measured for all heading methods; S as the rules count it."""
+    similarity = result.verified if rules.sensing.similarity == "verified" else result.raw
+    return Pair(similarity, result.verified_errors_rad["epipolar"], result.distance_m)

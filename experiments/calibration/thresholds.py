@@ -27,6 +27,9 @@ DOUBTFUL_SHARE = 0.05
 """Of bearings that people placed by hand or that commands tell so many may be wrong themselves: of 109 sure
 answers about photographs three differ by 170 degrees, with 93 to 188 matches."""
 
+FINAL_PERCENT = 90.0
+"""Of the frames between a reached via point and the next node so many are not to end a round."""
+
 MIN_VIA = 15
 """Just below the least that any profile of services/planner/profiles.py was measured to need (16)."""
 
@@ -36,12 +39,12 @@ class Pair:
     """Two pictures, and what a pipeline made of them.
 
     Attributes:
-        verified: matches that agree with one motion.
+        similarity: S as the rules count it: matches that agree with one motion, or all.
         error_rad: of the bearing, None without an answer.
         distance_m: between the two; None where nobody knows.
     """
 
-    verified: int
+    similarity: int
     error_rad: float | None
     distance_m: float | None = None
 
@@ -58,7 +61,7 @@ class Pair:
 def propose(
     pairs: Sequence[Pair], spans: Spans, *, doubtful: bool = False, look_alikes: Sequence[int] = ()
 ) -> dict[str, float]:
-    """Thresholds for `services.planner.profiles`, in verified matches.
+    """Thresholds for `services.planner.profiles`, as these pairs count S.
 
     Args:
         pairs: what was measured.
@@ -89,31 +92,50 @@ def propose(
     }
 
 
+def propose_by_count(pairs: Sequence[Pair], spans: Spans, keypoints: int) -> dict[str, float]:
+    """The same for rules that know the end of a path and slow down by S alone, as the thesis's do.
+
+    Args:
+        pairs: what was measured, nearer ones than nodes and via points are too.
+        spans: distances between nodes.
+        keypoints: of a picture: S of two equal ones.
+
+    Returns:
+        What `propose` returns, and
+        s_final: nine in ten frames that are not near enough yet have less.
+        s_slow, s_max: of the velocity law: slower from a reached via point on, as in the thesis (6.1.5).
+    """
+    found = propose(pairs, spans)
+    almost = [pair.similarity for pair in pairs if pair.is_within(spans.near_m, spans.node_m[1])]
+    s_final = math.ceil(float(np.percentile(almost, FINAL_PERCENT)))
+    return {**found, "s_final": s_final, "s_slow": found["s_via_max"], "s_max": keypoints}
+
+
 def distance_rows(pairs: Sequence[Pair]) -> list[dict[str, float | str]]:
     """One row per bin of distance, for those that are known."""
     rows: list[dict[str, float | str]] = []
     for low_m, high_m in pairwise(BINS_M):
         inside = [pair for pair in pairs if pair.is_within(low_m, high_m)]
         if inside:
-            verified = rounded(np.median([pair.verified for pair in inside]), 1)
+            similarity = rounded(np.median([pair.similarity for pair in inside]), 1)
             wrong = sum(pair.is_wrong for pair in inside)
-            of = {"pairs": len(inside), "verified": verified, "wrong": wrong}
+            of = {"pairs": len(inside), "similarity": similarity, "wrong": wrong}
             rows.append({"distance_m": f"{low_m:g}-{high_m:g}", **of})
     return rows
 
 
 def _floor(pairs: Sequence[Pair], share: float) -> int:
     """The least number of matches above which at most such a share of the answers is wrong."""
-    answers = sorted((pair for pair in pairs if pair.error_rad is not None), key=lambda pair: pair.verified)
-    for floor in sorted({0, *(pair.verified for pair in answers)}):
-        above = [pair.is_wrong for pair in answers if pair.verified > floor]
+    answers = sorted((pair for pair in pairs if pair.error_rad is not None), key=lambda pair: pair.similarity)
+    for floor in sorted({0, *(pair.similarity for pair in answers)}):
+        above = [pair.is_wrong for pair in answers if pair.similarity > floor]
         if sum(above) <= share * len(above):
             return floor
     return 0
 
 
 def _median_within(pairs: Sequence[Pair], low_m: float, high_m: float) -> int:
-    inside = [pair.verified for pair in pairs if pair.is_within(low_m, high_m)]
+    inside = [pair.similarity for pair in pairs if pair.is_within(low_m, high_m)]
     if not inside:
         raise ExperimentError(
             f"expected pairs of pictures between {low_m} and {high_m} m apart, got none: measure more pairs "

@@ -9,6 +9,9 @@ from services.launcher.terminal import options
 
 app = typer.Typer()
 
+NEAREST_M = 0.05
+"""Of the pairs by which rules are calibrated that end a round by the count of matches."""
+
 Tours = Annotated[Path | None, typer.Option(help="Measure on linked photographs instead: a folder of tours.")]
 Recording = Annotated[
     Path | None, typer.Option(help="Measure on a recorded drive instead: a file of topnav record.")
@@ -23,6 +26,10 @@ def calibrate(
     pipeline: Annotated[
         str | None, typer.Option(help="Feature pipeline to measure; default: the one that suits the world.")
     ] = None,
+    base: Annotated[
+        str | None,
+        typer.Option(help="Profile with all other rules, for example thesis; default: photo or default."),
+    ] = None,
     pairs: Annotated[int, typer.Option(min=20, help="How many pairs of frames.")] = 500,
     seed: options.Seed = 1,
     json_file: options.JsonFile = None,
@@ -34,7 +41,7 @@ def calibrate(
     """Measure the thresholds of a pipeline: on rendered pairs of frames, a tour or a recording."""
     from experiments.calibration.measuring import of_rendering
     from experiments.calibration.recordings import pairs_of_recording
-    from experiments.calibration.thresholds import distance_rows, propose
+    from experiments.calibration.thresholds import distance_rows, propose, propose_by_count
     from experiments.calibration.tours import pairs_of_tours
     from experiments.photographs.tours import read_tours
     from experiments.rendered.headings import measure
@@ -52,13 +59,20 @@ def calibrate(
     place = environment_of(world)
     name = pipeline or ("photo" if tours is not None else "sift")
     chosen = Pipeline(find_profile(name))
-    base = "photo" if name == "photo" else "default"
+    base = place.profile(base) or (name if name.startswith("photo") else "default")
+    rules = profile_named(base)
+    counts = rules.sensing.similarity
+    if counts == "raw" and (tours is not None or recording is not None):
+        raise ExperimentError(
+            f"--base {base} counts matches up to the very goal: calibrate it in a world, without --tours and "
+            "--recording"
+        )
     facts: dict[str, Any] = {"pipeline": name, "seed": seed}
     rows: list[dict[str, Any]] = []
     with wide_console(stderr=True).status("") as status:
         if tours is not None:
             facts["tours"] = str(tours)
-            found, alike = pairs_of_tours(read_tours(tours), chosen, profile_named(base), seed, status.update)
+            found, alike = pairs_of_tours(read_tours(tours), chosen, rules, seed, status.update)
             proposal = propose(found, place.spans, doubtful=True, look_alikes=alike)
         elif recording is not None:
             facts["recording"] = str(recording)
@@ -66,11 +80,14 @@ def calibrate(
             proposal, rows = propose(found, place.spans, doubtful=True), distance_rows(found)
         else:
             facts["world"] = world
-            results = measure(
-                load_world(world), chosen, pairs, seed, data_dir, status.update, place.spans.pair_m
+            apart_m = place.spans.pair_m if counts == "verified" else (NEAREST_M, place.spans.pair_m[1])
+            results = measure(load_world(world), chosen, pairs, seed, data_dir, status.update, apart_m)
+            found, rows = [of_rendering(result, rules) for result in results], distance_table(results)
+            proposal = (
+                propose(found, place.spans)
+                if counts == "verified"
+                else propose_by_count(found, place.spans, chosen.profile.keypoints)
             )
-            found, rows = [of_rendering(result) for result in results], distance_table(results)
-            proposal = propose(found, place.spans)
     facts |= {"pairs": len(found), "wrong": sum(pair.is_wrong for pair in found)}
     write_json(json_file, {**facts, "thresholds": proposal, "by_distance": rows})
     write_json(write, {"base": base, "thresholds": proposal, "measured": facts})

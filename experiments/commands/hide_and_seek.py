@@ -45,6 +45,10 @@ def hide_and_seek(
     worlds: Annotated[
         str, typer.Option(help="Of a suite: only these, separated by commas; names or .yaml files.")
     ] = "",
+    map_profile: Annotated[
+        str | None,
+        typer.Option(help="Of a suite: rules by which worlds are explored, a name or a file of calibrate."),
+    ] = None,
     compare: Annotated[
         str | None, typer.Option(help="Of a suite: play everything under this profile as well.")
     ] = None,
@@ -75,6 +79,7 @@ def hide_and_seek(
         max_steps=max_steps,
         draw=draw,
         pipeline=pipeline,
+        map_profile=map_profile,
     )
     _play_suite(SuiteChoice(suite, plans, data_dir / "suites", jobs, cluster), data_dir, json_file)
 

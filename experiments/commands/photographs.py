@@ -72,7 +72,7 @@ def photographs(
         raise ExperimentError("expected --tours DIR, a folder of tours, or --render-example DIR, got neither")
     name, read = pipeline or "photo", read_tours(tours)
     pycolmap = load_pycolmap() if peer is not None else None
-    rules = _rules(profile or ("photo" if name == "photo" else "default"))
+    rules = _rules(profile or (name if name.startswith("photo") else "default"))
     with (
         wide_console(stderr=True).status("") as status,
         eyes(name, rules, seed, jobs or os.cpu_count() or 1, status.update) as looking,

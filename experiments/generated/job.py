@@ -7,7 +7,7 @@ from typing import Any
 from experiments.generated.plan import WorldPlan
 from experiments.generated.row import curves_of, world_row
 from experiments.hide_and_seek.jobs import FIGURES, MapFiles, map_or_part, play_run
-from experiments.hide_and_seek.plan import MAP_SEED, RunPlan
+from experiments.hide_and_seek.plan import MAP_SEED, MapPlan, RunPlan
 from services.launcher.client.failure import ExperimentError
 from services.launcher.drawing.curves import draw_coverage
 from services.launcher.processes.wait import LaunchError
@@ -43,7 +43,7 @@ def play_world(plan: WorldPlan, folder: str) -> dict[str, Any]:
         write_world(world, generate(plan.kind, plan.seed, plan.size))
     if not later.exists():
         rearrange_file(str(world), later, plan.seed)
-    files = map_or_part(str(world), str(own))
+    files = map_or_part(MapPlan(str(world)), str(own))
     explored = json.loads(files[FIGURES])
     rounds, moved = _rounds(plan, world, files, own), _rounds(plan, later, files, own)
     drawn = load_world(str(world))

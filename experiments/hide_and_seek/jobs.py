@@ -14,7 +14,7 @@ import httpx
 from experiments.bench.listener import Listener
 from experiments.bench.resources import peak_memory_mb
 from experiments.bench.stages import stage_durations_ms, table
-from experiments.hide_and_seek.plan import MAP_SEED, RunPlan, map_label
+from experiments.hide_and_seek.plan import MAP_SEED, MapPlan, RunPlan
 from experiments.hide_and_seek.play import Scene, play_rounds
 from experiments.hide_and_seek.report import report
 from services.launcher.client.failure import ExperimentError
@@ -38,46 +38,48 @@ MapFiles = dict[str, bytes]
 """By name: what `topnav map export` writes, the truth file, and what `topnav explore --json` has."""
 
 
-def make_map(world: str, folder: str, pipeline: str | None = None) -> MapFiles:
+def make_map(plan: MapPlan, folder: str) -> MapFiles:
     """Explore a world once; a map that is there already is taken.
 
     Args:
-        world: name or path of the world.
+        plan: which map.
         folder: where maps are kept, and the stack's files while it runs.
-        pipeline: of the features; None: the default one.
 
     Raises:
         ExperimentError: the exploration did not end by itself.
     """
-    files = map_or_part(world, folder, pipeline)
+    files = map_or_part(plan, folder)
     explored = json.loads(files[FIGURES])
     if explored["outcome"] != "succeeded":
         # The next try explores again.
-        shutil.rmtree(Path(folder) / map_label(world, pipeline), ignore_errors=True)
-        raise ExperimentError(f"exploring {world}: {explored['outcome']}: {explored['reason']}")
+        shutil.rmtree(Path(folder) / plan.label, ignore_errors=True)
+        raise ExperimentError(f"exploring {plan.world}: {explored['outcome']}: {explored['reason']}")
     return files
 
 
-def map_or_part(world: str, folder: str, pipeline: str | None = None) -> MapFiles:
+def map_or_part(plan: MapPlan, folder: str) -> MapFiles:
     """The same, of an exploration that was given up as well."""
-    own = Path(folder) / map_label(world, pipeline)
+    own = Path(folder) / plan.label
     if not (own / FIGURES).exists():
-        _explore(world, own, pipeline)
+        _explore(plan, own)
     return {name: (own / name).read_bytes() for name in (ARCHIVE, TRUTH, FIGURES)}
 
 
-def _explore(world: str, own: Path, pipeline: str | None) -> None:
+def _explore(plan: MapPlan, own: Path) -> None:
     """Write the files of a map into a folder; the figures come last and mark it as whole."""
     data_dir = own / "stack"
     shutil.rmtree(data_dir, ignore_errors=True)
-    with open_stack(StackChoice(data_dir, world, MAP_SEED, lockstep=True, pipeline=pipeline)) as stack:
-        result = explore(stack, world, MAP, MAP_SEED, EXPLORE_STEPS)
+    choice = StackChoice(
+        data_dir, plan.world, MAP_SEED, lockstep=True, profile=plan.profile, pipeline=plan.pipeline
+    )
+    with open_stack(choice) as stack:
+        result = explore(stack, plan.world, MAP, MAP_SEED, EXPLORE_STEPS)
         with _store(stack) as store:
             archive = store.get(f"/maps/{MAP}/export").raise_for_status().content
         memory = peak_memory_mb(stack.launcher)
     (own / ARCHIVE).write_bytes(archive)
     save_truth(own / TRUTH, MAP, result.truth)
-    told = figures(result, free_space(load_world(world)), MAP, MAP_SEED)
+    told = figures(result, free_space(load_world(plan.world)), MAP, MAP_SEED)
     per_node = round(len(archive) / max(1, len(result.graph.nodes)))
     write_json(own / FIGURES, {**told, "bytes_per_node": per_node, "memory_mb": memory})
 

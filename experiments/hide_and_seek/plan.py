@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from services.launcher.client.run_record import world_label
 
@@ -11,6 +12,27 @@ THESIS_ROUNDS = {"village": 5, "apartment": 3, "break_room": 3, "factory": 3}
 SUITES = ("thesis", "random")
 MAP_SEED = 1
 """Of every suite's maps: runs of different seeds play on the same ones."""
+
+
+@dataclass(frozen=True)
+class MapPlan:
+    """A map that rounds are played on.
+
+    Attributes:
+        world: name, or path of a YAML file.
+        pipeline: of the features; None: the default one.
+        profile: rules by which it is explored; None: the default ones.
+    """
+
+    world: str
+    pipeline: str | None = None
+    profile: str | None = None
+
+    @property
+    def label(self) -> str:
+        """Folder name."""
+        by = self.pipeline.split("/") if self.pipeline else []
+        return "-".join([world_label(self.world), *by, *([Path(self.profile).stem] if self.profile else [])])
 
 
 @dataclass(frozen=True)
@@ -24,6 +46,7 @@ class RunPlan:
         draw: draw the plan and the final frames of every round.
         record: keep a recording of every round that fails.
         pipeline: of the features of map and rounds; None: the default one.
+        map_profile: rules by which the world is explored; None: the default ones.
     """
 
     world: str
@@ -34,16 +57,17 @@ class RunPlan:
     draw: bool = True
     record: bool = False
     pipeline: str | None = None
+    map_profile: str | None = None
 
     @property
     def name(self) -> str:
         """Folder name: short and unique within a suite."""
-        return f"{map_label(self.world, self.pipeline)}-{self.profile}-{self.seed}"
+        return f"{self.map.label}-{Path(self.profile).stem}-{self.seed}"
 
-
-def map_label(world: str, pipeline: str | None) -> str:
-    """Folder name of a map: one of a world and a pipeline."""
-    return "-".join([world_label(world), *(pipeline.split("/") if pipeline else ())])
+    @property
+    def map(self) -> MapPlan:
+        """On which the rounds are played."""
+        return MapPlan(self.world, self.pipeline, self.map_profile)
 
 
 def plan_suite(
@@ -56,6 +80,7 @@ def plan_suite(
     max_steps: int,
     draw: bool = True,
     pipeline: str | None = None,
+    map_profile: str | None = None,
 ) -> list[RunPlan]:
     """All runs of a suite.
 
@@ -68,6 +93,7 @@ def plan_suite(
         max_steps: bound of a round.
         draw: draw every round.
         pipeline: of the features; None: the default one.
+        map_profile: rules by which the worlds are explored; None: the default ones.
 
     Raises:
         ValueError: an unknown suite, or a world that the thesis has no rounds in.
@@ -84,7 +110,9 @@ def plan_suite(
             )
     counts = THESIS_ROUNDS if suite == "thesis" else dict.fromkeys(chosen, rounds)
     return [
-        RunPlan(world, profile, counts[world], seed, max_steps, draw, pipeline=pipeline)
+        RunPlan(
+            world, profile, counts[world], seed, max_steps, draw, pipeline=pipeline, map_profile=map_profile
+        )
         for profile in dict.fromkeys(profiles)
         for world in chosen
     ]

@@ -10,7 +10,7 @@ from typing import Any
 from rich.console import Console
 
 from experiments.hide_and_seek.jobs import FIGURES, MapFiles, make_map, play_run
-from experiments.hide_and_seek.plan import RunPlan
+from experiments.hide_and_seek.plan import MapPlan, RunPlan
 from experiments.hide_and_seek.report import combined, run_row, suite_markdown
 from experiments.work.follow import follow
 from experiments.work.workers import workers
@@ -18,8 +18,7 @@ from services.launcher.terminal.output import print_rows, wide_console, write_js
 
 SHOWN = ("world", "profile", "found", "median left (m)", "SPL", "collisions", "steps/s")
 
-Maps = dict[tuple[str, str | None], MapFiles]
-"""By world and pipeline."""
+Maps = dict[MapPlan, MapFiles]
 
 
 @dataclass(frozen=True)
@@ -66,20 +65,18 @@ def run_suite(choice: SuiteChoice, json_file: Path | None) -> dict[str, Any]:
 
 
 def _maps(console: Console, pool: Executor, choice: SuiteChoice, folder: Path) -> Maps:
-    wanted = dict.fromkeys((plan.world, plan.pipeline) for plan in choice.plans)
-    jobs = {(world, by): pool.submit(make_map, world, str(folder), by) for world, by in wanted}
+    wanted = dict.fromkeys(plan.map for plan in choice.plans)
+    jobs = {plan: pool.submit(make_map, plan, str(folder)) for plan in wanted}
     follow(
         console, "worlds mapped", list(jobs.values()), len(jobs), lambda: sum(f.done() for f in jobs.values())
     )
-    return {which: job.result() for which, job in jobs.items()}
+    return {plan: job.result() for plan, job in jobs.items()}
 
 
 def _runs(
     console: Console, pool: Executor, choice: SuiteChoice, maps: Maps, folder: Path
 ) -> list[dict[str, Any]]:
-    jobs = [
-        pool.submit(play_run, plan, maps[plan.world, plan.pipeline], str(folder)) for plan in choice.plans
-    ]
+    jobs = [pool.submit(play_run, plan, maps[plan.map], str(folder)) for plan in choice.plans]
     total = sum(plan.rounds for plan in choice.plans)
     records = [folder / plan.name / "rounds.json" for plan in choice.plans]
     follow(console, "rounds played", jobs, total, lambda: sum(_on_record(record) for record in records))

@@ -21,7 +21,7 @@ def judge_photographs(name: str, tours: Sequence[Tour], seed: int, jobs: int) ->
         seed: of the pairs of different tours that are compared.
         jobs: processes.
     """
-    rules = profile_named("photo")
+    rules = profile_named(name if name.startswith("photo") else "photo")
     with eyes(name, rules, seed, jobs, lambda _: None) as looking:
         figures = report(measure(tours, looking, quick=True), name)
     return {key: figures["total"][key] for key in KEPT} | {

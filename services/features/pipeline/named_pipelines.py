@@ -1,5 +1,7 @@
 """Named pipelines: which plugins work together, with which figures. Pure data, nothing heavy is imported."""
 
+from dataclasses import replace
+
 from services.features.pipeline.interfaces import Profile
 from services.features.pipeline.plugins import PLUGINS
 
@@ -10,18 +12,16 @@ from services.features.pipeline.plugins import PLUGINS
 #   sift 500        209    131     72     60     38       36     100 %
 #   orb 300         116     60     21     27     16       10      88 %
 # 300 is the default: 500 gave no more directions, and matching grows with the square of the count.
+_PHOTO = Profile(
+    "sift", keypoints=1000, ratio=0.95, crop_deg=35.0, resize=(800, 1600), surroundings=2.0, promising=5.0
+)
+"""For pictures that are further apart than a robot's, of cameras that lean (decision 0031)."""
+
 PROFILES: dict[str, Profile] = {
     "sift": Profile("sift"),
     "fast": Profile("sift"),
-    "photo": Profile(
-        "sift",
-        keypoints=1000,
-        ratio=0.95,
-        crop_deg=35.0,
-        resize=(800, 1600),
-        surroundings=2.0,
-        promising=5.0,
-    ),
+    "photo": _PHOTO,
+    "photo_topnav": replace(_PHOTO, extractor="topnav-sift-hardnet"),
     "sift_dense": Profile("sift", keypoints=500),
     "thesis": Profile("sift", keypoints=150),
     "orb": Profile("orb"),

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from experiments.calibration.thresholds import Pair, propose
+from experiments.calibration.thresholds import Pair, propose, propose_by_count
 from services.launcher.client.environments import Spans
 from services.launcher.client.failure import ExperimentError
 
@@ -48,3 +48,17 @@ def test_one_doubtful_bearing_of_twenty_is_no_reason():
 def test_too_few_pairs_are_named():
     with pytest.raises(ExperimentError, match="measure more pairs"):
         propose([pair(2.0, 30)], Spans())
+
+
+def test_rules_that_stop_by_count_stop_where_few_frames_further_off_look_as_much_alike():
+    further = [pair(0.55 + 0.01 * n, 100 + n) for n in range(21)]
+    proposal = propose_by_count([*NODES[:1], *further], Spans(), keypoints=150)
+    assert proposal == {
+        "s_via_min": 15,
+        "s_edge_min": 20,
+        "s_node_max": 110,
+        "s_via_max": 120,
+        "s_final": 118,
+        "s_slow": 120,
+        "s_max": 150,
+    }

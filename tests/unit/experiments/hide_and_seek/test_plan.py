@@ -32,10 +32,20 @@ def test_a_random_suite_takes_any_world():
     assert world_label("a/b/attic.yml") == "attic"
 
 
-def test_runs_and_maps_of_a_pipeline_have_folders_of_their_own():
+def test_runs_and_maps_of_a_pipeline_or_of_other_rules_have_folders_of_their_own():
     (plain,) = plan_suite("thesis", 1, rounds=25, worlds=["factory"], max_steps=100)
     (other,) = plan_suite("thesis", 1, rounds=25, worlds=["factory"], max_steps=100, pipeline="orb/tangent")
+    (ruled,) = plan_suite(
+        "thesis",
+        1,
+        rounds=25,
+        worlds=["factory"],
+        max_steps=100,
+        profiles=["a/b.json"],
+        map_profile="a/c.json",
+    )
     assert (other.pipeline, other.name) == ("orb/tangent", "factory-orb-tangent-default-1")
+    assert (ruled.map.label, ruled.name) == ("factory-c", "factory-c-b-1")
     assert (plain.pipeline, plain.name) == (None, "factory-default-1")
 
 

@@ -25,7 +25,7 @@ def test_links_of_a_rendered_tour_give_thresholds(example, pipeline):
     tours = read_tours(example)
     pairs, _ = measured(tours, pipeline)
     assert len(pairs) == sum(len(tour.links()) for tour in tours)
-    assert any(pair.verified > 100 and not pair.is_wrong for pair in pairs)
+    assert any(pair.similarity > 100 and not pair.is_wrong for pair in pairs)
     assert set(propose(pairs, Spans(), doubtful=True)) == {"s_via_min", "s_edge_min"}
 
 
