@@ -1,14 +1,12 @@
 """`topnav train matcher`: data, loss and schedule in one place."""
 
-from dataclasses import fields
-
 import numpy as np
 import torch
 from pydantic import Field, NonNegativeFloat, PositiveFloat, PositiveInt
 
 from experiments.training.learning.running import Schedule
 from experiments.training.matcher.examples import Examples
-from experiments.training.matcher.losses import Truth, loss_of
+from experiments.training.matcher.losses import loss_of
 from experiments.training.panoramas.drawing import Pairs
 from experiments.training.recipe import Recipe
 from services.features.networks.attention import Attention, Keypoints
@@ -56,10 +54,10 @@ def beginning(recipe: MatcherRecipe, dimension: int) -> Attention:
         return Attention(dimension, recipe.width, recipe.heads, recipe.layers)
 
 
-def batch_drawn(
-    examples: Examples, pairs: Pairs, recipe: MatcherRecipe, rng: np.random.Generator
-) -> tuple[torch.Tensor, ...]:
-    """A batch of pairs drawn from `rng`: keypoints of both sides, then what is right."""
+def batch_loss(
+    network: Attention, examples: Examples, pairs: Pairs, recipe: MatcherRecipe, rng: np.random.Generator
+) -> torch.Tensor:
+    """Loss of a batch of pairs drawn from `rng`."""
     device = examples.device
     chosen = torch.from_numpy(pairs.draw(recipe.batch, rng, recipe.others)).to(device)
     generator = torch.Generator(device).manual_seed(int(rng.integers(2**62)))
@@ -71,24 +69,9 @@ def batch_drawn(
         for points, rows in zip(both, kept, strict=True)
     )
     truth = examples.truth(chosen, *kept)
-    return (
-        *(getattr(points, field.name) for points in (one, other) for field in fields(points)),
-        truth.partners,
-        *truth.alone,
-        truth.overlap,
-        truth.log_distance,
-    )
-
-
-def batch_loss(network: Attention, *batch: torch.Tensor, pair_weight: float) -> torch.Tensor:
-    """Loss of what `batch_drawn` returns."""
-    one, other = Keypoints(*batch[:4]), Keypoints(*batch[4:8])
-    partners, alone, alone_other, overlap, log_distance = batch[8:]
-    device = overlap.device.type
-    # What autocast keeps from one use of a weight to the next would outlive the recording it belongs to.
-    with torch.autocast(device, torch.bfloat16, enabled=device == "cuda", cache_enabled=False):
+    with torch.autocast(device.type, torch.bfloat16, enabled=device.type == "cuda"):
         answers = network(one, other)
-    return loss_of(answers, Truth(partners, (alone, alone_other), overlap, log_distance), pair_weight)
+    return loss_of(answers, truth, recipe.pair_weight)
 
 
 def _drawn(points: Keypoints, count: int, generator: torch.Generator) -> torch.Tensor:

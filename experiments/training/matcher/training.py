@@ -1,7 +1,6 @@
 """`topnav train matcher` from shards to weights."""
 
 from collections.abc import Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +10,10 @@ from experiments.training.data.shards import shard_files
 from experiments.training.detector.recipe import KeypointsRecipe
 from experiments.training.detector.recipe import beginning as detector_beginning
 from experiments.training.learning.checkpoints import SUFFIX, resume
-from experiments.training.learning.replaying import Replayed
 from experiments.training.learning.running import RECIPE, require_same_shards
 from experiments.training.learning.session import trained, written
 from experiments.training.matcher.examples import Examples, read_examples
-from experiments.training.matcher.recipe import MatcherRecipe, batch_drawn, batch_loss, beginning
+from experiments.training.matcher.recipe import MatcherRecipe, batch_loss, beginning
 from experiments.training.panoramas.drawing import Pairs
 from experiments.training.recipe import recipe_from
 from experiments.training.sealed import sealed_files
@@ -49,10 +47,9 @@ def train(
     examples = _read(files, pairs, detector, recipe, jobs).to(where)
     drawn = Pairs(examples, recipe.overlap, recipe.apart_m)
     network = beginning(recipe, examples.table.descriptors.shape[-1]).to(where)
-    loss = Replayed(network, partial(batch_loss, pair_weight=recipe.pair_weight))
     steps = trained(
         network,
-        lambda _, rng: loss(*batch_drawn(examples, drawn, recipe, rng)),
+        lambda net, rng: batch_loss(net, examples, drawn, recipe, rng),
         recipe.schedule,
         recipe,
         into,
