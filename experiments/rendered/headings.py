@@ -107,8 +107,8 @@ def judge_pair(
     kept = result.inlier_mask
     return PairResult(
         distance_m=pair.distance_m,
-        raw=len(rows),
-        verified=result.inliers,
+        raw=matched.count(),
+        verified=matched.count(kept),
         status=result.status,
         confidence=result.confidence,
         disparity_rad=result.disparity_rad,

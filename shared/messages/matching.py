@@ -39,8 +39,8 @@ class NodeMatch(Part):
     """How the frame relates to one node.
 
     Attributes:
-        raw_matches: matches of descriptors alone.
-        inliers: S, matches that agree with one camera motion.
+        raw_matches: matches of descriptors alone, without those that a matcher calls doubtful.
+        inliers: S, those of them that agree with one camera motion.
         heading_rad: direction from the frame to the node, camera frame of the frame; None if unknown.
         yaw_rad: rotation from the frame's camera to the node's, counter-clockwise.
         disparity_rad: median change of bearing after yaw: falls to zero on arrival.
@@ -50,7 +50,7 @@ class NodeMatch(Part):
             far away and look alike from many places.
         difference: of a target near by, how much of it differs that no way explains, levels of the Lab colour
             space (root mean square over the hundredth that differs most); None where there is no thumbnail.
-        matches_rad: (M, 4) lon, lat in the frame, then lon, lat in the node, all raw matches.
+        matches_rad: (M, 4) lon, lat in the frame, then lon, lat in the node, all matches.
         inlier_mask: (M,) 1 where the match is an inlier.
         right: (M,) probability that each match is right, by its descriptors; of a photo only.
         log_scale: (M,) ln of each keypoint's size in the photo over that in the node; of a photo only.

@@ -20,9 +20,11 @@ from services.features.pipeline.interfaces import (
 )
 from services.features.pipeline.named_pipelines import ATTENTION
 
-LEAST_RIGHT = 0.2
-"""Matches less likely right than this are left out (SuperGlue's threshold): at LightGlue's 0.1
-there are more, and two maps of the apartment had one and two false edges."""
+LEAST_RIGHT = 0.1
+"""Matches less likely right than this are left out (LightGlue's threshold)."""
+COUNTED = 0.2
+"""From here on they count as similarity (SuperGlue's threshold): with all of them two maps of the apartment
+had one and two false edges, and none where the doubtful ones only help to find the motion."""
 HOPELESS = 0.02
 """Probability of the same place below which the layers that are left are not asked."""
 LOOKED_AT = 8
@@ -96,4 +98,4 @@ def _mutual(right: Float32Array) -> Matched:
     mutual = right.argmax(axis=0)[nearest] == rows
     likely = right[rows, nearest].astype(np.float64)
     kept: IndexArray = np.flatnonzero(mutual & (likely >= LEAST_RIGHT))
-    return Matched(np.stack([kept, nearest[kept]], axis=1), likely[kept])
+    return Matched(np.stack([kept, nearest[kept]], axis=1), likely[kept], likely[kept] < COUNTED)

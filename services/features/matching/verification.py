@@ -42,8 +42,8 @@ def verify(
     result = two_view(current, target, rng, settings, cues_of(query, other, matched))
     return NodeMatch(
         node_id=candidate.node_id,
-        raw_matches=len(pairs),
-        inliers=result.inliers,
+        raw_matches=matched.count(),
+        inliers=matched.count(result.inlier_mask),
         status=result.status,
         heading_rad=result.heading_rad,
         heading_std_rad=result.heading_std_rad,

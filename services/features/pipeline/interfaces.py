@@ -133,13 +133,21 @@ class Matched:
     Attributes:
         pairs: (M, 2) index in the query, index in the other, in the order of the query.
         right: (M,) probability that each is right, by the descriptors alone.
+        doubtful: (M,) those that help to find the motion, but too rarely right to count as similarity; None:
+            none is.
     """
 
     pairs: IndexArray
     right: FloatArray
+    doubtful: npt.NDArray[np.bool_] | None = None
 
     def __len__(self) -> int:
         return len(self.pairs)
+
+    def count(self, chosen: npt.NDArray[np.bool_] | None = None) -> int:
+        """How many of the chosen ones (M,) count as similarity, or of all."""
+        counted = np.ones(len(self), np.bool_) if self.doubtful is None else ~self.doubtful
+        return int(np.count_nonzero(counted if chosen is None else counted & chosen))
 
     @classmethod
     def alike(cls, pairs: IndexArray) -> "Matched":

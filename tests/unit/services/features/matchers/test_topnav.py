@@ -6,7 +6,7 @@ import pytest
 torch = pytest.importorskip("torch")
 
 from services.features.matchers.mutual_ratio import MutualRatio  # noqa: E402
-from services.features.matchers.topnav import LEAST_RIGHT, LOOKED_AT, AttentionMatcher  # noqa: E402
+from services.features.matchers.topnav import COUNTED, LEAST_RIGHT, LOOKED_AT, AttentionMatcher  # noqa: E402
 from services.features.networks.attention import Assignment  # noqa: E402
 from services.features.pipeline.extraction import extract  # noqa: E402
 from services.features.pipeline.interfaces import FeatureSet, Profile, Runtime  # noqa: E402
@@ -67,6 +67,14 @@ def test_matches_are_mutual_likely_and_carry_their_probability(matcher):
     (found,) = matcher.match(some(3, 1), [some(3, 2)])
     assert found.pairs.tolist() == [[0, 0]]
     assert found.right == pytest.approx([0.9])
+
+
+def test_what_is_less_likely_than_what_counts_is_doubtful(matcher):
+    unsure = (LEAST_RIGHT + COUNTED) / 2.0
+    matcher._network = Answers([[0.9, 0.01, 0.01], [0.01, unsure, 0.01], [0.01, 0.01, COUNTED + 0.01]])
+    (found,) = matcher.match(some(3, 1), [some(3, 2)])
+    assert found.doubtful.tolist() == [False, True, False]
+    assert (len(found), found.count(), found.count(np.array([False, True, True]))) == (3, 2, 1)
 
 
 def test_another_place_has_no_matches(matcher):

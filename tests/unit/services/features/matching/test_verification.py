@@ -1,10 +1,13 @@
 """Verified matches tell the direction of another node, the same every time."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from services.features.map_features.map_features import MapFeatures
 from services.features.matching.requests import RequestError, match_candidates, verify_candidates
+from services.features.matching.verification import Candidate, verify
 from services.features.pipeline.extraction import extract
 from services.features.pipeline.named_pipelines import PROFILES
 from services.features.pipeline.pipeline import Pipeline
@@ -53,6 +56,22 @@ def test_heading_and_yaw_of_another_place(room, pipeline):
     assert found.yaw_rad == pytest.approx(YAW_RAD, abs=np.deg2rad(0.5))
     assert found.matches_rad.shape == (found.raw_matches, 4)
     assert found.model_dump() == answers[1].model_dump()
+
+
+def test_doubtful_matches_help_to_find_the_motion_and_do_not_count(room, pipeline):
+    here, there = (
+        extract(room(*place, 400), pipeline.extractor, pipeline.representation, pipeline.profile)
+        for place in ((0.0, 0.0, 0.0), (*STEP_M, YAW_RAD))
+    )
+    (matched,) = pipeline.matcher.match(here, [there])
+    plain, halved = (
+        verify(here, Candidate(8, there), replace(matched, doubtful=doubtful), 3, pipeline.verification, True)
+        for doubtful in (None, np.arange(len(matched)) % 2 == 0)
+    )
+    assert (halved.heading_rad, halved.yaw_rad) == (plain.heading_rad, plain.yaw_rad)
+    assert len(halved.matches_rad) == len(matched) == plain.raw_matches
+    assert halved.raw_matches == len(matched) // 2
+    assert halved.inliers == np.count_nonzero(plain.inlier_mask[1::2]) > 0.3 * plain.inliers
 
 
 def test_a_node_that_was_verified_for_this_frame_is_not_verified_again(room, pipeline):
