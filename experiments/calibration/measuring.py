@@ -47,4 +47,6 @@ def matched(here: FeatureSet, there: FeatureSet, pipeline: Pipeline, seed: int) 
 def of_rendering(result: PairResult, rules: Profile) -> Pair:
     """A rendered pair that was measured for all heading methods; S as the rules count it."""
     similarity = result.verified if rules.sensing.similarity == "verified" else result.raw
-    return Pair(similarity, result.verified_errors_rad["epipolar"], result.distance_m)
+    answered = result.confidence >= CONFIDENCE_MIN
+    error_rad = result.verified_errors_rad["epipolar"] if answered else None
+    return Pair(similarity, error_rad, result.distance_m)

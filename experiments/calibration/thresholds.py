@@ -96,7 +96,7 @@ def propose_by_count(pairs: Sequence[Pair], spans: Spans, keypoints: int) -> dic
     """The same for rules that know the end of a path and slow down by S alone, as the thesis's do.
 
     Args:
-        pairs: what was measured, nearer ones than nodes and via points are too.
+        pairs: what was measured.
         spans: distances between nodes.
         keypoints: of a picture: S of two equal ones.
 

@@ -9,9 +9,6 @@ from services.launcher.terminal import options
 
 app = typer.Typer()
 
-NEAREST_M = 0.05
-"""Of the pairs by which rules are calibrated that end a round by the count of matches."""
-
 Tours = Annotated[Path | None, typer.Option(help="Measure on linked photographs instead: a folder of tours.")]
 Recording = Annotated[
     Path | None, typer.Option(help="Measure on a recorded drive instead: a file of topnav record.")
@@ -80,8 +77,9 @@ def calibrate(
             proposal, rows = propose(found, place.spans, doubtful=True), distance_rows(found)
         else:
             facts["world"] = world
-            apart_m = place.spans.pair_m if counts == "verified" else (NEAREST_M, place.spans.pair_m[1])
-            results = measure(load_world(world), chosen, pairs, seed, data_dir, status.update, apart_m)
+            results = measure(
+                load_world(world), chosen, pairs, seed, data_dir, status.update, place.spans.pair_m
+            )
             found, rows = [of_rendering(result, rules) for result in results], distance_table(results)
             proposal = (
                 propose(found, place.spans)
