@@ -27,9 +27,6 @@ DOUBTFUL_SHARE = 0.05
 """Of bearings that people placed by hand or that commands tell so many may be wrong themselves: of 109 sure
 answers about photographs three differ by 170 degrees, with 93 to 188 matches."""
 
-FINAL_PERCENT = 90.0
-"""Of the frames between a reached via point and the next node so many are not to end a round."""
-
 MIN_VIA = 15
 """Just below the least that any profile of services/planner/profiles.py was measured to need (16)."""
 
@@ -102,13 +99,12 @@ def propose_by_count(pairs: Sequence[Pair], spans: Spans, keypoints: int) -> dic
 
     Returns:
         What `propose` returns, and
-        s_final: nine in ten frames that are not near enough yet have less.
+        s_final: no frame between a reached via point and the next node has more.
         s_slow, s_max: of the velocity law: slower from a reached via point on, as in the thesis (6.1.5).
     """
     found = propose(pairs, spans)
     almost = [pair.similarity for pair in pairs if pair.is_within(spans.near_m, spans.node_m[1])]
-    s_final = math.ceil(float(np.percentile(almost, FINAL_PERCENT)))
-    return {**found, "s_final": s_final, "s_slow": found["s_via_max"], "s_max": keypoints}
+    return {**found, "s_final": max(almost), "s_slow": found["s_via_max"], "s_max": keypoints}
 
 
 def distance_rows(pairs: Sequence[Pair]) -> list[dict[str, float | str]]:
