@@ -27,6 +27,9 @@ DOUBTFUL_SHARE = 0.05
 """Of bearings that people placed by hand or that commands tell so many may be wrong themselves: of 109 sure
 answers about photographs three differ by 170 degrees, with 93 to 188 matches."""
 
+AT_VIA_PERCENT = 90.0
+"""Of the frames near enough to a via point so many are not near enough to a goal."""
+
 MIN_VIA = 15
 """Just below the least that any profile of services/planner/profiles.py was measured to need (16)."""
 
@@ -99,12 +102,15 @@ def propose_by_count(pairs: Sequence[Pair], spans: Spans, keypoints: int) -> dic
 
     Returns:
         What `propose` returns, and
-        s_final: no frame between a reached via point and the next node has more.
+        s_final: no frame between a reached via point and the next node has more, and of frames at a via point
+            one in ten: there are many frames on the last metre, and none is to end the round too early.
         s_slow, s_max: of the velocity law: slower from a reached via point on, as in the thesis (6.1.5).
     """
     found = propose(pairs, spans)
     almost = [pair.similarity for pair in pairs if pair.is_within(spans.near_m, spans.node_m[1])]
-    return {**found, "s_final": max(almost), "s_slow": found["s_via_max"], "s_max": keypoints}
+    at_via = [pair.similarity for pair in pairs if pair.is_within(0.0, spans.near_m)]
+    s_final = max(*almost, math.ceil(float(np.percentile(at_via, AT_VIA_PERCENT))))
+    return {**found, "s_final": s_final, "s_slow": found["s_via_max"], "s_max": keypoints}
 
 
 def distance_rows(pairs: Sequence[Pair]) -> list[dict[str, float | str]]:

@@ -52,13 +52,14 @@ def test_too_few_pairs_are_named():
 
 def test_rules_that_stop_by_count_stop_where_no_frame_further_off_looks_as_much_alike():
     further = [pair(0.55 + 0.01 * n, 100 + n) for n in range(21)]
-    proposal = propose_by_count([pair(0.4, 125), *further, pair(1.5, 140)], Spans(), keypoints=150)
+    near = [pair(0.45, 120), pair(0.4, 124), pair(0.35, 134)]
+    proposal = propose_by_count([*near, *further, pair(1.5, 140)], Spans(), keypoints=150)
     assert proposal == {
         "s_via_min": 15,
         "s_edge_min": 20,
         "s_node_max": 110,
-        "s_via_max": 125,
-        "s_final": 120,
-        "s_slow": 125,
+        "s_via_max": 124,
+        "s_final": 132,
+        "s_slow": 124,
         "s_max": 150,
     }
