@@ -36,58 +36,30 @@ def calibrate(
     data_dir: options.DataDir = options.DATA_DIR,
 ) -> None:
     """Measure the thresholds of a pipeline: on rendered pairs of frames, a tour or a recording."""
-    from experiments.calibration.measuring import of_rendering
-    from experiments.calibration.recordings import pairs_of_recording
-    from experiments.calibration.thresholds import distance_rows, propose, propose_by_count
-    from experiments.calibration.tours import pairs_of_tours
-    from experiments.photographs.tours import read_tours
-    from experiments.rendered.headings import measure
-    from experiments.rendered.tables import distance_table
+    from experiments.calibration.proposal import Asked, of_recording, of_tours, of_world
     from services.features.pipeline.named_pipelines import find_profile
     from services.features.pipeline.pipeline import Pipeline
     from services.launcher.client.environments import environment_of
     from services.launcher.client.failure import ExperimentError
     from services.launcher.terminal.output import print_figures, print_rows, wide_console, write_json
     from services.planner.profiles import profile_named
-    from simulator.world.world_file import load_world
 
     if tours is not None and recording is not None:
         raise ExperimentError("expected --tours or --recording, got both: calibrate on one at a time")
     place = environment_of(world)
     name = pipeline or ("photo" if tours is not None else "sift")
-    chosen = Pipeline(find_profile(name))
-    base = place.profile(base) or (name if name.startswith("photo") else "default")
-    rules = profile_named(base)
-    counts = rules.sensing.similarity
-    if counts == "raw" and (tours is not None or recording is not None):
-        raise ExperimentError(
-            f"--base {base} counts matches up to the very goal: calibrate it in a world, without --tours and "
-            "--recording"
-        )
+    rules = profile_named(place.profile(base) or (name if name.startswith("photo") else "default"))
     facts: dict[str, Any] = {"pipeline": name, "seed": seed}
-    rows: list[dict[str, Any]] = []
     with wide_console(stderr=True).status("") as status:
+        asked = Asked(Pipeline(find_profile(name)), rules, place.spans, pairs, seed, status.update)
         if tours is not None:
-            facts["tours"] = str(tours)
-            found, alike = pairs_of_tours(read_tours(tours), chosen, rules, seed, status.update)
-            proposal = propose(found, place.spans, doubtful=True, look_alikes=alike)
+            facts["tours"], found = str(tours), of_tours(asked, tours)
         elif recording is not None:
-            facts["recording"] = str(recording)
-            found = pairs_of_recording(recording, chosen, pairs, seed, place.spans.pair_m, status.update)
-            proposal, rows = propose(found, place.spans, doubtful=True), distance_rows(found)
+            facts["recording"], found = str(recording), of_recording(asked, recording)
         else:
-            facts["world"] = world
-            results = measure(
-                load_world(world), chosen, pairs, seed, data_dir, status.update, place.spans.pair_m
-            )
-            found, rows = [of_rendering(result, rules) for result in results], distance_table(results)
-            proposal = (
-                propose(found, place.spans)
-                if counts == "verified"
-                else propose_by_count(found, place.spans, chosen.profile.keypoints)
-            )
-    facts |= {"pairs": len(found), "wrong": sum(pair.is_wrong for pair in found)}
-    write_json(json_file, {**facts, "thresholds": proposal, "by_distance": rows})
-    write_json(write, {"base": base, "thresholds": proposal, "measured": facts})
-    print_rows(f"{name} by distance", rows)
-    print_figures("proposed thresholds", proposal)
+            facts["world"], found = world, of_world(asked, world, data_dir)
+    facts |= {"pairs": len(found.pairs), "wrong": sum(pair.is_wrong for pair in found.pairs)}
+    write_json(json_file, {**facts, "thresholds": found.thresholds, "by_distance": found.rows})
+    write_json(write, {"base": rules.name, "thresholds": found.thresholds, "measured": facts})
+    print_rows(f"{name} by distance", found.rows)
+    print_figures("proposed thresholds", found.thresholds)

@@ -14,6 +14,11 @@ if TYPE_CHECKING:
 
 app = typer.Typer()
 
+MapProfile = Annotated[
+    str | None,
+    typer.Option(help="Of a suite: rules by which worlds are explored, a name or a file of calibrate."),
+]
+
 SHOWN = ("success", "final_distance_m", "spl", "steps", "collisions", "shortest_m", "driven_m", "reason")
 ROUNDS, SUITE_ROUNDS = 20, 25  # one failure is 5 %; 100 rounds in four worlds
 
@@ -45,10 +50,7 @@ def hide_and_seek(
     worlds: Annotated[
         str, typer.Option(help="Of a suite: only these, separated by commas; names or .yaml files.")
     ] = "",
-    map_profile: Annotated[
-        str | None,
-        typer.Option(help="Of a suite: rules by which worlds are explored, a name or a file of calibrate."),
-    ] = None,
+    map_profile: MapProfile = None,
     compare: Annotated[
         str | None, typer.Option(help="Of a suite: play everything under this profile as well.")
     ] = None,
