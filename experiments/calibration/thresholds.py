@@ -114,14 +114,14 @@ def propose_by_count(pairs: Sequence[Pair], spans: Spans, keypoints: int) -> dic
 
 
 def distance_rows(pairs: Sequence[Pair]) -> list[dict[str, float | str]]:
-    """One row per bin of distance, for those that are known."""
+    """One row per bin of distance, for those that are known; S counts verified matches."""
     rows: list[dict[str, float | str]] = []
     for low_m, high_m in pairwise(BINS_M):
         inside = [pair for pair in pairs if pair.is_within(low_m, high_m)]
         if inside:
-            similarity = rounded(np.median([pair.similarity for pair in inside]), 1)
+            verified = rounded(np.median([pair.similarity for pair in inside]), 1)
             wrong = sum(pair.is_wrong for pair in inside)
-            of = {"pairs": len(inside), "similarity": similarity, "wrong": wrong}
+            of = {"pairs": len(inside), "verified": verified, "wrong": wrong}
             rows.append({"distance_m": f"{low_m:g}-{high_m:g}", **of})
     return rows
 

@@ -42,13 +42,13 @@ def calibrate(
     from services.launcher.client.environments import environment_of
     from services.launcher.client.failure import ExperimentError
     from services.launcher.terminal.output import print_figures, print_rows, wide_console, write_json
-    from services.planner.profiles import profile_named
+    from services.planner.profiles import profile_name_for, profile_named
 
     if tours is not None and recording is not None:
         raise ExperimentError("expected --tours or --recording, got both: calibrate on one at a time")
     place = environment_of(world)
     name = pipeline or ("photo" if tours is not None else "sift")
-    rules = profile_named(place.profile(base) or (name if name.startswith("photo") else "default"))
+    rules = profile_named(place.profile(base) or profile_name_for(name))
     facts: dict[str, Any] = {"pipeline": name, "seed": seed}
     with wide_console(stderr=True).status("") as status:
         asked = Asked(Pipeline(find_profile(name)), rules, place.spans, pairs, seed, status.update)

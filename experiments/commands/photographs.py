@@ -62,6 +62,7 @@ def photographs(
     from experiments.photographs.tours import read_tours
     from services.launcher.client.failure import ExperimentError
     from services.launcher.terminal.output import wide_console, write_json
+    from services.planner.profiles import profile_name_for
 
     if render_example is not None:
         example = render_apartment(render_example, seed)
@@ -72,7 +73,7 @@ def photographs(
         raise ExperimentError("expected --tours DIR, a folder of tours, or --render-example DIR, got neither")
     name, read = pipeline or "photo", read_tours(tours)
     pycolmap = load_pycolmap() if peer is not None else None
-    rules = _rules(profile or (name if name.startswith("photo") else "default"))
+    rules = _rules(profile or profile_name_for(name))
     with (
         wide_console(stderr=True).status("") as status,
         eyes(name, rules, seed, jobs or os.cpu_count() or 1, status.update) as looking,

@@ -227,6 +227,14 @@ PHOTO_TOPNAV = PHOTO.replaced(
 
 PROFILES = {profile.name: profile for profile in (DEFAULT, THESIS, THESIS_OUTDOOR, PHOTO, PHOTO_TOPNAV)}
 
+OF_PIPELINES = (PHOTO.name, PHOTO_TOPNAV.name)
+"""Those that go with the pipeline of the same name."""
+
+
+def profile_name_for(pipeline: str, otherwise: str = DEFAULT.name) -> str:
+    """Name of the profile that goes with a pipeline, `otherwise` where it has none of its own."""
+    return pipeline if pipeline in OF_PIPELINES else otherwise
+
 
 def profile_named(name: str) -> Profile:
     """Return the profile or raise ValueError listing the choices."""

@@ -7,7 +7,7 @@ from experiments.photographs.eyes import eyes
 from experiments.photographs.report import report
 from experiments.photographs.study import measure
 from experiments.photographs.tours import Tour
-from services.planner.profiles import profile_named
+from services.planner.profiles import profile_name_for, profile_named
 
 KEPT = ("links", "answered", "within_20", "median_deg", "edges", "wrong_edges", "recall_at_1")
 
@@ -21,7 +21,7 @@ def judge_photographs(name: str, tours: Sequence[Tour], seed: int, jobs: int) ->
         seed: of the pairs of different tours that are compared.
         jobs: processes.
     """
-    rules = profile_named(name if name.startswith("photo") else "photo")
+    rules = profile_named(profile_name_for(name, "photo"))
     with eyes(name, rules, seed, jobs, lambda _: None) as looking:
         figures = report(measure(tours, looking, quick=True), name)
     return {key: figures["total"][key] for key in KEPT} | {

@@ -5,6 +5,11 @@ from dataclasses import replace
 from services.features.pipeline.interfaces import Profile
 from services.features.pipeline.plugins import PLUGINS
 
+_PHOTO = Profile(
+    "sift", keypoints=1000, ratio=0.95, crop_deg=35.0, resize=(800, 1600), surroundings=2.0, promising=5.0
+)
+"""For pictures that are further apart than a robot's, of cameras that lean (decision 0031)."""
+
 # Verified matches (medians of 14 pairs of apartment frames each), by distance of the two frames in metres:
 #   keypoints   0.2-0.5  0.5-1  1-1.5  1.5-2  2-2.5  2.5-3.5   pairs with a direction
 #   sift 150         76     54     26     26     18       14      95 %
@@ -12,11 +17,6 @@ from services.features.pipeline.plugins import PLUGINS
 #   sift 500        209    131     72     60     38       36     100 %
 #   orb 300         116     60     21     27     16       10      88 %
 # 300 is the default: 500 gave no more directions, and matching grows with the square of the count.
-_PHOTO = Profile(
-    "sift", keypoints=1000, ratio=0.95, crop_deg=35.0, resize=(800, 1600), surroundings=2.0, promising=5.0
-)
-"""For pictures that are further apart than a robot's, of cameras that lean (decision 0031)."""
-
 PROFILES: dict[str, Profile] = {
     "sift": Profile("sift"),
     "fast": Profile("sift"),
