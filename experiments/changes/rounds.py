@@ -11,7 +11,7 @@ import numpy as np
 from experiments.changes.alterations import Alteration, draw_alteration
 from experiments.changes.judging import Truth
 from experiments.changes.passages import reached, shuts_off
-from experiments.changes.sights import FAR_M, Measured, labels_of
+from experiments.changes.sights import FAR_M, SHADE, Measured, labels_of
 from experiments.rendered.frames import simulated
 from services.launcher.client.failure import ExperimentError
 from services.launcher.evaluation.rounds import Game
@@ -29,6 +29,8 @@ TRIES = 50
 MAX_STEPS = 20_000
 
 Row = dict[str, Any]
+Changed = tuple[Sequence[Alteration], Truth]
+"""Alterations that a picture should show, and where."""
 
 
 @dataclass(frozen=True)
@@ -68,26 +70,29 @@ class Rounds:
         self._game, self._store, self._map, self._places, self._rng = game, store, map_name, places, rng
         self._world, self._local = world, simulated(world)
         self._altered: list[Alteration] = []
+        self._shown: Sequence[Alteration] = ()
+        self._pictured: dict[str, list[Alteration]] = {}
 
     def play(self, rounds: int, changes: int, seed: int) -> Iterator[Row]:
         """A first round, which only takes pictures, then so many with so many changes before each."""
-        yield {"round": 0, **self._figures(self._drive(seed), [], {})}
+        seen = self._drive(seed)
+        self._pictured = {each.place: [] for each in seen}
+        yield {"round": 0, **self._figures(seen, [], {})}
         for number in range(1, rounds + 1):
             drawn = self._altered or self._draw(changes)
             back = bool(self._altered)
             self._alter(self._game.experimenter, drawn, back)
             if self._illumination:
                 self._game.experimenter.set_light(self._illumination * (number % 2))
-            seen = self._drive(seed + number)
-            before = self._pictures(seen)
-            self._alter(self._local, drawn, back)
-            after = self._pictures(seen)
-            truths = {s.place: self._truth(s, before, after, drawn) for s in seen}
             self._altered = [] if back else drawn
+            seen = self._drive(seed + number)
+            truths = self._truths(seen)
+            self._pictured |= {each.place: self._altered for each in seen}
             yield {"round": number, **self._figures(seen, drawn, truths)}
 
     def _draw(self, count: int) -> list[Alteration]:
         """Alterations of pieces near a place that shut no place off; the simulator takes each of them."""
+        self._show([])
         drawn: list[Alteration] = []
         spots = [(pose.x_m, pose.y_m) for pose in self._places.values()]
         within = reached(self._world, spots)
@@ -146,34 +151,42 @@ class Rounds:
             seen.append(Seen(visit["place"], pose, visit["against_ns"] is not None, regions))
         return seen
 
-    def _pictures(self, seen: Sequence[Seen]) -> dict[str, Measured]:
-        poses = {each.place: each.pose for each in seen}
-        return {name: self._local.measured_at(p.x_m, p.y_m, p.yaw_rad) for name, p in poses.items()}
+    def _truths(self, seen: Sequence[Seen]) -> dict[str, Changed]:
+        """What is otherwise than in the picture compared, which is older where a round was missed."""
+        now = self._altered
+        was = {each.place: self._pictured.get(each.place, now) for each in seen}
+        before = {each.place: self._picture(each.pose, was[each.place]) for each in seen}
+        after = {each.place: self._picture(each.pose, now) for each in seen}
+        return {s.place: _changed(s.pose, before[s.place], after[s.place], was[s.place], now) for s in seen}
 
-    @staticmethod
-    def _truth(
-        seen: Seen, before: Mapping[str, Measured], after: Mapping[str, Measured], drawn: Sequence[Alteration]
-    ) -> Truth:
-        labels = labels_of(seen.pose, before[seen.place], after[seen.place], drawn)
-        for number, each in enumerate(drawn, start=1):
-            at = (seen.pose.x_m, seen.pose.y_m)
-            if min(math.dist(at, spot) for spot in each.spots) >= FAR_M:
-                labels = np.where(labels == number, np.uint8(255), labels)
-        return Truth(labels, len(drawn))
+    def _picture(self, pose: Pose, altered: Sequence[Alteration]) -> Measured:
+        """From a pose, of the world with these alterations and no others."""
+        self._show(altered)
+        return self._local.measured_at(pose.x_m, pose.y_m, pose.yaw_rad)
 
-    def _figures(self, seen: Sequence[Seen], drawn: Sequence[Alteration], truths: Mapping[str, Truth]) -> Row:
+    def _show(self, altered: Sequence[Alteration]) -> None:
+        self._alter(self._local, [each for each in self._shown if each not in altered], back=True)
+        self._alter(self._local, [each for each in altered if each not in self._shown], back=False)
+        self._shown = altered
+
+    def _figures(
+        self, seen: Sequence[Seen], drawn: Sequence[Alteration], truths: Mapping[str, Changed]
+    ) -> Row:
         """A change counts once, whatever number of places see it."""
-        found: dict[int, bool] = {}
+        found: dict[Alteration, bool] = {}
         false = 0
         for each in seen:
             if each.place in truths:
-                verdict = truths[each.place].judge(each.regions)
+                changes, truth = truths[each.place]
+                verdict = truth.judge(each.regions)
                 false += len(verdict.false)
                 for number, hit in verdict.by_number.items():
-                    found[number] = found.get(number, False) or hit
+                    change = changes[number - 1]
+                    found[change] = found.get(change, False) or hit
             else:
                 false += len(each.regions)
         offsets = [self._offset_m(each) for each in seen]
+        asked = [hit for change, hit in found.items() if change in drawn]
         return {
             "visits": len(seen),
             "missed": len(self._places) - len(seen),
@@ -181,11 +194,24 @@ class Rounds:
             "offset_m_median": rounded(np.median(offsets), 3) if offsets else None,
             "offset_m_most": rounded(max(offsets), 3) if offsets else None,
             "altered": len(drawn),
-            "in_sight": len(found),
-            "reported": sum(found.values()),
+            "in_sight": len(asked),
+            "reported": sum(asked),
             "false": false,
         }
 
     def _offset_m(self, seen: Seen) -> float:
         place = self._places[seen.place]
         return math.hypot(seen.pose.x_m - place.x_m, seen.pose.y_m - place.y_m)
+
+
+def _changed(
+    pose: Pose, before: Measured, after: Measured, was: Sequence[Alteration], now: Sequence[Alteration]
+) -> Changed:
+    changes = [each for each in [*was, *now] if each not in was or each not in now]
+    if not changes:
+        return changes, Truth(np.zeros(before[1].shape, np.uint8), 0)
+    labels = labels_of(pose, before, after, changes)
+    for number, each in enumerate(changes, start=1):
+        if min(math.dist((pose.x_m, pose.y_m), spot) for spot in each.spots) >= FAR_M:
+            labels = np.where(labels == number, np.uint8(SHADE), labels)
+    return changes, Truth(labels, len(changes))

@@ -15,9 +15,9 @@ class Region(Part):
     """A part of a picture that changed, in the frame of the camera that took it.
 
     Attributes:
-        bearing_rad: of its middle, weighted by how much differs.
-        elevation_rad: of its middle, above the horizon positive.
-        width_rad, height_rad: of the box round it, in longitude and latitude.
+        bearing_rad: of the middle of the box round it.
+        elevation_rad: of the same, above the horizon positive.
+        width_rad, height_rad: of that box, in longitude and latitude.
         score: solid angle times how far it is beyond what counts, steradians.
     """
 

@@ -37,19 +37,17 @@ def regions(share: Map, first_row: int, least_share: float, least_sr: float) -> 
         size_sr = float(pixel_sr[row].sum())
         if size_sr >= least_sr:
             excess = turned[row, column] - least_share
-            found.append(_region(row + first_row, column + free, excess, float(excess @ pixel_sr[row]), grid))
+            found.append(_region(row + first_row, column + free, float(excess @ pixel_sr[row]), grid))
     return sorted(found, key=lambda each: -each.score)[:MOST]
 
 
 def _region(
     row: npt.NDArray[np.intp],
     column: npt.NDArray[np.intp],
-    excess: npt.NDArray[np.float32],
     score: float,
     grid: EquirectGrid,
 ) -> Region:
-    weight = excess / excess.sum()
-    middle = np.array([weight @ (column + 0.5), weight @ (row + 0.5)])
+    middle = np.array([column.min() + column.max() + 1, row.min() + row.max() + 1]) / 2
     longitude_rad, latitude_rad = grid.lonlat_from_pixels(np.array([middle[0] % grid.width, middle[1]]))
     per_px = math.tau / grid.width
     return Region(

@@ -8,9 +8,10 @@ from experiments.changes.judging import Truth
 from shared.messages.inspections import Region
 
 
-def region(bearing_deg, elevation_deg=0.0):
+def region(bearing_deg, elevation_deg=0.0, wide_deg=5.0, high_deg=5.0):
     bearing_rad, elevation_rad = math.radians(bearing_deg), math.radians(elevation_deg)
-    return Region(bearing_rad=bearing_rad, elevation_rad=elevation_rad, width_rad=0.1, height_rad=0.1)
+    size = {"width_rad": math.radians(wide_deg), "height_rad": math.radians(high_deg)}
+    return Region(bearing_rad=bearing_rad, elevation_rad=elevation_rad, **size)
 
 
 def labels():
@@ -34,6 +35,29 @@ def test_a_change_is_reported_by_a_region_in_it_or_up_to_five_degrees_beside_it(
 def test_a_change_across_the_seam_is_one():
     for bearing_deg in (179.0, -179.0, 171.0, -171.0):
         assert Truth(labels(), 3).judge([region(bearing_deg)]).by_number[2]
+
+
+def test_a_box_reports_what_it_holds_most_of():
+    marked = np.zeros((180, 360), np.uint8)
+    marked[80:100, 170:190], marked[80:100, 200:210] = 1, 2
+    truth = Truth(marked, 2)
+    for wide_deg, held in ((58.0, True), (42.0, False)):
+        verdict = truth.judge([region(0.0, 0.0, wide_deg, 20.0)])
+        assert verdict.by_number == {1: True, 2: held}, wide_deg
+        assert verdict.false == ()
+
+
+def test_a_box_round_everything_reports_only_what_it_lies_on():
+    verdict = Truth(labels(), 2).judge([region(0.0, 0.0, 359.0, 80.0)])
+    assert verdict.by_number == {1: True, 2: False}
+
+
+def test_a_box_across_the_seam_holds_both_ends():
+    marked = np.zeros((180, 360), np.uint8)
+    marked[80:100, :6] = marked[80:100, -6:] = 1
+    marked[80:100, 20:26] = 2
+    verdict = Truth(marked, 2).judge([region(170.0, 0.0, 38.0, 20.0)])
+    assert verdict.by_number == {1: True, 2: True}
 
 
 def test_shadows_are_no_change_and_no_error():

@@ -39,3 +39,10 @@ def test_small_and_weak_ones_are_left_out_and_the_rest_come_by_significance():
     less, more = (slice(40, 50), slice(100, 110), 0.5), (slice(40, 50), slice(20, 30), 0.9)
     found = regions(band(small, weak, less, more), FIRST_ROW, 0.2, 0.004)
     assert [round(math.degrees(each.bearing_rad)) for each in found] == [155, 75]
+
+
+def test_the_box_holds_the_whole_region_wherever_most_of_it_differs():
+    much, little = (slice(40, 50), slice(100, 110), 0.9), (slice(40, 50), slice(110, 140), 0.3)
+    (found,) = regions(band(much, little), FIRST_ROW, 0.2, 0.001)
+    assert math.degrees(found.bearing_rad) == pytest.approx(180.0 - 120.0)
+    assert math.degrees(found.width_rad) == pytest.approx(40.0)
