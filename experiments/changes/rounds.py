@@ -9,9 +9,9 @@ import httpx
 import numpy as np
 
 from experiments.changes.alterations import Alteration, draw_alteration
-from experiments.changes.judging import Truth
+from experiments.changes.altered_world import AlteredWorld, Changed, alter, changed
 from experiments.changes.passages import reached, shuts_off
-from experiments.changes.sights import FAR_M, SHADE, Measured, labels_of
+from experiments.changes.sights import FAR_M
 from experiments.rendered.frames import simulated
 from services.launcher.client.failure import ExperimentError
 from services.launcher.evaluation.rounds import Game
@@ -19,8 +19,6 @@ from services.launcher.terminal.output import rounded
 from shared.messages.inspections import Region
 from shared.messages.missions import MissionRequest
 from shared.messages.simulation import Pose
-from simulator.simulation import Simulation
-from simulator.world.changes import ChangeError
 from simulator.world.world_file import WorldFile
 
 CLEAR_M = 0.6
@@ -29,8 +27,6 @@ TRIES = 50
 MAX_STEPS = 20_000
 
 Row = dict[str, Any]
-Changed = tuple[Sequence[Alteration], Truth]
-"""Alterations that a picture should show, and where."""
 
 
 @dataclass(frozen=True)
@@ -68,9 +64,8 @@ class Rounds:
     ) -> None:
         self._illumination = illumination
         self._game, self._store, self._map, self._places, self._rng = game, store, map_name, places, rng
-        self._world, self._local = world, simulated(world)
+        self._world, self._local = world, AlteredWorld(simulated(world))
         self._altered: list[Alteration] = []
-        self._shown: Sequence[Alteration] = ()
         self._pictured: dict[str, list[Alteration]] = {}
 
     def play(self, rounds: int, changes: int, seed: int) -> Iterator[Row]:
@@ -81,7 +76,7 @@ class Rounds:
         for number in range(1, rounds + 1):
             drawn = self._altered or self._draw(changes)
             back = bool(self._altered)
-            self._alter(self._game.experimenter, drawn, back)
+            alter(self._game.experimenter, drawn, back)
             if self._illumination:
                 self._game.experimenter.set_light(self._illumination * (number % 2))
             self._altered = [] if back else drawn
@@ -92,7 +87,6 @@ class Rounds:
 
     def _draw(self, count: int) -> list[Alteration]:
         """Alterations of pieces near a place that shut no place off; the simulator takes each of them."""
-        self._show([])
         drawn: list[Alteration] = []
         spots = [(pose.x_m, pose.y_m) for pose in self._places.values()]
         within = reached(self._world, spots)
@@ -103,33 +97,12 @@ class Rounds:
             shut = one.after is not None and any(
                 math.dist(one.after, at) < one.reach_m + CLEAR_M for at in spots
             )
-            possible = near and not shut and self._is_possible(one)
+            possible = near and not shut and self._local.takes(one)
             if possible and not shuts_off(self._world, [*drawn, one], within):
                 drawn.append(one)
             if len(drawn) == count:
                 return drawn
         raise ExperimentError(f"{self._world.name} has no {count} pieces to move near its places")
-
-    def _is_possible(self, one: Alteration) -> bool:
-        try:
-            self._alter(self._local, [one], back=False)
-        except ChangeError:
-            return False
-        self._alter(self._local, [one], back=True)
-        return True
-
-    @staticmethod
-    def _alter(world: Any, drawn: Sequence[Alteration], back: bool) -> None:
-        """In the stack, or in the simulation here; the latter takes poses as tuples."""
-        for each in drawn:
-            if back:
-                world.set_item(each.name, True)
-            elif each.pose is None:
-                world.set_item(each.name, False)
-            else:
-                pose = each.pose
-                as_tuple = (pose.x_m, pose.y_m, pose.yaw_rad)
-                world.set_item(each.name, None, as_tuple if isinstance(world, Simulation) else pose)
 
     def _drive(self, seed: int) -> list[Seen]:
         request = MissionRequest(
@@ -155,19 +128,9 @@ class Rounds:
         """What is otherwise than in the picture compared, which is older where a round was missed."""
         now = self._altered
         was = {each.place: self._pictured.get(each.place, now) for each in seen}
-        before = {each.place: self._picture(each.pose, was[each.place]) for each in seen}
-        after = {each.place: self._picture(each.pose, now) for each in seen}
-        return {s.place: _changed(s.pose, before[s.place], after[s.place], was[s.place], now) for s in seen}
-
-    def _picture(self, pose: Pose, altered: Sequence[Alteration]) -> Measured:
-        """From a pose, of the world with these alterations and no others."""
-        self._show(altered)
-        return self._local.measured_at(pose.x_m, pose.y_m, pose.yaw_rad)
-
-    def _show(self, altered: Sequence[Alteration]) -> None:
-        self._alter(self._local, [each for each in self._shown if each not in altered], back=True)
-        self._alter(self._local, [each for each in altered if each not in self._shown], back=False)
-        self._shown = altered
+        before = {each.place: self._local.measured(each.pose, was[each.place]) for each in seen}
+        after = {each.place: self._local.measured(each.pose, now) for each in seen}
+        return {s.place: changed(s.pose, before[s.place], after[s.place], was[s.place], now) for s in seen}
 
     def _figures(
         self, seen: Sequence[Seen], drawn: Sequence[Alteration], truths: Mapping[str, Changed]
@@ -202,16 +165,3 @@ class Rounds:
     def _offset_m(self, seen: Seen) -> float:
         place = self._places[seen.place]
         return math.hypot(seen.pose.x_m - place.x_m, seen.pose.y_m - place.y_m)
-
-
-def _changed(
-    pose: Pose, before: Measured, after: Measured, was: Sequence[Alteration], now: Sequence[Alteration]
-) -> Changed:
-    changes = [each for each in [*was, *now] if each not in was or each not in now]
-    if not changes:
-        return changes, Truth(np.zeros(before[1].shape, np.uint8), 0)
-    labels = labels_of(pose, before, after, changes)
-    for number, each in enumerate(changes, start=1):
-        if min(math.dist((pose.x_m, pose.y_m), spot) for spot in each.spots) >= FAR_M:
-            labels = np.where(labels == number, np.uint8(SHADE), labels)
-    return changes, Truth(labels, len(changes))
