@@ -65,11 +65,15 @@ const live = new Live(heard, changed);
 const views = new Views(viewChanged);
 
 function viewChanged(view) {
-  if (view === "drive") panorama.resume();
-  else if (view === "why") history.open();
+  if (view !== "drive") byHand.release(); // nobody drives what he does not see
+  if (view === "drive") {
+    inspector.uncover();
+    panorama.resume();
+  } else if (view === "why") history.open();
   else if (view === "maps") maps.refresh().then(() => mapTable.show());
   else if (view === "runs") runs.show();
   else if (view === "tasks") queue.show();
+  else if (view === "map") marks.inspections();
 }
 
 function showMap(name) {

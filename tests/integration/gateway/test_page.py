@@ -211,6 +211,10 @@ def test_keys_and_stick_drive_by_hand_until_the_page_lets_go(page: "Page", robot
     page.keyboard.press("KeyW")
     page.wait_for_timeout(300)
     assert not said(action="drive")
+    page.check("#by-hand")
+    drives(action="drive")
+    page.click("nav a[data-view=tasks]")
+    drives(action="release")
 
 
 def test_to_let_go_comes_after_a_wish_that_is_late(page: "Page", robot_bus: Bus) -> None:

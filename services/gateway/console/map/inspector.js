@@ -18,6 +18,11 @@ export class Inspector {
     this.shown = {};
     this.graph.choose({});
     $("inspector").hidden = true;
+    this.uncover();
+  }
+
+  /** Beside the live picture it lies over other cards: what was opened elsewhere must not cover them. */
+  uncover() {
     document.body.classList.remove("inspecting");
   }
 

@@ -52,10 +52,12 @@ export class Marks {
     const rules = this.graph.rules.map((rule) => [rule.name, TEXT.rule(rule),
       this.remover("rules", rule.name, TEXT.liftRule(rule.name), TEXT.lift)]);
     $("rules").replaceChildren(...(rules.length ? [table(TEXT.ruleColumns, rules)] : []));
-    await this.inspections(map);
+    await this.inspections();
   }
 
-  async inspections(map) {
+  /** A round changes nothing in the map: they are asked for whenever the view comes up, too. */
+  async inspections() {
+    const { map } = this.graph;
     let rounds = [];
     try {
       if (map) rounds = await get(`/api/maps/${map}/inspections`);
