@@ -16,6 +16,7 @@ from tests.e2e.one_stack.conftest import Explored
 from tests.e2e.one_stack.test_console import copy_of_map as copy_of_map
 from tests.e2e.one_stack.test_console import page as page
 from tests.integration.gateway.test_places_page import SPOT, Clicks
+from tests.integration.gateway.test_routes_page import teaching_begun
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(900), needs_chromium]
 
@@ -94,12 +95,7 @@ def forbid(page: Any, node: int, http: httpx.Client, map_name: str) -> None:
 def teach(page: Any, http: httpx.Client, map_name: str, explored: Explored) -> None:
     """Along the first edge of the map, by a key held down."""
     page.click("nav a[data-view=drive]")
-    clicks = Clicks(page)
-    page.select_option("#mission-kind", "teach")
-    clicks.count += 1
-    page.fill('#mission-parameters input[name="route"]', "tour")
-    clicks.on("#start")
-    clicks.on("#by-hand")
+    clicks = teaching_begun(page)
     mission = f"/api/robots/{explored.stack.robot}/mission"
     page.keyboard.down("ArrowUp")
     reached = wait_until(lambda: passed(http.get(mission).json()) >= 2, WAIT_S)

@@ -25,16 +25,22 @@ def asked(planner: Planner, action: str, parameters: dict[str, Any]) -> bool:
     return wait_until(has_come, WAIT_S)
 
 
-def test_teaching_is_started_driven_and_finished_in_four_clicks(page: Any, planner: Planner) -> None:
-    page.click('nav a[data-view="drive"]')
-    page.wait_for_selector('#mission-kind option[value="teach"]', state="attached", timeout=WAIT_MS)
-    assert page.is_hidden("#finish")
+def teaching_begun(page: Any) -> Clicks:
+    """A route is taught and the robot driven by hand, in the view *Drive*; the clicks that it took."""
     clicks = Clicks(page)
     page.select_option("#mission-kind", "teach")
     clicks.count += 1
     page.fill('#mission-parameters input[name="route"]', "tour")
     clicks.on("#start")
     clicks.on("#by-hand")
+    return clicks
+
+
+def test_teaching_is_started_driven_and_finished_in_four_clicks(page: Any, planner: Planner) -> None:
+    page.click('nav a[data-view="drive"]')
+    page.wait_for_selector('#mission-kind option[value="teach"]', state="attached", timeout=WAIT_MS)
+    assert page.is_hidden("#finish")
+    clicks = teaching_begun(page)
     clicks.on("#finish")
     assert asked(planner, "teach", {"route": "tour"})
     assert asked(planner, "finish", {})
