@@ -66,6 +66,7 @@ def _query(query: Query[Message, Message]) -> dict[str, Any]:
         "request": query.request.SCHEMA,
         "reply": query.reply.SCHEMA,
         "max_bytes": query.max_bytes,
+        "lapses": query.lapses,
     }
 
 

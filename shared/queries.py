@@ -1,6 +1,7 @@
 """Questions over the bus: a service answers in its own loop, an asker gets a reply or a typed error."""
 
 import logging
+import math
 import threading
 import time
 from collections import deque
@@ -24,6 +25,8 @@ MEETING_S = 1.5
 """Two peers that were just started have met by then; chosen: a few times what gossip takes."""
 MEETING_PERIOD_S = 0.1
 """Between two tries meanwhile; chosen."""
+PATIENCE_DIGITS = 9
+"""Of an attachment that says for how many milliseconds an answer is waited for: eleven days; chosen."""
 CODED = "text/plain;"
 """Zenoh encoding of a refusal: after it stands its code, "" in older services."""
 
@@ -93,11 +96,15 @@ class Request(Generic[Q, R]):
 
 
 class Requests(Generic[Q, R]):
-    """Questions of one kind, taken by the service's loop in the order they came."""
+    """Questions of one kind, taken by the service's loop in the order they came.
+
+    Where the loop falls behind, those that lapse are dropped once nobody waits for the answer any more: an
+    asker that asks again would otherwise always wait for the answers to its earlier questions.
+    """
 
     def __init__(self, query: Query[Q, R], wake: threading.Event, counters: Counters) -> None:
         self._query = query
-        self._waiting: deque[zenoh.Query] = deque()
+        self._waiting: deque[tuple[zenoh.Query, float]] = deque()
         self._waiting_bytes, self._most_bytes = 0, queue_bytes(query.max_bytes)
         self._wake, self._counters = wake, counters
         self._lock = threading.Lock()
@@ -111,7 +118,7 @@ class Requests(Generic[Q, R]):
         with self._lock:
             full = len(self._waiting) >= MAX_WAITING or self._waiting_bytes + length > self._most_bytes
             if not full:
-                self._waiting.append(query)
+                self._waiting.append((query, self._lapses_s(query)))
                 self._waiting_bytes += length
         if full:
             self._counters.count("overflow", f"{self._query.template}: {len(self._waiting)} questions wait")
@@ -137,12 +144,21 @@ class Requests(Generic[Q, R]):
         return None
 
     def _oldest(self) -> zenoh.Query | None:
-        with self._lock:
-            if not self._waiting:
-                return None
-            query = self._waiting.popleft()
-            self._waiting_bytes -= _length(query)
-            return query
+        """The question that has waited longest; those whose askers have given up are dropped and counted."""
+        while True:
+            with self._lock:
+                if not self._waiting:
+                    return None
+                query, until_s = self._waiting.popleft()
+                self._waiting_bytes -= _length(query)
+            if time.monotonic() < until_s:
+                return query
+            self._counters.count("lapsed", f"{query.key_expr}: nobody waits for the answer any more")
+            with query:
+                pass
+
+    def _lapses_s(self, query: zenoh.Query) -> float:
+        return time.monotonic() + _patience_s(query) if self._query.lapses else math.inf
 
     def _refuse(self, query: zenoh.Query, reason: str) -> None:
         self._counters.count("malformed", reason)
@@ -159,9 +175,10 @@ def ask(session: zenoh.Session, query: Query[Q, R], key: str, request: Q, timeou
         WireError: the answer is not the expected message.
     """
     payload = encode(request)
+    attachment = str(math.ceil(timeout_s * 1e3)).encode() if query.lapses else None
     patient_until_s = time.monotonic() + min(timeout_s, MEETING_S)
     while True:
-        for answer in session.get(key, payload=payload, timeout=timeout_s):
+        for answer in session.get(key, payload=payload, timeout=timeout_s, attachment=attachment):
             return _read(query, key, answer, timeout_s)
         if time.monotonic() > patient_until_s:
             raise AbsentError(f"{key}: nobody answers; is the service up?")
@@ -185,6 +202,13 @@ def _reply_error(query: zenoh.Query, reason: str, code: str) -> None:
 
 def _length(query: zenoh.Query) -> int:
     return len(query.payload) if query.payload is not None else 0
+
+
+def _patience_s(query: zenoh.Query) -> float:
+    """How long the asker waits; forever where it does not say so, or not in plain digits."""
+    told = query.attachment
+    said = told.to_bytes() if told is not None and len(told) <= PATIENCE_DIGITS else b""
+    return int(said) / 1e3 if said.isdigit() else math.inf
 
 
 def _variable(template: str, key: str) -> str:

@@ -59,6 +59,8 @@ class Query(Generic[Q, R]):
     Attributes:
         anyone: of several processes that answer this, any one will do, and only one is asked; otherwise all
             are, and the first answer counts.
+        lapses: it changes nothing, so that answering it once its asker has given up is work for nobody: such
+            questions are dropped. Others are dealt with however late: a stop, above all.
     """
 
     template: str
@@ -66,6 +68,7 @@ class Query(Generic[Q, R]):
     reply: type[R]
     max_bytes: int
     anyone: bool = False
+    lapses: bool = False
 
     def key(self, **names: str) -> str:
         """Fill the template; a name that breaks the rule raises ValueError."""
@@ -91,10 +94,24 @@ EVENT = Topic("topnav/{robot}/event", missions.Event, Delivery.LOG, 100_000)
 TRUTH = Topic("topnav/{robot}/truth", simulation.Truth, Delivery.LOG, 10_000)
 MAP_DELTA = Topic("topnav/maps/{map}/delta", maps.MapDelta, Delivery.RECOVERED, 64 * MB)
 
-MATCH = Query("topnav/{robot}/match", matching.MatchRequest, matching.MatchReply, 32 * MB, anyone=True)
-EXTRACT = Query("topnav/features/extract", features.ExtractRequest, features.Features, 64 * MB, anyone=True)
+MATCH = Query(
+    "topnav/{robot}/match", matching.MatchRequest, matching.MatchReply, 32 * MB, anyone=True, lapses=True
+)
+EXTRACT = Query(
+    "topnav/features/extract",
+    features.ExtractRequest,
+    features.Features,
+    64 * MB,
+    anyone=True,
+    lapses=True,
+)
 EXTRACT_PHOTO = Query(
-    "topnav/features/extract_photo", features.ExtractPhotoRequest, features.Features, 64 * MB, anyone=True
+    "topnav/features/extract_photo",
+    features.ExtractPhotoRequest,
+    features.Features,
+    64 * MB,
+    anyone=True,
+    lapses=True,
 )
 MISSION = Query("topnav/{robot}/mission", missions.MissionRequest, missions.MissionStatus, 8 * MB)
 MISSION_KINDS = Query(
@@ -109,7 +126,12 @@ MISSION_RECORD = Query(
 TASKS = Query("topnav/missions/{queue}/tasks", tasks.TaskRequest, tasks.TaskReply, 8 * MB, anyone=True)
 WAY = Query("topnav/{robot}/way", traffic.WayRequest, traffic.WayReply, 1 * MB)
 COMPARE = Query(
-    "topnav/{robot}/compare", inspections.CompareRequest, inspections.CompareReply, 8 * MB, anyone=True
+    "topnav/{robot}/compare",
+    inspections.CompareRequest,
+    inspections.CompareReply,
+    8 * MB,
+    anyone=True,
+    lapses=True,
 )
 INSPECTION = Query(
     "topnav/maps/{map}/inspections",

@@ -87,6 +87,8 @@ class Planner:
         for delta in self.control.changes():
             self.control.follow_store(delta)
         self._follow_robot(now_s)
+        if due := now_s - self._heartbeat_s > HEARTBEAT_S:  # before what may go unanswered for long
+            self._publish_status(now_s)
         self._features = self._features_in.take() or self._features
         if (
             self._features is not None
@@ -95,8 +97,7 @@ class Planner:
         ):
             self._answer(self._motion.observe(self._features, now_s))
         self.control.stand_in_traffic()
-        if now_s - self._heartbeat_s > HEARTBEAT_S:
-            self._publish_status(now_s)
+        if due:
             self.control.settle()
 
     def _pause_where_held(self, driver: str, now_s: float) -> None:

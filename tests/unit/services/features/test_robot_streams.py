@@ -11,8 +11,8 @@ from shared.messages.matching import NodeMatch
 MATCH = NodeMatch(node_id=4, raw_matches=9, inliers=8, status="inconsistent")
 
 
-def frame():
-    lonlat, scores, descriptors = np.zeros((1, 2), "f4"), np.ones(1, "f4"), np.zeros((1, 4), "u1")
+def frame(level=0):
+    lonlat, scores, descriptors = np.zeros((1, 2), "f4"), np.ones(1, "f4"), np.full((1, 4), level, "u1")
     return Features(seq=7, pipeline="p", lonlat_rad=lonlat, scores=scores, descriptors=descriptors)
 
 
@@ -44,7 +44,12 @@ def test_another_map_of_the_same_revision_begins_anew():
 
 def test_another_frame_of_the_same_number_begins_anew():
     answered, _, nodes = first_question()
-    assert answered.of(frame(), nodes, with_matches=True) == {}
+    assert answered.of(frame(level=1), nodes, with_matches=True) == {}
+
+
+def test_the_same_frame_sent_with_another_question_finds_them_too():
+    answered, _, nodes = first_question()
+    assert answered.of(frame(), nodes, with_matches=True) == {4: MATCH}
 
 
 def test_a_question_without_matches_begins_anew():
