@@ -151,6 +151,12 @@ class Bus:
         """Ask and wait; raises the errors of `shared.queries.ask`."""
         return queries.ask(self._session, query, query.key(**names), request, timeout_s)
 
+    def ask_while(
+        self, meanwhile: Callable[[], None], query: Query[Q, R], request: Q, timeout_s: float, **names: str
+    ) -> R:
+        """Ask and wait, and call `meanwhile` now and then; raises the errors of `shared.queries.ask`."""
+        return queries.ask(self._session, query, query.key(**names), request, timeout_s, meanwhile)
+
     def announce(self, service: str) -> str:
         """Declare this process alive as `service`; its token, whose name is returned, goes when it does."""
         instance = uuid.uuid4().hex

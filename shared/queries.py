@@ -5,7 +5,8 @@ import math
 import threading
 import time
 from collections import deque
-from typing import Generic, TypeVar
+from collections.abc import Callable
+from typing import Any, Generic, TypeVar
 
 import zenoh
 
@@ -25,6 +26,8 @@ MEETING_S = 1.5
 """Two peers that were just started have met by then; chosen: a few times what gossip takes."""
 MEETING_PERIOD_S = 0.1
 """Between two tries meanwhile; chosen."""
+MEANWHILE_S = 0.5
+"""How often an asker that waits has something else to do; chosen: twice within what planners repeat."""
 PATIENCE_DIGITS = 9
 """Of an attachment that says for how many milliseconds an answer is waited for: eleven days; chosen."""
 CODED = "text/plain;"
@@ -165,8 +168,15 @@ class Requests(Generic[Q, R]):
         _reply_error(query, f"malformed request: {reason}", "invalid")
 
 
-def ask(session: zenoh.Session, query: Query[Q, R], key: str, request: Q, timeout_s: float) -> R:
-    """Ask and wait for the first answer.
+def ask(
+    session: zenoh.Session,
+    query: Query[Q, R],
+    key: str,
+    request: Q,
+    timeout_s: float,
+    meanwhile: Callable[[], None] | None = None,
+) -> R:
+    """Ask and wait for the first answer, calling `meanwhile` now and then.
 
     Two peers that were just started may not have met yet: an absent service is asked again for a while.
 
@@ -178,11 +188,29 @@ def ask(session: zenoh.Session, query: Query[Q, R], key: str, request: Q, timeou
     attachment = str(math.ceil(timeout_s * 1e3)).encode() if query.lapses else None
     patient_until_s = time.monotonic() + min(timeout_s, MEETING_S)
     while True:
-        for answer in session.get(key, payload=payload, timeout=timeout_s, attachment=attachment):
-            return _read(query, key, answer, timeout_s)
+        answers: deque[zenoh.Reply] = deque()
+        ended = threading.Event()
+        # a handler of ours can be waited for in pieces, and outlives a caller whom an exception takes away
+        handler: Any = zenoh.handlers.Callback(_keeper(answers, ended), ended.set, indirect=False)
+        session.get(key, handler, payload=payload, timeout=timeout_s, attachment=attachment)
+        while not ended.wait(MEANWHILE_S):
+            if meanwhile is not None:
+                meanwhile()
+        if answers:
+            return _read(query, key, answers[0], timeout_s)
         if time.monotonic() > patient_until_s:
             raise AbsentError(f"{key}: nobody answers; is the service up?")
         time.sleep(MEETING_PERIOD_S)
+
+
+def _keeper(answers: deque[zenoh.Reply], ended: threading.Event) -> Callable[[zenoh.Reply], None]:
+    """Keeps the first answer, on Zenoh's thread."""
+
+    def keep(reply: zenoh.Reply) -> None:
+        answers.append(reply)
+        ended.set()
+
+    return keep
 
 
 def _read(query: Query[Q, R], key: str, answer: zenoh.Reply, timeout_s: float) -> R:

@@ -61,7 +61,7 @@ class Planner:
         self._statuses = bus.publisher(STATUS, robot=robot)
         self._events = bus.publisher(EVENT, robot=robot)
         self._kinds = mission_kinds(settings.missions_folder)
-        self.control = MissionControl(settings, self._profile, self._kinds, bus)
+        self.control = MissionControl(settings, self._profile, self._kinds, bus, self._say_meanwhile)
         self._replaced = False
         self._stopped: EStopState | None = None
         self._motion = FrameMotion()
@@ -87,8 +87,7 @@ class Planner:
         for delta in self.control.changes():
             self.control.follow_store(delta)
         self._follow_robot(now_s)
-        if due := now_s - self._heartbeat_s > HEARTBEAT_S:  # before what may go unanswered for long
-            self._publish_status(now_s)
+        due = self._say_where_we_are(now_s)  # before what may be refused again and again
         self._features = self._features_in.take() or self._features
         if (
             self._features is not None
@@ -96,7 +95,6 @@ class Planner:
             and self._ready(self._features, self._ranges)
         ):
             self._answer(self._motion.observe(self._features, now_s))
-        self.control.stand_in_traffic()
         if due:
             self.control.settle()
 
@@ -239,6 +237,16 @@ class Planner:
             return
         request.reply(status)
         self._statuses.put(status)
+
+    def _say_meanwhile(self) -> None:
+        self._say_where_we_are(time.monotonic())
+
+    def _say_where_we_are(self, now_s: float) -> bool:
+        """To whoever listens, and in traffic; whether a status was due."""
+        self.control.stand_in_traffic()
+        if due := now_s - self._heartbeat_s > HEARTBEAT_S:
+            self._publish_status(now_s)
+        return due
 
     def _publish_status(self, now_s: float) -> None:
         self._heartbeat_s = now_s

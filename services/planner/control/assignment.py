@@ -1,5 +1,6 @@
 """A mission that is under way, with the map and the matcher that it works with."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,10 +47,22 @@ class Assignment:
 
 
 class Assigner:
-    """Makes missions from their records, each with a map and a matcher. MissionError where it cannot."""
+    """Makes missions from their records, each with a map and a matcher. MissionError where it cannot.
 
-    def __init__(self, settings: PlannerSettings, profile: Profile, kinds: MissionKinds, bus: Bus) -> None:
+    Args:
+        meanwhile: what else there is to do now and then while the feature service is waited for.
+    """
+
+    def __init__(
+        self,
+        settings: PlannerSettings,
+        profile: Profile,
+        kinds: MissionKinds,
+        bus: Bus,
+        meanwhile: Callable[[], None] | None = None,
+    ) -> None:
         self._settings, self._profile, self._kinds, self._bus = settings, profile, kinds, bus
+        self._meanwhile = meanwhile
         self.traffic = Traffic(bus, settings.robot, settings.query_timeout_s)
         self.changes = MapChanges(bus)
 
@@ -62,7 +75,8 @@ class Assigner:
         """Take a mission up where the one before left the robot; `create` makes a map that is missing."""
         maps = self.map_called(record.map)
         maps.load(create=create)
-        matcher = RemoteMatcher(self._bus, record.robot, maps, self._settings.query_timeout_s)
+        timeout_s = self._settings.query_timeout_s
+        matcher = RemoteMatcher(self._bus, record.robot, maps, timeout_s, self._meanwhile)
         whereabouts = Whereabouts() if before is None else before.whereabouts
         return self._made(record, maps, matcher, whereabouts.of(record.map))
 

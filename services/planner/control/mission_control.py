@@ -1,6 +1,7 @@
 """The state machine of a robot's one mission: started, paused, stepped and ended."""
 
 import logging
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 
@@ -30,11 +31,22 @@ log = logging.getLogger(__name__)
 
 
 class MissionControl:
-    """State machine of missions: idle, running, paused, then succeeded, failed or cancelled."""
+    """State machine of missions: idle, running, paused, then succeeded, failed or cancelled.
 
-    def __init__(self, settings: PlannerSettings, profile: Profile, kinds: MissionKinds, bus: Bus) -> None:
+    Args:
+        meanwhile: what else there is to do now and then while the feature service is waited for.
+    """
+
+    def __init__(
+        self,
+        settings: PlannerSettings,
+        profile: Profile,
+        kinds: MissionKinds,
+        bus: Bus,
+        meanwhile: Callable[[], None] | None = None,
+    ) -> None:
         self._profile, self._kinds = profile, kinds
-        self._assigner = Assigner(settings, profile, kinds, bus)
+        self._assigner = Assigner(settings, profile, kinds, bus, meanwhile)
         self._records = MissionRecords(settings, bus)
         self._record = MissionRecord(robot=settings.robot)
         self._assignment: Assignment | None = None  # stays when its mission has ended
@@ -117,7 +129,8 @@ class MissionControl:
         if self.map is None:
             return
         at = () if self._node is None else (self._node,)
-        self._assigner.traffic.renew(self.map.name, at, busy=self._now.under_way)
+        drives = self._now.state == "running"
+        self._assigner.traffic.renew(self.map.name, at, busy=self._now.under_way, drives=drives)
 
     def settle(self) -> None:
         """Save an end that the map store was not there to hear of; QueryError while it is away."""

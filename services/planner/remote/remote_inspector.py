@@ -38,7 +38,7 @@ class RemoteInspector:
         """
         about = {"place": place, "mission_id": self._mission_id, "round": round_number, "keep": keep}
         last = self._ask(InspectionRequest(action="last", **about))
-        seen = self._bus.ask(
+        seen = self._matcher.ask_features(
             COMPARE,
             CompareRequest(
                 seq=self._matcher.frame_seq,

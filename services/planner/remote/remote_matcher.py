@@ -1,6 +1,7 @@
 """The mission's matches: answers of the feature service about one frame after the other."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 
 from services.planner.ports import Matches
 from services.planner.remote.remote_map import RemoteMap
@@ -17,12 +18,24 @@ PHOTO_S = 30.0
 class RemoteMatcher:
     """Asks the feature service about one frame, set before each step.
 
+    Args:
+        meanwhile: what else there is to do now and then while an answer is waited for.
+
     Attributes:
+        ask_features: as `Bus.ask`, with what is to be done meanwhile.
         match_ms: time the service spent on matching for this frame, all answers together; verify_ms alike.
     """
 
-    def __init__(self, bus: Bus, robot: str, maps: RemoteMap, timeout_s: float) -> None:
-        self._bus, self.robot, self._maps, self._timeout_s = bus, robot, maps, timeout_s
+    def __init__(
+        self,
+        bus: Bus,
+        robot: str,
+        maps: RemoteMap,
+        timeout_s: float,
+        meanwhile: Callable[[], None] | None = None,
+    ) -> None:
+        self.robot, self._maps, self._timeout_s = robot, maps, timeout_s
+        self.ask_features = bus.ask if meanwhile is None else partial(bus.ask_while, meanwhile)
         self.frame_seq = 0
         self.frame_stamp_ns = 0
         self.match_ms = self.verify_ms = 0.0
@@ -59,7 +72,8 @@ class RemoteMatcher:
         return self._ask(request, PHOTO_S if of_photo else 0.0)
 
     def _ask(self, request: MatchRequest, least_s: float = 0.0) -> Matches:
-        reply = self._bus.ask(MATCH, request, max(self._timeout_s, least_s), robot=self.robot)
+        timeout_s = max(self._timeout_s, least_s)
+        reply = self.ask_features(MATCH, request, timeout_s, robot=self.robot)
         self.match_ms += reply.match_ms
         self.verify_ms += reply.verify_ms
         known = self._maps.graph.nodes  # the service may know of nodes of another robot before we do

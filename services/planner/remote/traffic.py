@@ -33,6 +33,7 @@ class Traffic:
         self._bus, self._robot, self._timeout_s = bus, robot, timeout_s
         self._fleets: set[str] = set()
         self._seen_s = self._asked_s = float("-inf")
+        self._said: WayRequest | None = None
         bus.watch_alive(self._note, "fleet")
 
     def ask(self, name: str, at: Sequence[int], ahead: Sequence[int], *, busy: bool = True) -> RightOfWay:
@@ -50,6 +51,7 @@ class Traffic:
             return RightOfWay(0, UNHEARD)
         request = WayRequest(robot=self._robot, map=name, at=tuple(at), ahead=tuple(ahead), busy=busy)
         self._asked_s = self._seen_s = time.monotonic()
+        self._said = request
         try:
             reply = self._bus.ask(WAY, request, self._timeout_s, robot=self._robot)
         except QueryError as error:
@@ -62,9 +64,21 @@ class Traffic:
         """Whether there is somebody to ask, or was so lately that he is to be waited for."""
         return bool(self._fleets) or time.monotonic() - self._seen_s < MISSED_S
 
-    def renew(self, name: str, at: Sequence[int], *, busy: bool) -> None:
-        """Say where the robot is, if nothing was said for a while."""
-        if self._fleets and time.monotonic() - self._asked_s >= RENEWED_S:
+    def renew(self, name: str, at: Sequence[int], *, busy: bool, drives: bool) -> None:
+        """Say where the robot is, if nothing was said for a while.
+
+        Args:
+            name: of the map.
+            at: the node at which it stands, if anybody knows.
+            busy: whether it is on a mission.
+            drives: whether that goes on, so that it may be on a leg that it was granted.
+        """
+        if not self._fleets or time.monotonic() - self._asked_s < RENEWED_S:
+            return
+        said = self._said
+        if drives and said is not None and said.busy and said.map == name:
+            self.ask(name, said.at, said.ahead)
+        else:
             self.ask(name, at, (), busy=busy)
 
     def _note(self, _service: str, instance: str, alive: bool) -> None:

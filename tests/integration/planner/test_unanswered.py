@@ -1,14 +1,15 @@
 """A planner whose questions nobody answers: whoever listens must not take its robot for gone."""
 
+import time
+
 import numpy as np
 import pytest
 
 from shared.bus import Bus, wait_until
 from shared.messages.features import Features
 from shared.messages.matching import MatchReply, MatchRequest
-from shared.messages.missions import MissionStatus
 from shared.messages.sensors import Ranges
-from shared.queries import Requests
+from shared.queries import Request
 from shared.topics import FEATURES, MATCH, RANGES, STATUS
 from tests.integration.map_store.conftest import START_S
 from tests.integration.map_store.conftest import bus as bus
@@ -18,31 +19,59 @@ from tests.integration.planner.test_end_of_a_mission import planner as planner
 
 pytestmark = pytest.mark.usefixtures("patient_sessions")
 
-QUESTIONS = 40
-"""In one and a half seconds a question is asked some fifteen times, for nobody may be there yet."""
+WAITED_S = 4.0
+"""Shorter than a planner waits for an answer."""
 
 
-def test_it_says_all_the_while_that_it_is_there(bus: Bus, planner):
+class Asked:
+    """A planner that heads for a picture and asks about its frame."""
+
+    def __init__(self, bus: Bus) -> None:
+        self.statuses, self.matches = bus.subscribe(STATUS, robot="r1"), bus.requests(MATCH, robot="r1")
+        self._features, self._ranges = bus.publisher(FEATURES, robot="r1"), bus.publisher(RANGES, robot="r1")
+        end(bus)  # there is a map now
+        ask(bus, action="goto", map="flat", goal=picture(seq=0))
+
+    def question(self) -> Request[MatchRequest, MatchReply]:
+        """The next question."""
+        found: list[Request[MatchRequest, MatchReply]] = []
+
+        def came() -> bool:
+            self._features.put(picture(seq=1))
+            self._ranges.put(free_ground())
+            question = self.matches.take()
+            found.extend([] if question is None else [question])
+            return bool(found)
+
+        assert wait_until(came, START_S)
+        return found[0]
+
+    def states_within(self, wait_s: float) -> list[str]:
+        """States that the planner tells from now on."""
+        self.statuses.take_all()
+        until_s, told = time.monotonic() + wait_s, []
+        while (status := self.statuses.wait(max(until_s - time.monotonic(), 0.0))) is not None:
+            told.append(status.state)
+        return told
+
+
+def test_while_it_waits_for_an_answer_it_says_once_a_second_that_it_is_there(bus: Bus, planner):
     planner()
-    statuses, matches = bus.subscribe(STATUS, robot="r1"), bus.requests(MATCH, robot="r1")
-    features, ranges = bus.publisher(FEATURES, robot="r1"), bus.publisher(RANGES, robot="r1")
-    end(bus)  # there is a map now
-    ask(bus, action="goto", map="flat", goal=picture(seq=0))
-    asked: list[MatchRequest] = []
-    told: list[MissionStatus] = []
+    asked = Asked(bus)
+    question = asked.question()
+    told = asked.states_within(WAITED_S)
+    assert (set(told), len(told) >= 3) == ({"running"}, True)
+    question.leave()
 
-    def look() -> bool:
-        features.put(picture(seq=1))
-        ranges.put(free_ground())
-        asked.extend(unanswered(matches))
-        if len(asked) == 1:
-            statuses.take_all()
-        told.extend(statuses.take_all() if asked else [])
-        return len(asked) >= QUESTIONS
 
-    assert wait_until(look, START_S)
-    assert {status.state for status in told} == {"running"}
-    assert len(told) >= 2
+def test_where_its_questions_are_refused_it_says_so_too(bus: Bus, planner):
+    planner()
+    asked = Asked(bus)
+    told, until_s = [], time.monotonic() + WAITED_S
+    while time.monotonic() < until_s:
+        asked.question().refuse("frame 1 is not kept", "passing")
+        told.extend(status.state for status in asked.statuses.take_all())
+    assert told[-2:] == ["running"] * 2
 
 
 def picture(seq: int) -> Features:
@@ -63,12 +92,3 @@ def free_ground() -> Ranges:
     """Distances with nothing nearby."""
     angles, distances = np.linspace(-3.0, 3.0, 12, dtype="f4"), np.full(12, 2.0, "f4")
     return Ranges(seq=1, stamp_ns=1, robot="r1", angles_rad=angles, distances_m=distances, max_range_m=2.5)
-
-
-def unanswered(matches: Requests[MatchRequest, MatchReply]) -> list[MatchRequest]:
-    """The questions that wait, each of them left without an answer."""
-    found = []
-    while (question := matches.take()) is not None:
-        question.leave()
-        found.append(question.message)
-    return found

@@ -88,9 +88,33 @@ def test_one_of_two_fleet_services_that_goes_leaves_the_other_to_ask(bus):
 
 def test_a_claim_is_said_again_once_a_second_and_not_more_often(bus, clock):
     asking = Traffic(bus, "r1", 1.0)
-    asking.renew("flat", (1,), busy=False)
+    asking.renew("flat", (1,), busy=False, drives=False)
     bus.changed("fleet", "a", True)
     for _ in range(4):
-        asking.renew("flat", (1,), busy=False)
+        asking.renew("flat", (1,), busy=False, drives=False)
         clock[0] += RENEWED_S / 2
     assert [(request.at, request.ahead, request.busy) for request in bus.asked] == [((1,), (), False)] * 2
+
+
+@pytest.mark.parametrize(
+    ("drives", "name", "ahead"),
+    [(True, "flat", (2, 3)), (False, "flat", ()), (True, "loft", ())],
+)
+def test_who_takes_long_for_a_step_keeps_the_way_it_was_granted(bus, clock, drives, name, ahead):
+    asking = Traffic(bus, "r1", 1.0)
+    bus.changed("fleet", "a", True)
+    asking.ask("flat", (1,), (2, 3))
+    clock[0] += RENEWED_S
+    asking.renew(name, (1,), busy=True, drives=drives)
+    assert bus.asked[-1] == WayRequest(robot="r1", map=name, at=(1,), ahead=ahead, busy=True)
+
+
+def test_what_a_mission_before_wanted_is_not_said_again(bus, clock):
+    asking = Traffic(bus, "r1", 1.0)
+    bus.changed("fleet", "a", True)
+    asking.ask("flat", (1,), (2, 3))
+    clock[0] += RENEWED_S
+    asking.renew("flat", (1,), busy=False, drives=False)
+    clock[0] += RENEWED_S
+    asking.renew("flat", (1,), busy=True, drives=True)
+    assert [request.ahead for request in bus.asked] == [(2, 3), (), ()]
