@@ -154,22 +154,27 @@ class Rights:
     def _clear_way(self, robot: str, blockers: list[Party], near: Nearness, now_s: float) -> None:
         """Tell somebody to make room: who has nothing to do there, or else one of those who cannot go on.
 
-        Of robots that wait for one another the one with the shortest way to a refuge makes room.
+        Of robots that wait for one another the one with the shortest way to a refuge makes room. Who has
+        nothing to do and is shut in is told to come out past others, sooner past such as have nothing to do
+        either: it waits for them from then on, and they are told to make room in turn.
         """
         parties = self._parties(self.claims[robot].map)
         waiting = _jam(near, robot, parties)
-        asked = [party.name for party in blockers if party.stays] or waiting
+        idle = [party.name for party in blockers if party.stays]
+        asked = idle or waiting
         if any(self.claims[name].room for name in asked):
             return
-        ways = {
-            name: way_to_refuge(near, name, parties, set(waiting) - {name}, self._tried(name))
-            for name in asked
-        }
-        found = [(len(way), name) for name, way in ways.items() if way]
-        if found:
-            _, name = min(found)
-            self.claims[name] = replace(self.claims[name], room=ways[name], told_s=now_s)
-            self._told[name, ways[name][-1]] = now_s
+        shut_in_by = ((), [name for name, party in parties.items() if party.stays], list(parties))
+        for going in shut_in_by if idle else ((),):
+            ways = {
+                name: way_to_refuge(near, name, parties, set(waiting) - {name}, self._tried(name), going)
+                for name in asked
+            }
+            if found := [(len(way), name) for name, way in ways.items() if way]:
+                _, name = min(found)
+                self.claims[name] = replace(self.claims[name], room=ways[name], told_s=now_s)
+                self._told[name, ways[name][-1]] = now_s
+                return
 
     def _tried(self, name: str) -> set[int]:
         """Refuges that a robot was sent to not long ago."""

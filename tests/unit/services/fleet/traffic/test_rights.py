@@ -1,6 +1,7 @@
 """Rights of way: what is granted, to whom first, who makes room, and when a lease ends."""
 
 from dataclasses import dataclass, field
+from itertools import combinations
 
 import networkx as nx
 import numpy as np
@@ -145,3 +146,25 @@ def test_many_in_a_corridor_with_rooms_all_get_to_where_they_want(seed):
         for i, (at, goal) in enumerate(zip(spots, rng.permutation(spots), strict=True))
     ]
     assert [driver.name for driver in drive(near, drivers, 400)] == []
+
+
+@pytest.mark.parametrize("others", [(), (Driver("r1", 5, 5),)])
+def test_one_that_has_nothing_to_do_in_a_dead_end_comes_out_past_who_wants_in(others):
+    """As r5 stood at the end of a room of the office, r6 in its door, and r1 idle before that."""
+    rights, near = Rights(), corridor(12, {6: (20, 21, 22, 23)})
+    idle, wants_in = [Driver("r5", 23, 23), *others], Driver("r6", 20, 23)
+    wants_in.plan(near)
+    for step in range(80):
+        for one in idle:
+            if one.way:
+                one.step(rights, near, float(step))
+            else:
+                rights.ask(Claim(one.name, "flat", (one.at,), busy=False), near, float(step))
+        rooms = {claim.robot: claim.room for claim in rights.standing(float(step))}
+        for one in idle:
+            one.way = one.way or list(rooms.get(one.name, ())[1:])
+        if wants_in.at != wants_in.goal or wants_in.makes_room:
+            wants_in.step(rights, near, float(step))
+        everybody = [one.at for one in (*idle, wants_in)]
+        assert all(near.apart_m([a], [b]) > 1.0 for a, b in combinations(everybody, 2)), step
+    assert wants_in.at == 23
