@@ -4,9 +4,8 @@ from shared.bus import Bus
 from shared.robots.seen import Seen
 from shared.topics import BATTERY, ESTOP_STATE, MANUAL, STATUS
 
-LATELY_S = 8.0
-"""Planner and drive repeat what they say once a second, a planner that waits for an answer once in five;
-chosen: three more lost."""
+LATELY_S = 5.0
+"""Planner and drive repeat what they say once a second; chosen: five of them lost."""
 HANDS_S = 2.0
 """A person who drives says so many times a second; chosen."""
 

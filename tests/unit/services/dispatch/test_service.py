@@ -138,9 +138,9 @@ def test_what_was_said_long_ago_does_not_count(stage):
     stage.free(state="running")
     stage.step(now_s=0.0)
     assert stage.step(now_s=4.0).why == "mission  is running"
-    assert stage.step(now_s=9.0).why == "nothing is heard of the planner"
+    assert stage.step(now_s=6.0).why == "nothing is heard of the planner"
     stage.hear(STATUS, MissionStatus(robot="r1"))
-    assert stage.step(now_s=10.0).why == "nothing is heard of drive"
+    assert stage.step(now_s=7.0).why == "nothing is heard of drive"
 
 
 def test_a_person_drives_until_they_let_go_or_are_silent(stage):
