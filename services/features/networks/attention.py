@@ -119,7 +119,7 @@ class Attention(nn.Module):  # type: ignore[misc] # torch is not followed, see p
                 if not bool(hopeful.any()):
                     return [], None
                 first, second, cosines, numbers = (x[hopeful] for x in (first, second, cosines, numbers))
-                turned_other = turned_other[0][hopeful], turned_other[1][hopeful]
+                turned_other = turned_other[hopeful]
                 present = None if present is None else present[hopeful]
         answer: Assignment = self.heads_out[-1](first, second, cosines, one.present, present)
         return numbers.tolist(), answer
@@ -129,13 +129,10 @@ class Attention(nn.Module):  # type: ignore[misc] # torch is not followed, see p
         scaled = points.descriptors * points.descriptors.shape[-1] ** 0.5
         return self.enter(torch.cat([scaled, points.context], dim=-1))
 
-    def rotary(self, lonlat_rad: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
-        """Cosine and sine (B, 1, N, width / heads / 2) by which queries and keys are turned."""
+    def rotary(self, lonlat_rad: torch.Tensor) -> torch.Tensor:
+        """(B, 1, N, width / heads / 2) complex numbers by which queries and keys are turned."""
         angle = torch.where(self.of_longitude, lonlat_rad[..., :1], lonlat_rad[..., 1:]) * self.turns
-        return torch.cos(angle)[:, None], torch.sin(angle)[:, None]
-
-
-Turned = tuple[torch.Tensor, torch.Tensor]
+        return torch.complex(torch.cos(angle), torch.sin(angle))[:, None]
 
 
 class Layer(nn.Module):  # type: ignore[misc]
@@ -154,8 +151,8 @@ class Layer(nn.Module):  # type: ignore[misc]
         self,
         one: torch.Tensor,
         other: torch.Tensor,
-        turned: Turned,
-        turned_other: Turned,
+        turned: torch.Tensor,
+        turned_other: torch.Tensor,
         cosines: torch.Tensor,
         present: torch.Tensor | None,
         present_other: torch.Tensor | None,
@@ -176,7 +173,9 @@ class Layer(nn.Module):  # type: ignore[misc]
             other + self.across_mix(torch.cat([other, self.across_out(from_one)], dim=-1)),
         )
 
-    def _inside(self, points: torch.Tensor, turned: Turned, present: torch.Tensor | None) -> torch.Tensor:
+    def _inside(
+        self, points: torch.Tensor, turned: torch.Tensor, present: torch.Tensor | None
+    ) -> torch.Tensor:
         query, key, value = self._split(self.within(points), 3)
         mask = None if present is None else present[:, None, None, :]
         seen = self._gathered(_turn(query, turned), _turn(key, turned), value, mask)
@@ -263,11 +262,7 @@ def _mix(width: int) -> nn.Module:
     )
 
 
-def _turn(vectors: torch.Tensor, turned: Turned) -> torch.Tensor:
-    cosine, sine = turned
-    even, odd = vectors[..., ::2], vectors[..., 1::2]
-    return (
-        torch.stack([even * cosine - odd * sine, even * sine + odd * cosine], dim=-1)
-        .flatten(-2)
-        .to(vectors.dtype)
-    )
+def _turn(vectors: torch.Tensor, turned: torch.Tensor) -> torch.Tensor:
+    """Every two numbers of a vector are one complex number."""
+    numbers = torch.view_as_complex(vectors.float().unflatten(-1, (-1, 2)))
+    return torch.view_as_real(numbers * turned).flatten(-2).to(vectors.dtype)
