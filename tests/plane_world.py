@@ -247,9 +247,9 @@ class PlaneMatcher:
             found[-number] = self._pair(-number, self._world.pose, _pose_of(target))
         return found
 
-    def locate(self, features: Features, best_k: int) -> dict[int, NodeMatch]:
+    def locate(self, features: Features, best_k: int, node_ids: Sequence[int] = ()) -> dict[int, NodeMatch]:
         """As the feature service answers for a goal picture."""
-        return self._compare(_pose_of(features), (), best_k)
+        return self._compare(_pose_of(features), node_ids, best_k)
 
     def _compare(self, pose: Pose, node_ids: Sequence[int], best_k: int) -> dict[int, NodeMatch]:
         poses = self._maps.poses

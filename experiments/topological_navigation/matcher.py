@@ -31,9 +31,9 @@ class LocalMatcher:
             self.current, MatchRequest(map=NAME, node_ids=ids, best_k=best_k, targets=tuple(targets))
         )
 
-    def locate(self, features: Features, best_k: int) -> dict[int, NodeMatch]:
-        """Matches of any picture with the most similar nodes of the map."""
-        return self._ask(features, MatchRequest(map=NAME, best_k=best_k))
+    def locate(self, features: Features, best_k: int, node_ids: Sequence[int] = ()) -> dict[int, NodeMatch]:
+        """Matches of any picture with given nodes, and with the most similar ones of the map."""
+        return self._ask(features, MatchRequest(map=NAME, best_k=best_k, node_ids=tuple(node_ids)))
 
     def _ask(self, features: Features, request: MatchRequest) -> dict[int, NodeMatch]:
         for node_id, found in self._maps.features.items():

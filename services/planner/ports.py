@@ -55,8 +55,8 @@ class Matcher(Protocol):
     def match(self, node_ids: Sequence[int], best_k: int = 0, targets: Sequence[Features] = ()) -> Matches:
         """Matches of the current frame by node id, most similar first."""
 
-    def locate(self, features: Features, best_k: int) -> Matches:
-        """Matches of any picture with the most similar nodes of the map."""
+    def locate(self, features: Features, best_k: int, node_ids: Sequence[int] = ()) -> Matches:
+        """Matches of any picture with given nodes, and with the most similar ones of the map."""
 
 
 class Inspector(Protocol):

@@ -16,6 +16,7 @@ from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.localisation import reachable_nodes
 from services.planner.travel.states import Event
 from services.planner.travel.tracking import Tracker
+from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.graph import edge_key
 from shared.mapgraph.local.displacement import Displacement, seen_from
 from shared.mapgraph.local.hypotheses import COMPARED_NODES, SPREAD
@@ -45,26 +46,63 @@ and more, the one aliased 31."""
 
 
 class GoalDestination:
-    """Where a picture was taken: the nodes it resembles, and what was learnt on the way there."""
+    """Where a picture was taken: the nodes it resembles, and what was learnt on the way there.
+
+    A picture of the map's own was taken at its node, however many places look alike, and the way leads there.
+    But a robot that guessed at which of them it is cannot go by the map: then it asks where the picture is.
+
+    Args:
+        profile: thresholds.
+        maps: the map.
+        matcher: compares frames.
+        goal: the picture.
+        experience: what this mission learns of edges.
+        whereabouts: of the robot.
+        node: whose picture it is; None where nobody knows.
+    """
 
     compared, search_steps = COMPARED, SEARCH_STEPS
     cuts_corners = True
 
     def __init__(
-        self, profile: Profile, maps: MapAccess, matcher: Matcher, goal: Features, experience: EdgeExperience
+        self,
+        profile: Profile,
+        maps: MapAccess,
+        matcher: Matcher,
+        goal: Features,
+        experience: EdgeExperience,
+        whereabouts: Whereabouts,
+        node: int | None = None,
     ) -> None:
         self._profile, self._maps, self._matcher = profile, maps, matcher
-        self._experience = experience
+        self._experience, self._at, self._node = experience, whereabouts, node
         self.picture: Features | None = goal
         self._failure: tuple[FailureKind, str] = ("goal_not_in_map", "the goal resembles no node of the map")
-        found = self._matcher.locate(goal, COMPARED_NODES)
-        self.places = GoalPlaces(maps, found, profile)
-        self.aliased = not self.places.plain
-        self.arrival_rad = profile.arrival.arrival_rad * (1.0 if self.places.plain else CLOSER_SHARE)
+        self._setbacks = Setbacks(profile, maps, experience)
+        self._look(goal)
+
+    def _look(self, goal: Features) -> None:
+        """Find the picture about its node, or in the whole map."""
+        maps, node = self._maps, self._node
+        if node is None:
+            found = self._matcher.locate(goal, COMPARED_NODES)
+        else:
+            found = self._matcher.locate(goal, 0, (node, *maps.graph.neighbours(node)))
+        self.places = GoalPlaces(maps, found, self._profile)
+        plain = self.places.plain
+        self.aliased = node is not None or not plain
+        self.arrival_rad = self._profile.arrival.arrival_rad * (1.0 if plain else CLOSER_SHARE)
         self._lies = dict(self._seen_from(found))
         self._targets = self._reachable(found)
         self._targets |= dict.fromkeys(self.places.without(self._targets), LAST_EDGE_M)
-        self._setbacks = Setbacks(profile, maps, experience)
+
+    def located(self) -> Note:
+        """Where the picture was taken, as far as is known."""
+        where = f"goal resembles nodes {sorted(self.targets())}"
+        if self._node is not None:
+            where = f"goal is node {self._node}"
+        doubt = "" if self.places.plain else f"; places of nodes {self.places.names} look alike"
+        return Note("goal_located", where + doubt)
 
     def targets(self) -> dict[int, float]:
         """Nodes the goal resembles, with the cost of the way from each."""
@@ -105,7 +143,7 @@ class GoalDestination:
     def localised(self, seen: Matches, ranges: Ranges) -> tuple[Note, ...]:
         """What localisation says about edges: one that just failed, suspended ones that are seen free."""
         sure = {node: match for node, match in seen.items() if trusted(match, self._profile)}
-        notes = list(self._setbacks.judge_suspect(sure))
+        notes = [*self._doubted(), *self._setbacks.judge_suspect(sure)]
         for near in (node for node, match in sure.items() if match.status == "no_baseline"):
             for far, match in sure.items():
                 if far != near and is_clear(match, self._maps.graph, ranges, self._profile):
@@ -140,6 +178,7 @@ class GoalDestination:
         if self._profile.travel.path_cost == "nodes":
             return ""
         assert self.picture is not None
+        self._doubted()
         view = self._matcher.match([], COMPARED_NODES, (self.picture,))
         view.pop(GOAL, None)
         node = tracker.here.node_id if tracker.here is not None else None
@@ -155,7 +194,17 @@ class GoalDestination:
             self.aliased = True
             tracker.shown({node: view[node] for node in another.nodes})
             return f"aliased: this is about node {another.nodes[0]}, its place about {self.places.names}"
-        return self._settle(self.places.arrived(node, Visit(similarity, tracker.likeness(similarity))))
+        why = self._settle(self.places.arrived(node, Visit(similarity, tracker.likeness(similarity))))
+        self._at.guessed = self._at.guessed and bool(why)
+        return why
+
+    def _doubted(self) -> tuple[Note, ...]:
+        """Who is where it is by a guess cannot go by the map alone: the picture may be of any look-alike."""
+        if self._node is None or not self._at.guessed or self.picture is None:
+            return ()
+        self._node = None
+        self._look(self.picture)
+        return (self.located(),)
 
     def _settle(self, ruling: Ruling) -> str:
         """Take over what the places say: without any left there are no targets."""

@@ -1,6 +1,7 @@
 """Mission goto: drive to where a picture was taken (thesis sections 4.1 and 4.3)."""
 
 from dataclasses import replace
+from functools import partial
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -8,7 +9,7 @@ from services.planner.goals.destination import GoalDestination
 from services.planner.goals.nodes import check_allowed, node_called, node_reading
 from services.planner.mission_kinds import MissionContext, MissionError, MissionKind
 from services.planner.photographs.photo_goto import PhotoGoto
-from services.planner.ports import Decision, MapAccess, Matcher, Mission, Note, Observation, Progress
+from services.planner.ports import Decision, MapAccess, Matcher, Mission, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.machine import Travel
@@ -29,7 +30,16 @@ class GotoParameters(BaseModel):
 
 
 class Goto:
-    """Travels to a goal picture; ends with arrival or a typed failure."""
+    """Travels to a goal picture; ends with arrival or a typed failure.
+
+    Args:
+        profile: thresholds.
+        maps: the map.
+        matcher: compares frames.
+        goal: the picture.
+        whereabouts: as the mission before left them.
+        node: of the map, whose picture it is; None where nobody knows.
+    """
 
     def __init__(
         self,
@@ -38,9 +48,10 @@ class Goto:
         matcher: Matcher,
         goal: Features,
         whereabouts: Whereabouts | None = None,
+        node: int | None = None,
     ) -> None:
         self._profile, self._maps, self._matcher, self._goal = profile, maps, matcher, goal
-        self._whereabouts = whereabouts
+        self._whereabouts, self._node = whereabouts or Whereabouts(), node
         self._travel: Travel | None = None
 
     @property
@@ -53,13 +64,19 @@ class Goto:
         if self._travel is not None:
             return self._outcome(self._travel, self._travel.step(observation))
         experience = EdgeExperience(self._profile, self._maps)
-        destination = GoalDestination(self._profile, self._maps, self._matcher, self._goal, experience)
+        destination = GoalDestination(
+            self._profile,
+            self._maps,
+            self._matcher,
+            self._goal,
+            experience,
+            self._whereabouts,
+            self._node,
+        )
         self._travel = Travel(
             self._profile, self._maps, self._matcher, destination, experience, self._whereabouts
         )
-        where = f"goal resembles nodes {sorted(destination.targets())}"
-        doubt = "" if destination.places.plain else f"; places of nodes {destination.places.names} look alike"
-        located = Note("goal_located", where + doubt)
+        located = destination.located()
         decision = self._travel.step(observation)
         return self._outcome(self._travel, replace(decision, notes=(located, *decision.notes)))
 
@@ -70,8 +87,12 @@ class Goto:
 
 def goto_place(context: MissionContext, name: str) -> Goto:
     """To the place of a name; MissionError where there is none that the rules allow."""
-    goal = context.maps.features_of(node_called(context.maps, name))
-    return Goto(context.profile, context.maps, context.matcher, goal, context.whereabouts)
+    return _goto_node(context, node_called(context.maps, name))
+
+
+def _goto_node(context: MissionContext, node_id: int) -> Goto:
+    goal = context.maps.features_of(node_id)
+    return Goto(context.profile, context.maps, context.matcher, goal, context.whereabouts, node_id)
 
 
 def _make(context: MissionContext, parameters: GotoParameters) -> Mission:
@@ -84,20 +105,16 @@ def _make(context: MissionContext, parameters: GotoParameters) -> Mission:
         node_id = node_called(context.maps, place)
     if sign is not None:
         node_id = node_reading(context.maps, sign)
-    goal = context.goal
-    if goal is None:
-        if node_id not in context.maps.graph.nodes:
+    profile, maps, matcher, goal = context.profile, context.maps, context.matcher, context.goal
+    if node_id is not None:
+        if node_id not in maps.graph.nodes:
             raise MissionError(f"the map has no node {node_id}", "missing")
-        check_allowed(context.maps, node_id)
-        goal = context.maps.features_of(node_id)
-    profile, maps, matcher = context.profile, context.maps, context.matcher
+        check_allowed(maps, node_id)
+        return _goto_node(context, node_id)
+    assert goal is not None
     if goal.photo is None:
         return Goto(profile, maps, matcher, goal, context.whereabouts)
-
-    def travel_to(node: Features) -> Goto:
-        return Goto(profile, maps, matcher, node, context.whereabouts)
-
-    return PhotoGoto(profile, maps, matcher, goal, goal.photo, travel_to, context.rng)
+    return PhotoGoto(profile, maps, matcher, goal, goal.photo, partial(_goto_node, context), context.rng)
 
 
 KIND = MissionKind(

@@ -18,7 +18,7 @@ from shared.mapgraph.photographs.photo_matches import PHOTO_NODES, photo_matches
 from shared.mapgraph.photographs.verdict import PhotoAnswer, located
 from shared.messages.features import Features, PhotoView
 
-TravelTo = Callable[[Features], Mission]
+TravelTo = Callable[[int], Mission]
 
 
 class PhotoGoto:
@@ -62,7 +62,7 @@ class PhotoGoto:
         if against := why_not_beside(self._maps, place.node, (0.0, 0.0), (place.x_m, place.y_m)):
             return Decision("hold", why=against, outcome="failed", failure="forbidden")
         self._last_metre = LastMetre(self._profile, self._maps, self._matcher, place)
-        self._travel = self._travel_to(self._maps.features_of(place.node))
+        self._travel = self._travel_to(place.node)
         where = f"{math.hypot(place.x_m, place.y_m):.1f} m from node {place.node}"
         note = Note("goal_located", f"the photo was taken {where}: {place.keypoints} of its keypoints agree")
         decision = self._travelling(self._travel, observation)

@@ -59,13 +59,14 @@ class RemoteMatcher:
             )
         )
 
-    def locate(self, features: Features, best_k: int) -> Matches:
-        """Matches of any picture with the most similar nodes."""
+    def locate(self, features: Features, best_k: int, node_ids: Sequence[int] = ()) -> Matches:
+        """Matches of any picture with given nodes, and with the most similar ones."""
         of_photo = features.photo is not None
         request = MatchRequest(
             map=self._maps.name,
             map_revision=self._maps.revision,
             features=features,
+            node_ids=tuple(node_ids),
             best_k=best_k,
             with_matches=of_photo,
         )

@@ -222,6 +222,7 @@ class Tracker:
         found = likely(graph, sights, hypotheses(graph, sights))
         if not found or (self._certain and len(found) > 1):
             return {}
+        self._at.guessed = len(found) > 1
         log.info("about node %d, by what is seen", found[0].nodes[0])
         return {node: matches[node] for node in found[0].nodes}
 

@@ -17,11 +17,13 @@ class Whereabouts:
     Attributes:
         map: of which it tells.
         here: where the robot is relative to a node; None while nobody knows.
+        guessed: it was found at one of several places that look alike, and followed from there.
         now, before: the frame that says so, and the one before it.
     """
 
     map: str = ""
     here: Displacement | None = None
+    guessed: bool = False
     now: Features | None = None
     before: Features | None = None
 

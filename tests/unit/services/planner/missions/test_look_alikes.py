@@ -76,7 +76,8 @@ def test_an_arrival_that_was_refuted_excludes_no_place_that_the_way_led_by(explo
     _, maps, matcher, _ = explored
     experience = EdgeExperience(DEFAULT, maps)
     places = (
-        GoalDestination(DEFAULT, maps, matcher, picture(pose), experience) for pose in maps.poses.values()
+        GoalDestination(DEFAULT, maps, matcher, picture(pose), experience, Whereabouts())
+        for pose in maps.poses.values()
     )
     goal = next(place for place in places if not place.places.plain)
     before = set(goal.targets())
@@ -84,3 +85,28 @@ def test_an_arrival_that_was_refuted_excludes_no_place_that_the_way_led_by(explo
         for _ in range(3):
             goal.setback(Setback(Event.ALIASED, None, GOAL, (node, GOAL), "aliased"))
     assert set(goal.targets()) == before
+
+
+def doubtful_nodes(maps, matcher):
+    experience = EdgeExperience(DEFAULT, maps)
+    for node, pose in maps.poses.items():
+        found = GoalDestination(DEFAULT, maps, matcher, picture(pose), experience, Whereabouts())
+        if not found.places.plain:
+            yield node
+
+
+@pytest.mark.parametrize("knows_where_it_is", [True, False])
+def test_a_node_of_the_map_is_driven_to_by_the_map_by_who_knows_where_it_is(explored, knows_where_it_is):
+    """Its picture alone would have the robot look at every spot that looks like it."""
+    world, maps, matcher, where = explored
+    node = max(doubtful_nodes(maps, matcher), key=lambda n: math.dist(maps.poses[n][:2], world.pose[:2]))
+    if not knows_where_it_is:
+        where = Whereabouts("office", where.here, guessed=True, now=where.now, before=where.before)
+    mission = Goto(DEFAULT, maps, matcher, picture(maps.poses[node]), where, node)
+    first = mission.decide(world.observe())
+    told = [note.reason for note in first.notes if note.kind == "goal_located"]
+    decision, _ = run(world, mission, DriveLimits(), 1500)
+    assert told[0] == f"goal is node {node}"
+    assert [text[:14] for text in told[1:]] == ([] if knows_where_it_is else ["goal resembles"])
+    arrived = decision.outcome == "succeeded" and math.dist(world.pose[:2], maps.poses[node][:2]) < 0.5
+    assert arrived or (decision.failure == "ambiguous" and not knows_where_it_is), decision.why

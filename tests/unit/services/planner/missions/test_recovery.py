@@ -13,6 +13,7 @@ from services.planner.profiles import DEFAULT
 from services.planner.travel.destination import Setback
 from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.states import Event
+from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.routing import GOAL
 from shared.messages.matching import NodeMatch
 from simulator.scene.parts import Material
@@ -144,7 +145,8 @@ def test_a_look_alike_of_the_goal_is_not_taken_for_it(explored):
 def test_after_a_loss_the_goal_in_sight_is_headed_for_again_from_a_way_by_the_map_only(explored):
     """A few matches over free ground, too unsure to steer by, are lost in every frame anew."""
     _, maps, matcher = explored
-    goal = GoalDestination(DEFAULT, maps, matcher, picture(HALL), EdgeExperience(DEFAULT, maps))
+    experience = EdgeExperience(DEFAULT, maps)
+    goal = GoalDestination(DEFAULT, maps, matcher, picture(HALL), experience, Whereabouts())
     sight = NodeMatch(node_id=GOAL, raw_matches=60, inliers=35, status="ok", yaw_rad=0.0)
     assert goal.goes_straight(sight, None)
     goal.setback(Setback(Event.WAYPOINT_LOST, None, GOAL, (GOAL,), "the goal not seen, S 35"))

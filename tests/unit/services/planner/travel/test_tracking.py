@@ -21,6 +21,8 @@ RANGES = Ranges(robot="r1", angles_rad=(0.0,) * 12, distances_m=(4.0,) * 12, max
 HERE = by_node(match(0, 0.0, 0.0, 60), match(1, 1.0, 0.0, 50))
 ELSEWHERE = by_node(match(9, 0.0, 0.0, 180), match(10, 1.0, 0.0, 120))
 
+TWIN = by_node(match(9, 0.0, 0.0, 80), match(10, 1.0, 0.0, 60))
+
 
 @pytest.fixture
 def matcher():
@@ -191,6 +193,15 @@ def test_the_next_mission_begins_where_the_last_one_ended_if_the_view_agrees(mat
     matcher.inliers, matcher.near = alike, near
     drive(new, (0.0, 0.0), seq=1)
     assert set(new.possible(HERE | ELSEWHERE)) == shown
+
+
+@pytest.mark.parametrize(("seen", "guessed"), [(HERE | TWIN, True), (TWIN, False)])
+def test_who_finds_itself_at_one_of_several_look_alikes_knows_that_it_guessed(matcher, seen, guessed):
+    at = Whereabouts("flat", guessed=not guessed)
+    tracker = Tracker(DEFAULT, Maps(GRAPH), matcher, certain=False, whereabouts=at)
+    drive(tracker)
+    assert set(tracker.possible(seen)) == {9, 10}
+    assert at.guessed == guessed
 
 
 def test_another_map_tells_nothing_of_where_the_robot_is():
