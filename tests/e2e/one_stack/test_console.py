@@ -148,7 +148,7 @@ def test_a_deleted_place_comes_back_by_undo_and_the_history_says_who(copy_of_map
     page.route(f"**/api/maps/{copy_of_map}/nodes", late.take)
     page.reload()
     page.click("nav a[data-view=map]")
-    page.select_option("#map", copy_of_map)
+    page.select_option("#map-name", copy_of_map)
     page.fill("#find", "1")
     page.press("#find", "Enter")
     late.arrive()

@@ -41,7 +41,7 @@ def test_names_an_area_a_route_and_a_scheduled_round_with_its_report(
     explored.game.begin(seed=1)
     page.reload()
     page.click("nav a[data-view=map]")
-    page.select_option("#map", copy_of_map)
+    page.select_option("#map-name", copy_of_map)
     page.wait_for_selector(f'#graph[data-nodes="{len(explored.result.truth.poses)}"]', timeout=WAIT_MS)
     graph = nx.Graph((edge["a"], edge["b"]) for edge in http.get(f"/api/maps/{copy_of_map}/edges").json())
     forbidden = spare(page, graph)

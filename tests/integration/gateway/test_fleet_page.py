@@ -63,15 +63,15 @@ def test_of_one_robot_alone_the_nearest_node_is_marked_and_nothing_more(page: An
 def test_a_mission_is_meant_for_the_map_that_is_shown_unless_another_was_written(
     page: Any, store: MapStore
 ) -> None:
-    page.wait_for_selector("#map option[value=flat]", state="attached", timeout=WAIT_MS)
+    page.wait_for_selector("#map-name option[value=flat]", state="attached", timeout=WAIT_MS)
     assert page.input_value("#new-map") == "flat"
     store.create("yard")
-    page.wait_for_selector("#map option[value=yard]", state="attached", timeout=WAIT_MS)
-    page.select_option("#map", "yard")
+    page.wait_for_selector("#map-name option[value=yard]", state="attached", timeout=WAIT_MS)
+    page.select_option("#map-name", "yard")
     assert page.input_value("#new-map") == "yard"
     page.click('nav a[data-view="drive"]')
     page.fill("#new-map", "cellar")
-    page.select_option("#map", "flat")
+    page.select_option("#map-name", "flat")
     assert page.input_value("#new-map") == "cellar"
 
 

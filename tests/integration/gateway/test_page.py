@@ -72,7 +72,7 @@ PREVIEWED = """() => {
 @pytest.mark.parametrize(("size", "shape"), [((256, 128), 2.0), ((400, 300), 4 / 3), ((300, 400), 0.75)])
 @pytest.mark.usefixtures("map_store")
 def test_a_picture_is_shown_in_its_own_shape(page: "Page", size: tuple[int, int], shape: float) -> None:
-    page.wait_for_selector("#map option", state="attached", timeout=WAIT_MS)
+    page.wait_for_selector("#map-name option", state="attached", timeout=WAIT_MS)
     out = io.BytesIO()
     Image.new("RGB", size, (90, 120, 30)).save(out, "JPEG")
     goal = {"name": "goal.jpg", "mimeType": "image/jpeg", "buffer": out.getvalue()}
@@ -83,7 +83,7 @@ def test_a_picture_is_shown_in_its_own_shape(page: "Page", size: tuple[int, int]
 
 
 def test_a_broken_picture_is_explained(page: "Page") -> None:
-    page.wait_for_selector("#map option", state="attached", timeout=WAIT_MS)
+    page.wait_for_selector("#map-name option", state="attached", timeout=WAIT_MS)
     goal = {"name": "goal.gif", "mimeType": "image/gif", "buffer": b"GIF89a"}
     with page.expect_response(lambda response: "goal-check" in response.url) as answer:
         page.set_input_files("#picture", files=[goal])
@@ -181,7 +181,7 @@ def test_positions_follow_the_headings(page: "Page") -> None:
 
 def test_keys_and_stick_drive_by_hand_until_the_page_lets_go(page: "Page", robot_bus: Bus) -> None:
     wishes = robot_bus.subscribe(MANUAL, robot="r1")
-    page.wait_for_selector("#map option", state="attached", timeout=WAIT_MS)
+    page.wait_for_selector("#map-name option", state="attached", timeout=WAIT_MS)
 
     def said(**wanted: float | str) -> bool:
         came = wishes.take_all()
@@ -219,7 +219,7 @@ def test_keys_and_stick_drive_by_hand_until_the_page_lets_go(page: "Page", robot
 
 def test_to_let_go_comes_after_a_wish_that_is_late(page: "Page", robot_bus: Bus) -> None:
     wishes, held = robot_bus.subscribe(MANUAL, robot="r1"), []
-    page.wait_for_selector("#map option", state="attached", timeout=WAIT_MS)
+    page.wait_for_selector("#map-name option", state="attached", timeout=WAIT_MS)
     page.route("**/drive", lambda route: route.continue_() if held else held.append(route))
 
     def heard(action: str) -> bool:
@@ -247,7 +247,7 @@ def test_what_a_robot_says_of_its_body_is_shown(page: "Page", robot_bus: Bus) ->
             CameraState(robot="r1", source="osc://camera", model="RICOH THETA Z1", rate_hz=8.0, delay_s=0.4),
         ),
     ]
-    page.wait_for_selector("#map option", state="attached", timeout=WAIT_MS)
+    page.wait_for_selector("#map-name option", state="attached", timeout=WAIT_MS)
     assert page.is_hidden("#body-facts")
     expected = (
         "battery 62 % charging",

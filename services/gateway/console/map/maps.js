@@ -12,12 +12,12 @@ export class Maps {
     this.listed = listed;
     this.all = [];
     this.wanted = "";
-    $("map").addEventListener("change", (event) => this.choose(event.target.value));
+    $("map-name").addEventListener("change", (event) => this.choose(event.target.value));
     setInterval(() => document.hidden || this.refresh(), POLL_MS);
   }
 
   get name() {
-    return $("map").value;
+    return $("map-name").value;
   }
 
   get names() {
@@ -41,14 +41,14 @@ export class Maps {
     if (JSON.stringify(this.all) !== told) this.listed();
     if (this.names.join() === before) return;
     const shown = this.name;
-    $("map").replaceChildren(...this.names.map((name) => html("option", { value: name }, name)));
+    $("map-name").replaceChildren(...this.names.map((name) => html("option", { value: name }, name)));
     $("map-names").replaceChildren(...this.names.map((name) => html("option", { value: name })));
     this.choose([this.wanted, shown].find((name) => this.names.includes(name)) ?? this.names[0] ?? "");
   }
 
   choose(name) {
     if (this.names.includes(this.wanted)) this.wanted = "";
-    $("map").value = name;
+    $("map-name").value = name;
     this.chosen(name);
   }
 }
