@@ -83,15 +83,16 @@ class GoalDestination:
 
     def _look(self, goal: Features) -> None:
         """Find the picture about its node, or in the whole map."""
-        maps, node = self._maps, self._node
-        if node is None:
-            found = self._matcher.locate(goal, COMPARED_NODES)
+        maps, profile = self._maps, self._profile
+        if self._node in maps.graph.nodes:
+            found = self._matcher.locate(goal, 0, (self._node, *maps.graph.neighbours(self._node)))
         else:
-            found = self._matcher.locate(goal, 0, (node, *maps.graph.neighbours(node)))
-        self.places = GoalPlaces(maps, found, self._profile)
-        plain = self.places.plain
-        self.aliased = node is not None or not plain
-        self.arrival_rad = self._profile.arrival.arrival_rad * (1.0 if plain else CLOSER_SHARE)
+            self._node = None
+            found = self._matcher.locate(goal, COMPARED_NODES)
+        self.places = GoalPlaces(maps, found, profile)
+        plain, strict = self.places.plain, profile.sensing.similarity == "raw"
+        self.aliased = not plain or (self._node is not None and not strict)  # its look-alikes are not known
+        self.arrival_rad = profile.arrival.arrival_rad * (1.0 if plain else CLOSER_SHARE)
         self._lies = dict(self._seen_from(found))
         self._targets = self._reachable(found)
         self._targets |= dict.fromkeys(self.places.without(self._targets), LAST_EDGE_M)

@@ -9,7 +9,7 @@ from services.drive.limits import DriveLimits
 from services.planner.goals.destination import GoalDestination
 from services.planner.missions.explore import FrontierExploration
 from services.planner.missions.goto import Goto
-from services.planner.profiles import DEFAULT
+from services.planner.profiles import DEFAULT, THESIS
 from services.planner.travel.destination import Setback
 from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.states import Event
@@ -110,3 +110,22 @@ def test_a_node_of_the_map_is_driven_to_by_the_map_by_who_knows_where_it_is(expl
     assert [text[:14] for text in told[1:]] == ([] if knows_where_it_is else ["goal resembles"])
     arrived = decision.outcome == "succeeded" and math.dist(world.pose[:2], maps.poses[node][:2]) < 0.5
     assert arrived or (decision.failure == "ambiguous" and not knows_where_it_is), decision.why
+
+
+@pytest.mark.parametrize(
+    ("profile", "gone", "told", "aliased"),
+    [
+        (DEFAULT, False, "goal is node", True),
+        (DEFAULT, True, "goal resembles nodes", None),
+        (THESIS, False, "goal is node", False),
+    ],
+)
+def test_look_alikes_of_a_node_are_not_known_unless_it_is_gone(explored, profile, gone, told, aliased):
+    """By the thesis's strict rules nothing is said of them."""
+    _, maps, matcher, _ = explored
+    node, pose = next(iter(maps.poses.items()))
+    experience, where = EdgeExperience(profile, maps), Whereabouts()
+    node = max(maps.poses) + 1 if gone else node
+    goal = GoalDestination(profile, maps, matcher, picture(pose), experience, where, node)
+    assert goal.located().reason.startswith(told)
+    assert aliased is None or goal.aliased == aliased
