@@ -11,6 +11,7 @@ import pytest
 
 from experiments.bench.resources import machine
 from services.launcher.terminal.output import rounded, write_json
+from tests.benchmarks.test_exploring_plans import world_of
 
 
 @pytest.fixture
@@ -26,3 +27,11 @@ def keep(request: pytest.FixtureRequest, repository: Path) -> Callable[[dict[str
         write_json(folder / f"{name}.json", {"machine": machine(), **figures})
 
     return write
+
+
+@pytest.fixture(scope="module")
+def world(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The file of the world that a benchmark's PLAN names."""
+    folder, plan = tmp_path_factory.mktemp("world"), request.module.PLAN
+    world_of(plan, folder)
+    return str(folder / f"{plan}.yaml")

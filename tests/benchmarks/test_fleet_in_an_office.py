@@ -29,7 +29,6 @@ from shared.topics import STATUS
 from shared.transport.keys import ANY
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
-from tests.benchmarks.test_exploring_plans import world_of
 from tests.e2e.fleet import another_robot, dispatch_of_the_first, fleet_service, taking_part
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(7200)]
@@ -41,14 +40,6 @@ TASKS = int(os.environ.get("TASKS", "40"))
 SEED = int(os.environ.get("SEED", "1"))
 STEPS, WAIT_S = 2000, 5400.0
 APART_M = 3.0
-
-
-@pytest.fixture(scope="module")
-def world(tmp_path_factory):
-    """The file of the office."""
-    folder = tmp_path_factory.mktemp("world")
-    world_of(PLAN, folder)
-    return str(folder / f"{PLAN}.yaml")
 
 
 @pytest.fixture(scope="module")

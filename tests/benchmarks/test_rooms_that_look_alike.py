@@ -23,7 +23,6 @@ from shared.messages.maps import MapRequest
 from shared.topics import MAP
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
-from tests.benchmarks.test_exploring_plans import world_of
 from tests.e2e.fleet import taking_part
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(7200)]
@@ -33,14 +32,6 @@ PLAN = os.environ.get("PLAN", "hostel-0-small")
 NODES = int(os.environ.get("NODES", "12"))
 SEED = int(os.environ.get("SEED", "1"))
 FOUND_M, STEPS = 0.5, 1500
-
-
-@pytest.fixture(scope="module")
-def world(tmp_path_factory):
-    """The file of the hostel."""
-    folder = tmp_path_factory.mktemp("world")
-    world_of(PLAN, folder)
-    return str(folder / f"{PLAN}.yaml")
 
 
 @pytest.fixture(scope="module")
