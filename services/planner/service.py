@@ -4,7 +4,9 @@ import logging
 import threading
 import time
 
+from services.planner.control.assignment import Assigner
 from services.planner.control.mission_control import MissionControl
+from services.planner.control.records import MissionRecords
 from services.planner.mission_kinds import MissionError, mission_kinds
 from services.planner.odometry import FrameMotion
 from services.planner.ports import Decision, Observation
@@ -61,7 +63,8 @@ class Planner:
         self._statuses = bus.publisher(STATUS, robot=robot)
         self._events = bus.publisher(EVENT, robot=robot)
         self._kinds = mission_kinds(settings.missions_folder)
-        self.control = MissionControl(settings, self._profile, self._kinds, bus, self._say_meanwhile)
+        assigner = Assigner(settings, self._profile, self._kinds, bus, self._say_meanwhile)
+        self.control = MissionControl(assigner, MissionRecords(settings, bus))
         self._replaced = False
         self._stopped: EStopState | None = None
         self._motion = FrameMotion()

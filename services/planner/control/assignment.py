@@ -61,7 +61,8 @@ class Assigner:
         bus: Bus,
         meanwhile: Callable[[], None] | None = None,
     ) -> None:
-        self._settings, self._profile, self._kinds, self._bus = settings, profile, kinds, bus
+        self._settings, self._bus = settings, bus
+        self.profile, self.kinds = profile, kinds
         self._meanwhile = meanwhile
         self.traffic = Traffic(bus, settings.robot, settings.query_timeout_s)
         self.changes = MapChanges(bus)
@@ -92,7 +93,7 @@ class Assigner:
         timeout_s = self._settings.map_timeout_s
         inspector = RemoteInspector(self._bus, maps, matcher, record.mission_id, timeout_s)
         context = MissionContext(
-            self._profile, maps, matcher, rng, record.goal, whereabouts, inspector, record.checkpoint
+            self.profile, maps, matcher, rng, record.goal, whereabouts, inspector, record.checkpoint
         )
-        mission = self._kinds[record.action].start(context, parameters_of(record))
+        mission = self.kinds[record.action].start(context, parameters_of(record))
         return Assignment(mission, maps, matcher, whereabouts, maps.graph)

@@ -1,20 +1,16 @@
 """The state machine of a robot's one mission: started, paused, stepped and ended."""
 
 import logging
-from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 
 from services.planner.control.assignment import Assigner, Assignment
 from services.planner.control.records import MissionRecords, begun, ended, has_goal
 from services.planner.control.standing import Standing, status_of
-from services.planner.mission_kinds import MissionError, MissionKinds
+from services.planner.mission_kinds import MissionError
 from services.planner.ports import Accompanying, Decision, Mission, Observation, Progress
-from services.planner.profiles import Profile
 from services.planner.remote.remote_map import RemoteMap
-from services.planner.settings import PlannerSettings
 from services.planner.surroundings import at_speed
-from shared.bus import Bus
 from shared.mapgraph.graph import MapGraph
 from shared.messages.maps import MapDelta, MissionRecord
 from shared.messages.missions import (
@@ -31,24 +27,11 @@ log = logging.getLogger(__name__)
 
 
 class MissionControl:
-    """State machine of missions: idle, running, paused, then succeeded, failed or cancelled.
+    """State machine of missions: idle, running, paused, then succeeded, failed or cancelled."""
 
-    Args:
-        meanwhile: what else there is to do now and then while the feature service is waited for.
-    """
-
-    def __init__(
-        self,
-        settings: PlannerSettings,
-        profile: Profile,
-        kinds: MissionKinds,
-        bus: Bus,
-        meanwhile: Callable[[], None] | None = None,
-    ) -> None:
-        self._profile, self._kinds = profile, kinds
-        self._assigner = Assigner(settings, profile, kinds, bus, meanwhile)
-        self._records = MissionRecords(settings, bus)
-        self._record = MissionRecord(robot=settings.robot)
+    def __init__(self, assigner: Assigner, records: MissionRecords) -> None:
+        self._assigner, self._records = assigner, records
+        self._record = MissionRecord(robot=records.robot)
         self._assignment: Assignment | None = None  # stays when its mission has ended
         self._ended_in: RemoteMap | None = None  # map of a mission that a planner before ended
         self._now = Standing()
@@ -161,7 +144,7 @@ class MissionControl:
         graph = self.map.graph if self.map is not None else MapGraph()
         shown: tuple[str, ...] = ()
         with suppress(MissionError):  # of a kind that is not known here nothing is
-            shown = self._kinds[self._record.action].shown
+            shown = self._assigner.kinds[self._record.action].shown
         return status_of(self._record, self._now, progress, graph, shown)
 
     def changes(self) -> list[MapDelta]:
@@ -188,7 +171,7 @@ class MissionControl:
     def _decide(self, assignment: Assignment, observation: Observation) -> Decision:
         decision, progress = assignment.mission.decide(observation), assignment.mission.progress
         self._keep_checkpoint(progress)
-        return at_speed(decision, assignment.map.graph, progress.nearest_node, self._profile)
+        return at_speed(decision, assignment.map.graph, progress.nearest_node, self._assigner.profile)
 
     def _follow_name(self, maps: RemoteMap, name: str) -> None:
         """Go on under the new name, unless an earlier map of this name was meant: the past is told, too."""
@@ -261,7 +244,7 @@ class MissionControl:
             raise MissionError(why, "conflict")
         self.settle()
         record = begun(self._record, request)
-        create = self._kinds[record.action].makes_map
+        create = self._assigner.kinds[record.action].makes_map
         assignment = self._assigner.begin(record, self._assignment, create=create)
         self._records.save(record)
         self._assignment, self._record = assignment, record

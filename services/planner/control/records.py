@@ -17,7 +17,7 @@ class MissionRecords:
     """
 
     def __init__(self, settings: PlannerSettings, bus: Bus) -> None:
-        self._settings, self._bus = settings, bus
+        self._bus, self.robot, self._timeout_s = bus, settings.robot, settings.map_timeout_s
         self._unsaved: MissionRecord | None = None
 
     def claim(self, record: MissionRecord) -> MissionRecord:
@@ -40,8 +40,7 @@ class MissionRecords:
             self._unsaved = None
 
     def _ask(self, request: MissionRecordRequest) -> MissionRecord:
-        timeout_s, robot = self._settings.map_timeout_s, self._settings.robot
-        return self._bus.ask(MISSION_RECORD, request, timeout_s, robot=robot)
+        return self._bus.ask(MISSION_RECORD, request, self._timeout_s, robot=self.robot)
 
 
 def begun(before: MissionRecord, request: MissionRequest) -> MissionRecord:

@@ -3,15 +3,12 @@
 import pytest
 from pydantic import BaseModel, ConfigDict
 
-from services.planner.control.mission_control import MissionControl
 from services.planner.mission_kinds import MissionError, MissionKind, MissionKinds, NoParameters
 from services.planner.ports import Progress
-from services.planner.profiles import DEFAULT
-from services.planner.settings import PlannerSettings
 from shared.messages.maps import MissionRecord
 from shared.messages.missions import MissionRequest
 from shared.queries import QueryError, RefusedError
-from tests.unit.services.planner.control.test_mission_control import Store
+from tests.unit.services.planner.control.test_mission_control import Store, mission_control
 
 
 class Point(BaseModel):
@@ -50,7 +47,7 @@ def store():
 
 @pytest.fixture
 def control(store):
-    made = MissionControl(PlannerSettings(), DEFAULT, MissionKinds([KIND]), store)
+    made = mission_control(MissionKinds([KIND]), store)
     made.claim()
     return made
 
@@ -72,7 +69,7 @@ def test_who_paused_a_mission_is_told_and_kept(control, store):
     start(control)
     control.pause("emergency stop: a child", "emergency_stop")
     assert (control.status().paused_by, store.record.paused_by) == ("emergency_stop", "emergency_stop")
-    again = MissionControl(PlannerSettings(), DEFAULT, MissionKinds([KIND]), store)
+    again = mission_control(MissionKinds([KIND]), store)
     again.claim()
     assert (again.state, again.status().paused_by) == ("paused", "emergency_stop")
     assert again.handle(MissionRequest(action="resume")).paused_by == ""

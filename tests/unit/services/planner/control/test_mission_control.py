@@ -2,7 +2,9 @@
 
 import pytest
 
+from services.planner.control.assignment import Assigner
 from services.planner.control.mission_control import MissionControl
+from services.planner.control.records import MissionRecords
 from services.planner.mission_kinds import (
     MissionError,
     MissionKind,
@@ -61,10 +63,16 @@ class Store:
         return MapReply(map=self.map, revision=self.revision, nodes=(Node(node_id=0),))
 
 
+def mission_control(kinds, store):
+    """Of a robot whose missions are of these kinds; all it asks goes to the store."""
+    settings = PlannerSettings()
+    return MissionControl(Assigner(settings, DEFAULT, kinds, store), MissionRecords(settings, store))
+
+
 def control_of(gone=False, **record):
     store = Store(MissionRecord(robot="r1", epoch=4, mission_id="m", map="flat", **record))
     store.map = "" if gone else "flat"
-    control = MissionControl(PlannerSettings(), DEFAULT, mission_kinds(), store)
+    control = mission_control(mission_kinds(), store)
     control.claim()
     return control, store
 
@@ -151,7 +159,7 @@ def test_a_mission_learns_where_the_one_before_left_the_robot_in_the_same_map():
 
     kinds = MissionKinds([MissionKind(name="wait", title="Wait", parameters=NoParameters, make=make)])
     store = Store(MissionRecord(robot="r1", epoch=4, mission_id="m", map="flat"))
-    control = MissionControl(PlannerSettings(), DEFAULT, kinds, store)
+    control = mission_control(kinds, store)
     control.claim()
     for name in ("flat", "flat", "loft", "flat"):
         store.map = name
@@ -184,7 +192,7 @@ def counting_control(store):
         return Counting(2 * int(context.checkpoint.get("count", 0)))
 
     kinds = MissionKinds([MissionKind(name="count", title="Count", parameters=NoParameters, make=make)])
-    control = MissionControl(PlannerSettings(), DEFAULT, kinds, store)
+    control = mission_control(kinds, store)
     control.claim()
     return control
 
