@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import httpx
 import numpy as np
 import pytest
 
@@ -15,6 +16,7 @@ from simulator.world.world_file import load_world
 
 WORLD = "apartment"
 MAP = "small"
+WAIT_S = 60.0
 STEPS = 80
 PATIENT = {
     "GATEWAY_ASK_TIMEOUT_S": "60",
@@ -46,3 +48,10 @@ def explored(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Explored]:
         result = explore(stack, WORLD, MAP, seed=1, max_steps=STEPS)
         game = Game(stack, space, MAP, np.random.default_rng(1))
         yield Explored(stack, space, result, game, data_dir)
+
+
+@pytest.fixture
+def http(explored: Explored) -> Iterator[httpx.Client]:
+    """A client of the stack's gateway."""
+    with httpx.Client(base_url=str(explored.stack.gateway_url), trust_env=False, timeout=WAIT_S) as client:
+        yield client

@@ -20,13 +20,13 @@ from shared.messages.sensors import Frame
 from shared.topics import FRAME
 from tests.browser import WAIT_MS, inaccessible, listen, needs_chromium
 from tests.e2e.near_node import hiding_place_near_a_node
-from tests.e2e.one_stack.conftest import MAP, Explored
+from tests.e2e.one_stack.conftest import MAP, WAIT_S, Explored
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(600), needs_chromium]
 
 VIEWS = ("drive", "map", "why", "maps", "runs", "tasks")
 MISSION_MS = 240_000
-WAIT_S = WAIT_MS / 1000.0
+
 COLOURS = """() => {
     const context = document.querySelector(".pair").getContext("2d");
     return new Set(context.getImageData(0, 0, 720, 740).data).size;
@@ -65,26 +65,24 @@ def page(browser: Any, explored: Explored) -> Iterator[Any]:
 
 
 @pytest.fixture
-def copy_of_map(explored: Explored) -> Iterator[str]:
+def copy_of_map(http: httpx.Client) -> Iterator[str]:
     """Another map with the same places, to be changed."""
-    with httpx.Client(base_url=str(explored.stack.gateway_url), trust_env=False, timeout=WAIT_S) as http:
-        archive = http.get(f"/api/maps/{MAP}/export").content
-        assert http.patch(f"/api/maps/{MAP}", json={"name": "kept"}).status_code == 200
-        answer = http.post("/api/maps/import", content=archive, headers={"Content-Type": "application/zip"})
-        assert answer.status_code == 201, answer.text
-        assert http.patch(f"/api/maps/{MAP}", json={"name": "copied"}).status_code == 200
-        assert http.patch("/api/maps/kept", json={"name": MAP}).status_code == 200
-        yield "copied"
-        http.delete("/api/maps/copied")
+    archive = http.get(f"/api/maps/{MAP}/export").content
+    assert http.patch(f"/api/maps/{MAP}", json={"name": "kept"}).status_code == 200
+    answer = http.post("/api/maps/import", content=archive, headers={"Content-Type": "application/zip"})
+    assert answer.status_code == 201, answer.text
+    assert http.patch(f"/api/maps/{MAP}", json={"name": "copied"}).status_code == 200
+    assert http.patch("/api/maps/kept", json={"name": MAP}).status_code == 200
+    yield "copied"
+    http.delete("/api/maps/copied")
 
 
 @pytest.fixture
-def succeeded(explored: Explored) -> None:
+def succeeded(explored: Explored, http: httpx.Client) -> None:
     """A mission that succeeded is among the decisions that the gateway remembers."""
 
     def told() -> bool:
-        url = f"{explored.stack.gateway_url}/api/robots/{explored.stack.robot}/events?limit=200"
-        answer = httpx.get(url, trust_env=False, timeout=WAIT_S)
+        answer = http.get(f"/api/robots/{explored.stack.robot}/events?limit=200")
         return answer.status_code == 200 and any(event["kind"] == "succeeded" for event in answer.json())
 
     if not told():

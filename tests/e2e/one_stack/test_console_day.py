@@ -12,7 +12,7 @@ import pytest
 from shared.bus import wait_until
 from tests.browser import WAIT_MS, inaccessible, needs_chromium
 from tests.e2e.fleet import dispatch_of_the_first
-from tests.e2e.one_stack.conftest import Explored
+from tests.e2e.one_stack.conftest import WAIT_S, Explored
 from tests.e2e.one_stack.test_console import copy_of_map as copy_of_map
 from tests.e2e.one_stack.test_console import page as page
 from tests.integration.gateway.test_places_page import SPOT, Clicks
@@ -20,18 +20,16 @@ from tests.integration.gateway.test_routes_page import teaching_begun
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(900), needs_chromium]
 
-WAIT_S = WAIT_MS / 1000.0
 ROUND_MS = 300_000
 NAMES = ("Dock", "Desk", "Door")
 MOST_CLICKS = 4
 
 
 @pytest.fixture
-def http(explored: Explored) -> Iterator[httpx.Client]:
-    """A client of the gateway; afterwards nothing is scheduled."""
-    with httpx.Client(base_url=str(explored.stack.gateway_url), trust_env=False, timeout=WAIT_S) as client:
-        yield client
-        client.delete(f"/api/robots/{explored.stack.robot}/schedules/night")
+def http(http: httpx.Client, explored: Explored) -> Iterator[httpx.Client]:
+    """Afterwards nothing is scheduled."""
+    yield http
+    http.delete(f"/api/robots/{explored.stack.robot}/schedules/night")
 
 
 def test_names_an_area_a_route_and_a_scheduled_round_with_its_report(

@@ -6,18 +6,10 @@ import sys
 from typing import Any
 
 import httpx
-import pytest
 
 from shared.bus import wait_until
-from tests.e2e.one_stack.conftest import MAP, Explored
-
-WAIT_S = 60.0
-
-
-@pytest.fixture
-def http(explored: Explored) -> Any:
-    with httpx.Client(base_url=str(explored.stack.gateway_url), trust_env=False, timeout=WAIT_S) as client:
-        yield client
+from tests.browser import needs_chromium
+from tests.e2e.one_stack.conftest import MAP, WAIT_S, Explored
 
 
 def start(http: httpx.Client, robot: str, **parameters: object) -> httpx.Response:
@@ -50,6 +42,7 @@ def test_what_it_cannot_take_is_refused_by_name(http: httpx.Client, explored: Ex
     assert "parameters of wave: frames" in answer.json()["got"]
 
 
+@needs_chromium
 def test_the_console_offers_it_with_its_parameters(browser: Any, explored: Explored) -> None:
     page = browser.new_page()
     try:

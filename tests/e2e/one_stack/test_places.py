@@ -13,18 +13,16 @@ from tests.e2e.one_stack.conftest import MAP, Explored
 
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(900)]
 
-WAIT_S = 60.0
 DRIVE_S = 300.0
 
 
 @pytest.fixture
-def http(explored: Explored) -> Iterator[httpx.Client]:
-    """A client of the gateway; afterwards the map has no places and no rules."""
-    with httpx.Client(base_url=str(explored.stack.gateway_url), trust_env=False, timeout=WAIT_S) as client:
-        yield client
-        for what in ("rules", "places"):
-            for mark in client.get(f"/api/maps/{MAP}/{what}").json():
-                client.delete(f"/api/maps/{MAP}/{what}", params={"name": mark["name"]})
+def http(http: httpx.Client) -> Iterator[httpx.Client]:
+    """Afterwards the map has no places and no rules."""
+    yield http
+    for what in ("rules", "places"):
+        for mark in http.get(f"/api/maps/{MAP}/{what}").json():
+            http.delete(f"/api/maps/{MAP}/{what}", params={"name": mark["name"]})
 
 
 def topnav(explored: Explored, *words: str) -> subprocess.CompletedProcess[str]:

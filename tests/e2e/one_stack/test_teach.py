@@ -4,7 +4,6 @@ import math
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
@@ -21,7 +20,6 @@ from tests.e2e.one_stack.conftest import Explored
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(900)]
 
 MAP = "taught"
-WAIT_S = 60.0
 DRIVE_S = 300.0
 STOPS = ((2.6, 1.3), (4.2, 1.4))
 NEAR_M = 0.12
@@ -67,13 +65,6 @@ class Person:
                 turn_radps=turn_radps,
             )
         )
-
-
-@pytest.fixture
-def http(explored: Explored) -> Iterator[httpx.Client]:
-    """A client of the gateway."""
-    with httpx.Client(base_url=str(explored.stack.gateway_url), trust_env=False, timeout=WAIT_S) as client:
-        yield client
 
 
 def topnav(explored: Explored, *words: str) -> subprocess.CompletedProcess[str]:
