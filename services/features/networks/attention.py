@@ -21,6 +21,8 @@ SHARPNESS = 15.0
 """Factor of the descriptors' cosines with which training begins: that of `topnav train keypoints`."""
 LISTENING = 8.0
 """The same factor where a keypoint chooses whom of the other picture it hears: less, as it hears many."""
+SILENCE = 1e-30
+"""Least sum of what a keypoint hears, so that one which only fills up hears nothing."""
 ANSWERS = 3
 """Of a pair: logit of the same place, logit of the overlap, logarithm of the metres between them."""
 
@@ -79,10 +81,8 @@ class Attention(nn.Module):  # type: ignore[misc] # torch is not followed, see p
         self.enter = nn.Linear(dimension + CONTEXT, width)
         self.layers = nn.ModuleList(Layer(width, heads) for _ in range(layers))
         self.heads_out = nn.ModuleList(Answer(width) for _ in range(layers))
-        pairs = width // heads // 2
-        turns = torch.arange(pairs) % (pairs // 2)
-        self.register_buffer("of_longitude", torch.arange(pairs) < pairs // 2, persistent=False)
-        self.register_buffer("turns", torch.round(1.7 ** turns.float()), persistent=False)
+        turns = torch.round(1.7 ** torch.arange(width // heads // 4).float())
+        self.register_buffer("turns", turns, persistent=False)
 
     def forward(self, one: Keypoints, other: Keypoints) -> list[Assignment]:
         """The answers of all layers, the last one last."""
@@ -118,6 +118,8 @@ class Attention(nn.Module):  # type: ignore[misc] # torch is not followed, see p
                 hopeful = torch.sigmoid(pair[:, 0]) >= hopeless
                 if not bool(hopeful.any()):
                     return [], None
+                if bool(hopeful.all()):
+                    continue
                 first, second, cosines, numbers = (x[hopeful] for x in (first, second, cosines, numbers))
                 turned_other = turned_other[hopeful]
                 present = None if present is None else present[hopeful]
@@ -131,7 +133,7 @@ class Attention(nn.Module):  # type: ignore[misc] # torch is not followed, see p
 
     def rotary(self, lonlat_rad: torch.Tensor) -> torch.Tensor:
         """(B, 1, N, width / heads / 2) complex numbers by which queries and keys are turned."""
-        angle = torch.where(self.of_longitude, lonlat_rad[..., :1], lonlat_rad[..., 1:]) * self.turns
+        angle = (lonlat_rad[..., None] * self.turns).flatten(-2)
         return torch.complex(torch.cos(angle), torch.sin(angle))[:, None]
 
 
@@ -165,9 +167,8 @@ class Layer(nn.Module):  # type: ignore[misc]
         one = one.expand(len(other), -1, -1)  # what it sees within itself is the same for all others
         key, value = self._split(self.across(one), 2)
         key_other, value_other = self._split(self.across(other), 2)
-        alike = (self.listening * cosines[:, None]).to(key.dtype)
-        from_other = self._gathered(key, key_other, value_other, _heard(alike, present_other))
-        from_one = self._gathered(key_other, key, value, _heard(alike.transpose(2, 3), present))
+        heard = self.heard(key, key_other, cosines, present, present_other)
+        from_other, from_one = gathered(heard, value_other), gathered(heard.transpose(2, 3), value)
         return (
             one + self.across_mix(torch.cat([one, self.across_out(from_other)], dim=-1)),
             other + self.across_mix(torch.cat([other, self.across_out(from_one)], dim=-1)),
@@ -178,20 +179,33 @@ class Layer(nn.Module):  # type: ignore[misc]
     ) -> torch.Tensor:
         query, key, value = self._split(self.within(points), 3)
         mask = None if present is None else present[:, None, None, :]
-        seen = self._gathered(_turn(query, turned), _turn(key, turned), value, mask)
-        return points + self.within_mix(torch.cat([points, self.within_out(seen)], dim=-1))
+        seen = functional.scaled_dot_product_attention(
+            _turn(query, turned), _turn(key, turned), value, attn_mask=mask
+        )
+        return points + self.within_mix(torch.cat([points, self.within_out(_joined(seen))], dim=-1))
 
     def _split(self, joined: torch.Tensor, parts: int) -> tuple[torch.Tensor, ...]:
         batch, count, _ = joined.shape
         apart = joined.reshape(batch, count, parts, self.heads, -1).permute(2, 0, 3, 1, 4)
         return tuple(apart[part] for part in range(parts))
 
-    @staticmethod
-    def _gathered(
-        query: torch.Tensor, key: torch.Tensor, value: torch.Tensor, mask: torch.Tensor | None
+    def heard(
+        self,
+        key: torch.Tensor,
+        key_other: torch.Tensor,
+        cosines: torch.Tensor,
+        present: torch.Tensor | None,
+        present_other: torch.Tensor | None,
     ) -> torch.Tensor:
-        seen = functional.scaled_dot_product_attention(query, key, value, attn_mask=mask)
-        return seen.transpose(1, 2).flatten(2)
+        """(B, heads, N, M) how much a keypoint hears of each other, and that of it, up to a factor."""
+        alike = ((key * key.shape[-1] ** -0.5) @ key_other.transpose(2, 3)).float()
+        alike = alike.addcmul_(self.listening, cosines[:, None].float())  # in place: it is large
+        heard = alike.sub_(alike.detach().amax((2, 3), keepdim=True)).exp_()
+        if present is not None:
+            heard = heard.masked_fill(~present[:, None, :, None], 0.0)
+        if present_other is not None:
+            heard = heard.masked_fill(~present_other[:, None, None, :], 0.0)
+        return heard
 
 
 class Answer(nn.Module):  # type: ignore[misc]
@@ -245,8 +259,14 @@ class Answer(nn.Module):  # type: ignore[misc]
         return found
 
 
-def _heard(alike: torch.Tensor, present: torch.Tensor | None) -> torch.Tensor:
-    return alike if present is None else alike.masked_fill(~present[:, None, None, :], -1e4)
+def gathered(heard: torch.Tensor, values: torch.Tensor) -> torch.Tensor:
+    """(B, N, width) means of (B, heads, M, -1) values by what is heard of each; 0 where nothing is."""
+    total = heard.sum(3, keepdim=True).clamp(min=SILENCE)
+    return _joined((heard.to(values.dtype) @ values) / total.to(values.dtype))
+
+
+def _joined(heads: torch.Tensor) -> torch.Tensor:
+    return heads.transpose(1, 2).flatten(2)
 
 
 def _mean(points: torch.Tensor, present: torch.Tensor | None) -> torch.Tensor:

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 torch = pytest.importorskip("torch")
 
-from services.features.networks.attention import ANSWERS, Attention, Keypoints  # noqa: E402
+from services.features.networks.attention import ANSWERS, Attention, Keypoints, Layer, gathered  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -110,3 +110,28 @@ def test_of_many_pictures_those_found_to_be_elsewhere_are_not_asked_further_and_
     for row, number in enumerate(numbers):
         expected = plain[number][-1].log_right[0].detach()
         assert_allclose(found.log_right[row].exp().numpy(), expected.exp().numpy(), atol=1e-5)
+
+
+@pytest.mark.parametrize("apart", [1.0, 100.0])
+def test_hearing_each_other_is_attention_from_either_side_and_never_without_number(apart):
+    torch.manual_seed(5)
+    layer = Layer(32, 2).eval()
+    key, key_other = torch.randn(3, 2, 20, 16), torch.randn(3, 2, 30, 16)
+    key[:, :, 0] *= apart  # by a hundred: the others seem silent beside what this one hears
+    value, value_other = torch.randn(3, 2, 20, 16), torch.randn(3, 2, 30, 16)
+    cosines = torch.rand(3, 20, 30)
+    with torch.inference_mode():
+        heard = layer.heard(key, key_other, cosines, None, torch.arange(30).expand(3, 30) < 25)
+        found = gathered(heard, value_other), gathered(heard.transpose(2, 3), value)
+        mask = layer.listening * cosines[:, None, :, :25]
+        asked, others = key_other[:, :, :25], value_other[:, :, :25]
+        attention = torch.nn.functional.scaled_dot_product_attention
+        plain = (
+            attention(key, asked, others, attn_mask=mask),
+            attention(asked, key, value, attn_mask=mask.transpose(2, 3)),
+        )
+    assert all(bool(torch.isfinite(part).all()) for part in found)
+    assert not bool(found[1][:, 25:].any())
+    if apart == 1.0:
+        for part, whole in zip((found[0], found[1][:, :25]), plain, strict=True):
+            assert_allclose(part.numpy(), whole.transpose(1, 2).flatten(2).numpy(), atol=1e-5)
