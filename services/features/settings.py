@@ -21,7 +21,7 @@ class FeaturesSettings(ServiceSettings):
         tilting: the camera may lean: where level ones explain too little, any motion is tried.
         extractor: instead of `pipeline` where not empty.
         device: where networks run: cpu or cuda.
-        threads: cores OpenCV may use.
+        threads: cores that OpenCV and networks may use.
         frames_kept: newest frames whose features a MATCH can name by number.
         map_timeout_s: longest wait for the map store.
         thumbnail_width_px: width of the picture sent along, half as high: for people, for look-alikes, and
