@@ -27,6 +27,8 @@ def generated(
     rounds: Annotated[int, typer.Option(min=0, help="Of hide and seek, before and after.")] = ROUNDS,
     kinds: Names = "",
     sizes: Names = "",
+    profile: options.ProfileName = None,
+    pipeline: options.PipelineName = None,
     max_steps: options.MaxSteps = 1500,
     jobs: Annotated[int, typer.Option(min=1, help="Worlds at a time.")] = 1,
     cluster: Annotated[
@@ -39,13 +41,15 @@ def generated(
 
     What is done is kept: a suite that was cut off goes on. Rounds that fail leave a recording each.
     """
-    from experiments.generated.plan import plan_worlds
+    from experiments.generated.plan import plan_worlds, suite_folder
     from experiments.generated.suite import GeneratedSuite, run_generated
     from services.launcher.client.run_record import keep_run
 
     started = datetime.now(UTC)
-    plans = plan_worlds(split, worlds, rounds, max_steps, _listed(kinds), _listed(sizes))
-    chosen = GeneratedSuite(split, plans, data_dir / "generated" / split, jobs, cluster)
+    only = _listed(kinds), _listed(sizes)
+    plans = plan_worlds(split, worlds, rounds, max_steps, *only, pipeline, profile)
+    folder = data_dir / "generated" / suite_folder(split, pipeline, profile)
+    chosen = GeneratedSuite(split, plans, folder, jobs, cluster)
     result = run_generated(chosen, json_file)
     keep_run(
         data_dir,

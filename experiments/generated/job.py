@@ -43,7 +43,7 @@ def play_world(plan: WorldPlan, folder: str) -> dict[str, Any]:
         write_world(world, generate(plan.kind, plan.seed, plan.size))
     if not later.exists():
         rearrange_file(str(world), later, plan.seed)
-    files = map_or_part(MapPlan(str(world)), str(own))
+    files = map_or_part(MapPlan(str(world), plan.pipeline, plan.profile), str(own))
     explored = json.loads(files[FIGURES])
     rounds, moved = _rounds(plan, world, files, own), _rounds(plan, later, files, own)
     drawn = load_world(str(world))
@@ -59,7 +59,17 @@ def _rounds(plan: WorldPlan, world: Path, files: MapFiles, own: Path) -> list[di
     """Rounds on the map, in the world as it is; none if there is nothing to find the way in."""
     if json.loads(files[FIGURES])["nodes"] == 0:
         return []
-    run = RunPlan(str(world), "default", plan.rounds, MAP_SEED, plan.max_steps, draw=False, record=True)
+    run = RunPlan(
+        str(world),
+        plan.profile or "default",
+        plan.rounds,
+        MAP_SEED,
+        plan.max_steps,
+        draw=False,
+        record=True,
+        pipeline=plan.pipeline,
+        map_profile=plan.profile,
+    )
     rounds: list[dict[str, Any]] = play_run(run, files, str(own))["rounds"]
     return rounds
 

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from itertools import islice
+from pathlib import Path
 
 from simulator.generation.splits import SHARES, Split, worlds_of
 
@@ -17,6 +18,8 @@ class WorldPlan:
         kind, seed, size: of the world.
         rounds: of hide and seek in the world as it was mapped, and as many after it was rearranged.
         max_steps: a round is given up after so many frames.
+        pipeline: of the features; None: the default one.
+        profile: rules by which it is explored and played in; None: the default ones.
     """
 
     kind: str
@@ -24,6 +27,8 @@ class WorldPlan:
     size: str
     rounds: int
     max_steps: int
+    pipeline: str | None = None
+    profile: str | None = None
 
     @property
     def name(self) -> str:
@@ -31,8 +36,21 @@ class WorldPlan:
         return f"{self.kind}-{self.seed}-{self.size}"
 
 
+def suite_folder(split: str, pipeline: str | None, profile: str | None) -> str:
+    """Name of the folder in which a suite keeps what it plays: of each pipeline and profile its own."""
+    by = pipeline.split("/") if pipeline else []
+    return "-".join([split, *by, *([Path(profile).stem] if profile else [])])
+
+
 def plan_worlds(
-    split: str, worlds: int, rounds: int, max_steps: int, kinds: list[str], sizes: list[str]
+    split: str,
+    worlds: int,
+    rounds: int,
+    max_steps: int,
+    kinds: list[str],
+    sizes: list[str],
+    pipeline: str | None = None,
+    profile: str | None = None,
 ) -> list[WorldPlan]:
     """The first so many worlds of a split.
 
@@ -43,6 +61,8 @@ def plan_worlds(
         max_steps: bound of a round.
         kinds: only these; empty for all.
         sizes: only these; empty for all.
+        pipeline: of the features; None: the default one.
+        profile: rules by which the worlds are explored and played in; None: the default ones.
 
     Raises:
         ValueError: no such split, kind or size.
@@ -51,7 +71,7 @@ def plan_worlds(
         raise ValueError(f"--split must be one of {', '.join(SHARES)}, got {split!r}")
     chosen: Split = split
     fitting = (
-        WorldPlan(kind, seed, size, rounds, max_steps)
+        WorldPlan(kind, seed, size, rounds, max_steps, pipeline, profile)
         for kind, seed, size in worlds_of({chosen}, kinds, sizes)
     )
     return list(islice(fitting, worlds))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from experiments.generated.plan import plan_worlds
+from experiments.generated.plan import plan_worlds, suite_folder
 from simulator.generation.kinds import KINDS
 from simulator.generation.splits import split_of
 
@@ -35,3 +35,18 @@ def test_kinds_and_sizes_can_be_chosen():
 def test_what_there_is_not_is_named(chosen, words):
     with pytest.raises(ValueError, match=words):
         planned(**chosen)
+
+
+def test_what_one_pipeline_has_played_is_kept_apart_from_what_another_has():
+    mine = plan_worlds("validation", 2, 10, 1500, [], [], "sift/equirectangular/topnav-attention", "own.json")
+    assert {(plan.pipeline, plan.profile) for plan in mine} == {
+        ("sift/equirectangular/topnav-attention", "own.json")
+    }
+    asked = [(None, None), ("orb", None), (None, "own.json"), (mine[0].pipeline, mine[0].profile)]
+    folders = [suite_folder("validation", *one) for one in asked]
+    assert folders == [
+        "validation",
+        "validation-orb",
+        "validation-own",
+        "validation-sift-equirectangular-topnav-attention-own",
+    ]
