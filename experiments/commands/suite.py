@@ -41,14 +41,15 @@ def generated(
 
     What is done is kept: a suite that was cut off goes on. Rounds that fail leave a recording each.
     """
-    from experiments.generated.plan import plan_worlds, suite_folder
+    from experiments.generated.plan import plan_worlds
     from experiments.generated.suite import GeneratedSuite, run_generated
+    from experiments.hide_and_seek.plan import folder_of
     from services.launcher.client.run_record import keep_run
 
     started = datetime.now(UTC)
     only = _listed(kinds), _listed(sizes)
     plans = plan_worlds(split, worlds, rounds, max_steps, *only, pipeline, profile)
-    folder = data_dir / "generated" / suite_folder(split, pipeline, profile)
+    folder = data_dir / "generated" / folder_of(split, pipeline, profile)
     chosen = GeneratedSuite(split, plans, folder, jobs, cluster)
     result = run_generated(chosen, json_file)
     keep_run(

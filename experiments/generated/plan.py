@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from itertools import islice
-from pathlib import Path
 
 from simulator.generation.splits import SHARES, Split, worlds_of
 
@@ -34,12 +33,6 @@ class WorldPlan:
     def name(self) -> str:
         """Folder name, unique within a suite."""
         return f"{self.kind}-{self.seed}-{self.size}"
-
-
-def suite_folder(split: str, pipeline: str | None, profile: str | None) -> str:
-    """Name of the folder in which a suite keeps what it plays: of each pipeline and profile its own."""
-    by = pipeline.split("/") if pipeline else []
-    return "-".join([split, *by, *([Path(profile).stem] if profile else [])])
 
 
 def plan_worlds(

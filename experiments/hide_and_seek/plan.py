@@ -14,6 +14,12 @@ MAP_SEED = 1
 """Of every suite's maps: runs of different seeds play on the same ones."""
 
 
+def folder_of(what: str, pipeline: str | None, profile: str | None) -> str:
+    """Name of the folder in which something is kept: of each pipeline and profile its own."""
+    by = pipeline.split("/") if pipeline else []
+    return "-".join([what, *by, *([Path(profile).stem] if profile else [])])
+
+
 @dataclass(frozen=True)
 class MapPlan:
     """A map that rounds are played on.
@@ -31,8 +37,7 @@ class MapPlan:
     @property
     def label(self) -> str:
         """Folder name."""
-        by = self.pipeline.split("/") if self.pipeline else []
-        return "-".join([world_label(self.world), *by, *([Path(self.profile).stem] if self.profile else [])])
+        return folder_of(world_label(self.world), self.pipeline, self.profile)
 
 
 @dataclass(frozen=True)

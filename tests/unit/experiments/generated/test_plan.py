@@ -2,7 +2,8 @@
 
 import pytest
 
-from experiments.generated.plan import plan_worlds, suite_folder
+from experiments.generated.plan import plan_worlds
+from experiments.hide_and_seek.plan import folder_of
 from simulator.generation.kinds import KINDS
 from simulator.generation.splits import split_of
 
@@ -43,7 +44,7 @@ def test_what_one_pipeline_has_played_is_kept_apart_from_what_another_has():
         ("sift/equirectangular/topnav-attention", "own.json")
     }
     asked = [(None, None), ("orb", None), (None, "own.json"), (mine[0].pipeline, mine[0].profile)]
-    folders = [suite_folder("validation", *one) for one in asked]
+    folders = [folder_of("validation", *one) for one in asked]
     assert folders == [
         "validation",
         "validation-orb",
