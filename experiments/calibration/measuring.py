@@ -49,4 +49,4 @@ def of_rendering(result: PairResult, rules: Profile) -> Pair:
     similarity = result.verified if rules.sensing.similarity == "verified" else result.raw
     answered = result.confidence >= CONFIDENCE_MIN
     error_rad = result.verified_errors_rad["epipolar"] if answered else None
-    return Pair(similarity, error_rad, result.distance_m)
+    return Pair(similarity, error_rad, result.distance_m, result.is_free)

@@ -6,7 +6,7 @@ nodes should be?
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -27,6 +27,13 @@ DOUBTFUL_SHARE = 0.05
 """Of bearings that people placed by hand or that commands tell so many may be wrong themselves: of 109 sure
 answers about photographs three differ by 170 degrees, with 93 to 188 matches."""
 
+BLOCKED_SHARE = 0.05
+"""Of edges so many may lead past something: a path of ten then has one in two of three cases none."""
+
+EDGE_TO_NODE = 80 / 110
+"""The thesis's threshold of an edge to that of a new node (section 6.1): nodes that follow each other have an
+edge."""
+
 AT_VIA_PERCENT = 90.0
 """Of the frames near enough to a via point so many are not near enough to a goal."""
 
@@ -42,11 +49,13 @@ class Pair:
         similarity: S as the rules count it: matches that agree with one motion, or all.
         error_rad: of the bearing, None without an answer.
         distance_m: between the two; None where nobody knows.
+        is_free: a robot can drive straight from one to the other, as far as is known.
     """
 
     similarity: int
     error_rad: float | None
     distance_m: float | None = None
+    is_free: bool = True
 
     @property
     def is_wrong(self) -> bool:
@@ -80,7 +89,9 @@ def propose(
     Raises:
         ExperimentError: no pair at those distances; measure more.
     """
-    s_via_min = max(MIN_VIA, _floor(pairs, DOUBTFUL_SHARE if doubtful else 0.0))
+    answers = [pair for pair in pairs if pair.error_rad is not None]
+    wrong_share = DOUBTFUL_SHARE if doubtful else 0.0
+    s_via_min = max(MIN_VIA, _floor(answers, lambda pair: pair.is_wrong, wrong_share))
     s_edge_min = max(math.ceil(SAFETY * s_via_min), max(look_alikes, default=0) + 1)
     found: dict[str, float] = {"s_via_min": s_via_min, "s_edge_min": s_edge_min}
     if all(pair.distance_m is None for pair in pairs):
@@ -102,6 +113,8 @@ def propose_by_count(pairs: Sequence[Pair], spans: Spans, keypoints: int) -> dic
 
     Returns:
         What `propose` returns, and
+        s_edge_min: as there, but of pairs with more one in 20 leads past something at most: to these rules
+            an edge is a free way. No more than that nodes that follow each other still have one.
         s_final: no frame between a reached via point and the next node has more, and of frames at a via point
             one in ten: there are many frames on the last metre, and none is to end the round too early.
         s_slow, s_max: of the velocity law: slower from a reached via point on, as in the thesis (6.1.5).
@@ -110,7 +123,18 @@ def propose_by_count(pairs: Sequence[Pair], spans: Spans, keypoints: int) -> dic
     almost = [pair.similarity for pair in pairs if pair.is_within(spans.near_m, spans.node_m[1])]
     at_via = [pair.similarity for pair in pairs if pair.is_within(0.0, spans.near_m)]
     s_final = max(*almost, math.ceil(float(np.percentile(at_via, AT_VIA_PERCENT))))
-    return {**found, "s_final": s_final, "s_slow": found["s_via_max"], "s_max": keypoints}
+    free = min(
+        _floor(pairs, lambda pair: not pair.is_free, BLOCKED_SHARE),
+        math.floor(EDGE_TO_NODE * found["s_node_max"]),
+    )
+    s_edge_min = max(found["s_edge_min"], free)
+    return {
+        **found,
+        "s_edge_min": s_edge_min,
+        "s_final": s_final,
+        "s_slow": found["s_via_max"],
+        "s_max": keypoints,
+    }
 
 
 def distance_rows(pairs: Sequence[Pair]) -> list[dict[str, float | str]]:
@@ -126,11 +150,10 @@ def distance_rows(pairs: Sequence[Pair]) -> list[dict[str, float | str]]:
     return rows
 
 
-def _floor(pairs: Sequence[Pair], share: float) -> int:
-    """The least number of matches above which at most such a share of the answers is wrong."""
-    answers = sorted((pair for pair in pairs if pair.error_rad is not None), key=lambda pair: pair.similarity)
-    for floor in sorted({0, *(pair.similarity for pair in answers)}):
-        above = [pair.is_wrong for pair in answers if pair.similarity > floor]
+def _floor(pairs: Sequence[Pair], is_bad: Callable[[Pair], bool], share: float) -> int:
+    """The least number of matches above which at most such a share of the pairs is bad."""
+    for floor in sorted({0, *(pair.similarity for pair in pairs)}):
+        above = [is_bad(pair) for pair in pairs if pair.similarity > floor]
         if sum(above) <= share * len(above):
             return floor
     return 0

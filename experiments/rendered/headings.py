@@ -35,6 +35,7 @@ class PairResult:
         verified_errors_rad: heading error by method, from verified matches; None where it gave no heading.
         raw_errors_rad: the same from all matches; epipolar is the same in both.
         yaw_error_rad: None where there is no yaw.
+        is_free: a robot can drive straight from one to the other.
     """
 
     distance_m: float
@@ -46,6 +47,7 @@ class PairResult:
     yaw_error_rad: float | None
     verified_errors_rad: dict[str, float | None]
     raw_errors_rad: dict[str, float | None]
+    is_free: bool = True
 
 
 def measure(
@@ -115,6 +117,7 @@ def judge_pair(
         yaw_error_rad=_error(result.yaw_rad, pair.yaw_rad),
         verified_errors_rad=_errors(pair, current[kept], target[kept], result),
         raw_errors_rad=_errors(pair, current, target, result),
+        is_free=pair.is_free,
     )
 
 

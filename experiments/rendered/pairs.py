@@ -17,10 +17,15 @@ MAX_DRAWS = 10_000
 
 @dataclass(frozen=True)
 class PosePair:
-    """Two poses; the first looks for the way to the second."""
+    """Two poses; the first looks for the way to the second.
+
+    Attributes:
+        is_free: a robot can drive straight from one to the other.
+    """
 
     current: Pose
     target: Pose
+    is_free: bool = True
 
     @property
     def distance_m(self) -> float:
@@ -42,7 +47,7 @@ class PosePair:
 def draw_pairs(
     space: FreeSpace, count: int, rng: np.random.Generator, apart_m: tuple[float, float] = APART_M
 ) -> list[PosePair]:
-    """Pairs whose distance is even in `apart_m`, both ends on free floor, nothing between them."""
+    """Pairs whose distance is even in `apart_m`, both ends on free floor, seeing each other."""
     return [draw_pair(space, rng, float(rng.uniform(*apart_m))) for _ in range(count)]
 
 
@@ -58,5 +63,6 @@ def draw_pair(space: FreeSpace, rng: np.random.Generator, distance_m: float) -> 
         end = (x_m + distance_m * math.cos(bearing), y_m + distance_m * math.sin(bearing))
         if space.is_free(end) and space.line_of_sight((x_m, y_m), end):
             target = Pose(x_m=end[0], y_m=end[1], yaw_rad=other_yaw_rad)
-            return PosePair(Pose(x_m=x_m, y_m=y_m, yaw_rad=yaw_rad), target)
+            is_free = space.is_free_way((x_m, y_m), end)
+            return PosePair(Pose(x_m=x_m, y_m=y_m, yaw_rad=yaw_rad), target, is_free)
     raise ValueError(f"no two free spots {distance_m:.2f} m apart that see each other in {MAX_DRAWS} draws")

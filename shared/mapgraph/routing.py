@@ -27,13 +27,21 @@ FAILURE_M = 2.0
 SUSPENDED_M = 1000.0
 """Cost of an edge that experience speaks against: more than a path across any map, so the last resort."""
 
+WEAK_NODES = 100.0
+"""Nodes that a path may have more to go without an edge too weak for the thesis's rules; chosen: more than
+paths have in a village."""
+
 UNCLEAR_M = 12.0
 """Added to an edge along which no free ground was seen: a detour of so many metres is preferred; chosen."""
 
 
-def fewest_nodes(edge: Edge) -> float:
-    """The thesis's cost: every edge counts one (section 4.1)."""
-    return SUSPENDED_M if edge.suspended else 1.0
+def fewest_nodes(edge: Edge, similarity_min: int = -1) -> float:
+    """The thesis's cost: every edge counts one (section 4.1).
+
+    One of no more than `similarity_min` raw matches is none by its rules (equation 4.1): in a map that others
+    made it comes after all that are, and before suspended ones.
+    """
+    return 1.0 + SUSPENDED_M * edge.suspended + WEAK_NODES * (edge.raw_matches <= similarity_min)
 
 
 def way_m(graph: MapGraph, edge: Edge) -> float:

@@ -94,6 +94,14 @@ class FreeSpace:
         path = self.shortest_path(start, goal)
         return sum(math.dist(a, b) for a, b in pairwise(path)) if path else math.inf
 
+    def is_free_way(self, a: Point, b: Point) -> bool:
+        """Whether the robot's centre can go straight from one point to another."""
+        count = max(2, math.ceil(math.dist(a, b) / (self.resolution_m / 2)))
+        return all(
+            self.is_free((a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])))
+            for t in np.linspace(0.0, 1.0, count + 1)
+        )
+
     def in_view(self, a: Point, b: Point) -> bool:
         """Whether pictures of two points show the same: a table or a chair between them is looked over."""
         return self.line_of_sight(a, b) or self.line_of_sight(a, b, CAMERA_M + LOOKED_OVER_M)
@@ -114,18 +122,11 @@ class FreeSpace:
         kept, k = [path[0]], 0
         while k < len(path) - 1:
             ahead = len(path) - 1
-            while ahead > k + 1 and not self._clear(path[k], path[ahead]):
+            while ahead > k + 1 and not self.is_free_way(path[k], path[ahead]):
                 ahead -= 1
             kept.append(path[ahead])
             k = ahead
         return kept
-
-    def _clear(self, a: Point, b: Point) -> bool:
-        count = max(2, math.ceil(math.dist(a, b) / (self.resolution_m / 2)))
-        return all(
-            self.is_free((a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])))
-            for t in np.linspace(0.0, 1.0, count + 1)
-        )
 
 
 def free_space(

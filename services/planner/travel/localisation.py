@@ -15,9 +15,22 @@ from shared.mapgraph.rules import Limits
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
 
+LESS_SIMILAR_NODES = 1e6
+"""Nodes that a path may have more to go from a more similar start; chosen: more than any has."""
+
 
 def starts_in_sight(matches: Matches, graph: MapGraph, ranges: Ranges, profile: Profile) -> dict[int, float]:
-    """Nodes that the robot can drive to from here, with the cost of the way there."""
+    """Nodes that the robot can drive to from here, with the cost of the way there.
+
+    The thesis sets out from the most similar one (section 4.1): the next comes where no way leads on from it.
+    """
+    if profile.travel.path_cost == "nodes":
+        known = [
+            n
+            for n, match in ranked(matches, profile)
+            if similarity(match, profile) > profile.travel.s_via_min
+        ]
+        return {node: LESS_SIMILAR_NODES * rank for rank, node in enumerate(known)}
     clear = {node for node, match in matches.items() if is_clear(match, graph, ranges, profile)}
     return reachable_nodes(matches, graph, profile, profile.travel.s_via_min, clear)
 
@@ -96,4 +109,6 @@ def in_sight(match: NodeMatch, graph: MapGraph, ranges: Ranges, profile: Profile
 
 def edge_cost(graph: MapGraph, profile: Profile) -> EdgeCost:
     """The cost of an edge by the profile."""
-    return fewest_nodes if profile.travel.path_cost == "nodes" else partial(way_m, graph)
+    if profile.travel.path_cost == "nodes":
+        return partial(fewest_nodes, similarity_min=profile.mapping.s_edge_min)
+    return partial(way_m, graph)

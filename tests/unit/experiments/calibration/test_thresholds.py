@@ -1,6 +1,7 @@
 """Thresholds proposed from hand-made pairs."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -63,3 +64,16 @@ def test_rules_that_stop_by_count_stop_where_no_frame_further_off_looks_as_much_
         "s_slow": 124,
         "s_max": 150,
     }
+
+
+def test_rules_to_which_every_edge_is_a_way_want_one_in_twenty_shut_at_most():
+    open_ways = [pair(0.6, 100), *(pair(2.0, 60) for _ in range(40))]
+    shut = [replace(pair(2.0, n), is_free=False) for n in (30, 40, 70, 71)]
+    near = [pair(0.3, 140)]
+    assert propose_by_count([*near, *open_ways, *shut], Spans(), keypoints=150)["s_edge_min"] == 40
+
+
+def test_nodes_that_follow_each_other_keep_their_edge_however_many_ways_are_shut():
+    pairs = [pair(0.3, 140), *(replace(pair(0.6, 110), is_free=False) for _ in range(3))]
+    assert propose_by_count(pairs, Spans(), keypoints=150)["s_edge_min"] == 80
+    assert propose(pairs, Spans())["s_edge_min"] == 20

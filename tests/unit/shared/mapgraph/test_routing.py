@@ -67,6 +67,20 @@ def test_suspended_edge_is_the_last_resort(by_length):
         assert plan_path(flat, {0: 0.0}, {1: 0.0}, cost) == way
 
 
+def test_to_the_thesiss_rules_an_edge_of_too_few_matches_is_the_last_resort_but_for_suspended_ones():
+    nodes = [Node(node_id=n) for n in range(4)]
+    weak = Edge(a=0, b=3, raw_matches=80, inliers=80)
+    strong = [Edge(a=n, b=n + 1, raw_matches=81, inliers=20) for n in range(3)]
+    cost = partial(fewest_nodes, similarity_min=80)
+    suspended = strong[1].model_copy(update={"suspended": True})
+    for edges, way in (
+        ([weak, *strong], [0, 1, 2, 3]),
+        ([weak, strong[0], suspended, strong[2]], [0, 3]),
+        ([weak], [0, 3]),
+    ):
+        assert plan_path(MapGraph(nodes, edges), {0: 0.0}, {3: 0.0}, cost) == way
+
+
 def test_an_edge_of_infinite_cost_is_no_way():
     assert plan_path(graph([(0, 1)]), {0: 0.0}, {1: 0.0}, lambda _edge: math.inf) == []
 
