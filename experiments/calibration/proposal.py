@@ -7,14 +7,14 @@ from typing import Any
 
 from experiments.calibration.measuring import of_rendering
 from experiments.calibration.recordings import pairs_of_recording
-from experiments.calibration.thresholds import Pair, distance_rows, propose, propose_by_count
+from experiments.calibration.thresholds import Pair, distance_rows, longest_edge_m, propose, propose_by_count
 from experiments.calibration.tours import pairs_of_tours
 from experiments.photographs.tours import read_tours
 from experiments.rendered.features import Tick
 from experiments.rendered.headings import measure
 from experiments.rendered.tables import distance_table
 from services.features.pipeline.pipeline import Pipeline
-from services.launcher.client.environments import Spans
+from services.launcher.client.environments import INDOOR, Spans
 from services.launcher.client.failure import ExperimentError
 from services.planner.profiles import Profile
 from simulator.world.world_file import load_world
@@ -92,6 +92,9 @@ def of_world(asked: Asked, world: str, data_dir: Path) -> Proposal:
     found = [of_rendering(result, asked.rules) for result in results]
     if asked.rules.sensing.similarity == "verified":
         thresholds = propose(found, asked.spans)
+        if asked.spans == INDOOR.spans:
+            keypoints = asked.pipeline.profile.keypoints
+            thresholds["edge_longest_m"] = longest_edge_m(found, asked.spans, keypoints)
     else:
         thresholds = propose_by_count(found, asked.spans, asked.pipeline.profile.keypoints)
     return Proposal(found, thresholds, distance_table(results))

@@ -6,6 +6,7 @@ nodes should be?
 """
 
 import math
+import statistics
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -16,6 +17,8 @@ from experiments.rendered.tables import BINS_M
 from services.launcher.client.environments import Spans
 from services.launcher.client.failure import ExperimentError
 from services.launcher.terminal.output import rounded
+from services.planner.profiles import MappingRules
+from shared.mapgraph.local.view_range import ROOM_HALF_M, half_told_m
 
 WRONG_RAD = math.radians(20.0)
 """As far as the bearing of an edge may be off (services/launcher/evaluation/map_quality.py)."""
@@ -135,6 +138,23 @@ def propose_by_count(pairs: Sequence[Pair], spans: Spans, keypoints: int) -> dic
         "s_slow": found["s_via_max"],
         "s_max": keypoints,
     }
+
+
+def longest_edge_m(pairs: Sequence[Pair], spans: Spans, keypoints: int) -> float:
+    """The bound on edges in a room, for a pipeline whose views carry as far as in these pairs of one.
+
+    In a hall edges may be longer, by as much as views carry further there than the default pipeline's do in a
+    room: a pipeline that sees further takes the room for a hall, and views past corners for edges.
+
+    Args:
+        pairs: of verified matches, in a room.
+        spans: distances between nodes.
+        keypoints: of a picture.
+    """
+    near = [pair for pair in pairs if pair.is_within(*spans.node_m)]
+    carries = [half_told_m(pair.distance_m or 0.0, pair.similarity, keypoints) for pair in near]
+    bound_m: float = MappingRules().edge_longest_m
+    return round(bound_m * min(1.0, ROOM_HALF_M / statistics.median(carries)), 2)
 
 
 def distance_rows(pairs: Sequence[Pair]) -> list[dict[str, float | str]]:

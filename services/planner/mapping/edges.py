@@ -5,8 +5,8 @@ A match becomes an edge when
 1. its similarity is above s_edge_min and two-view geometry is sure of its bearing (`_admitted`),
 2. it is the node the robot came from; or the bearing is surer still and what agrees is not far away
    (`_is_credible`),
-3. the node lies where the frame sees it and not too far for an edge, as far as the robot knows what it did
-   (`reach`),
+3. the node lies where the frame sees it and not too far for an edge, the less so where no ground was seen
+   free, as far as the robot knows what it did (`reach`),
 4. one motion alone explains it (`is_ambiguous`),
 5. a neighbour supports it where it would close a loop, and its neighbours do not contradict it
    (`shared.mapgraph.cycle_consistency`).
@@ -83,13 +83,15 @@ def judge_edges(
     """
     driven_from = here.node_id if here is not None else None
     known = {n: m for n, m in matches.items() if n in graph.nodes}
-    away = no_edges(graph, known, here, profile)
-    similar = {n: m for n, m in known.items() if n not in away and _admitted(m, profile)}
-    clear = frozenset(
+    alike = {n: m for n, m in known.items() if _admitted(m, profile)}
+    free = {
         n
-        for n, m in similar.items()
+        for n, m in alike.items()
         if is_clear(m, graph, observation.ranges, profile) or is_clear_from(graph.nodes[n], m, graph, profile)
-    )
+    }
+    away = no_edges(graph, known, here, profile, known.keys() - free)
+    similar = {n: m for n, m in alike.items() if n not in away}
+    clear = frozenset(free & similar.keys())
     credible = {n: m for n, m in similar.items() if n == driven_from or _is_credible(m, profile)}
     refused = {} if profile.sensing.similarity == "raw" else _refused(graph, credible, driven_from)
     admitted = {n: m for n, m in credible.items() if n not in refused}

@@ -1,7 +1,7 @@
 """Which nodes a frame can be looking at, by what the robot did since the last one. Pure."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 from services.planner.heading.choose import CONFIDENCE_MIN as HEADING_CONFIDENCE_MIN
 from services.planner.ports import Matches
@@ -43,13 +43,21 @@ def elsewhere(
 
 
 def no_edges(
-    graph: MapGraph, matches: Matches, here: Displacement | None, profile: Profile
+    graph: MapGraph,
+    matches: Matches,
+    here: Displacement | None,
+    profile: Profile,
+    hidden: Collection[int],
 ) -> dict[int, str]:
-    """Nodes of the whole map that lie elsewhere than the frame claims or too far for an edge, and why."""
+    """Nodes of the whole map that lie elsewhere than the frame claims or too far for an edge, and why.
+
+    Of those that are `hidden`, with no free ground seen up to there, it is enough to lie too far by all
+    that is known: the view is one past a corner.
+    """
     if here is None or profile.sensing.similarity == "raw":
         return {}
     longest_m = profile.mapping.edge_longest_m * openness(graph, here.node_id) or math.inf
-    return out_of_reach(graph, claims(graph, matches, profile), here, longest_m=longest_m)
+    return out_of_reach(graph, claims(graph, matches, profile), here, longest_m=longest_m, hidden=hidden)
 
 
 def nodes_nearby(graph: MapGraph, here: Displacement | None, profile: Profile, count: int) -> list[int]:

@@ -6,7 +6,7 @@ well it resembles, that is out of reach; and yaws round a loop must close.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import numpy as np
 import numpy.typing as npt
@@ -47,6 +47,7 @@ def out_of_reach(
     here: Displacement,
     most: int | None = None,
     longest_m: float = math.inf,
+    hidden: Collection[int] = (),
 ) -> dict[int, str]:
     """Nodes that lie elsewhere than the frame claims, and why.
 
@@ -57,6 +58,7 @@ def out_of_reach(
         most: nodes of the map reckoned with; of those further off nothing is known, and none is refused.
             None: the whole map, the nearest LOOP_NODES together and others by the ways that lead to them.
         longest_m: what surely lies further away is elsewhere, too.
+        hidden: of these what does so by the best estimate is.
     """
     if here.node_id not in graph.nodes or not claims:
         return {}
@@ -64,7 +66,9 @@ def out_of_reach(
     if most is None and (further := claims.keys() - poses.keys()):
         poses |= poses_by_ways(graph, here.node_id, further)
     judged = {
-        node: _contradiction(poses[node], c, here, longest_m) for node, c in claims.items() if node in poses
+        node: _contradiction(poses[node], c, here, longest_m, 0.0 if node in hidden else STDS)
+        for node, c in claims.items()
+        if node in poses
     }
     return {node: f"node {node} {why}" for node, why in judged.items() if why}
 
@@ -110,8 +114,13 @@ def hanging_apart(graph: MapGraph, claims: Mapping[int, Claim], here: Displaceme
     return apart
 
 
-def _contradiction(pose: RelativePose, claim: Claim, here: Displacement, longest_m: float) -> str:
-    """Why the node cannot be where the frame sees it; "" when it can."""
+def _contradiction(
+    pose: RelativePose, claim: Claim, here: Displacement, longest_m: float, stds: float
+) -> str:
+    """Why the node cannot be where the frame sees it; "" when it can.
+
+    It is too far when it lies beyond `longest_m` by so many standard deviations.
+    """
     yaw_miss = abs(math.remainder(here.yaw_rad + claim.yaw_rad - pose.yaw_rad, math.tau))
     if yaw_miss > YAW_RAD + STDS * math.hypot(pose.yaw_std_rad, here.yaw_std_rad):
         return f"would be turned by {math.degrees(yaw_miss):.0f} degrees: yaws round the loop do not close"
@@ -121,7 +130,7 @@ def _contradiction(pose: RelativePose, claim: Claim, here: Displacement, longest
     if claim.heading_rad is None:
         spread_m = math.hypot(SPOT_M, _std(covariance, gap / max(far_m, 1e-6)))
         return f"is {far_m:.1f} m from here, seen as this very spot" if far_m > STDS * spread_m else ""
-    if far_m - STDS * _std(covariance, gap / max(far_m, 1e-6)) > longest_m:
+    if far_m - stds * _std(covariance, gap / max(far_m, 1e-6)) > longest_m:
         return f"is {far_m:.1f} m from here: too far"
     angle_rad = here.yaw_rad + claim.heading_rad
     along = np.array([math.cos(angle_rad), math.sin(angle_rad)])

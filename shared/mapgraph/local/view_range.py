@@ -21,6 +21,8 @@ ROOM_HALF_M = 0.32
 """In a furnished flat, the shortest of the places measured: a robot that knows nothing yet starts careful."""
 FULL_SHARE = 0.9
 """Of its keypoints that a picture matches at its very spot."""
+MOST_SHARE = 0.95
+"""Of these matches: a share of all would mean that views carry without end."""
 LEAST_M = 0.02
 """Nothing is nearer: matches are lost to noise as well."""
 SHORTEST_M = 0.3
@@ -46,6 +48,12 @@ def match_length_m(inliers: int, keypoints: int, half_m: float) -> float:
     """
     share = min(1.0, max(inliers, 1) / max(FULL_SHARE * keypoints, 1.0))
     return max(LEAST_M, half_m * (1.0 / share - 1.0))
+
+
+def half_told_m(length_m: float, inliers: int, keypoints: int) -> float:
+    """The distance at which half of the matches are lost, as two pictures so far apart tell it."""
+    share = min(MOST_SHARE, inliers / max(FULL_SHARE * keypoints, 1.0))
+    return length_m * share / (1.0 - share) if share > 0.0 else math.inf
 
 
 def half_m(graph: MapGraph, node_id: int | None = None) -> float:
@@ -89,9 +97,8 @@ def _driven(graph: MapGraph, near: list[int] | None) -> list[Edge]:
 
 
 def _told_by(graph: MapGraph, edge: Edge) -> float:
-    share = min(0.95, edge.inliers / max(FULL_SHARE * _keypoints(graph, edge), 1.0))
     assert edge.length_m is not None
-    return edge.length_m * share / (1.0 - share) if share > 0.0 else math.inf
+    return half_told_m(edge.length_m, edge.inliers, _keypoints(graph, edge))
 
 
 def keypoints_of(graph: MapGraph, node_id: int) -> int:

@@ -43,7 +43,7 @@ def asked(rules):
 @pytest.mark.parametrize(
     ("rules", "names"),
     [
-        (DEFAULT, {"s_via_min", "s_edge_min", "s_node_max", "s_via_max"}),
+        (DEFAULT, {"s_via_min", "s_edge_min", "s_node_max", "s_via_max", "edge_longest_m"}),
         (THESIS, {"s_via_min", "s_edge_min", "s_node_max", "s_via_max", "s_final", "s_slow", "s_max"}),
     ],
 )

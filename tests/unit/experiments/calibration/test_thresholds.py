@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from experiments.calibration.thresholds import Pair, propose, propose_by_count
+from experiments.calibration.thresholds import Pair, longest_edge_m, propose, propose_by_count
 from services.launcher.client.environments import Spans
 from services.launcher.client.failure import ExperimentError
 
@@ -77,3 +77,10 @@ def test_nodes_that_follow_each_other_keep_their_edge_however_many_ways_are_shut
     pairs = [pair(0.3, 140), *(replace(pair(0.6, 110), is_free=False) for _ in range(3))]
     assert propose_by_count(pairs, Spans(), keypoints=150)["s_edge_min"] == 80
     assert propose(pairs, Spans())["s_edge_min"] == 20
+
+
+@pytest.mark.parametrize(("carries_m", "bound_m"), [(0.48, 2.0), (0.32, 3.0), (0.2, 3.0)])
+def test_with_a_pipeline_that_sees_further_edges_of_a_room_are_no_longer(carries_m, bound_m):
+    """So many times longer as it takes the room to be larger, and never longer than with the default one."""
+    pairs = [pair(d, round(270 / (1 + d / carries_m))) for d in (0.5, 0.6, 0.7, 0.8)]
+    assert longest_edge_m([*pairs, pair(2.5, 200)], Spans(), 300) == pytest.approx(bound_m, rel=0.02)

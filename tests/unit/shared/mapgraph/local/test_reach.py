@@ -35,6 +35,12 @@ def test_what_surely_lies_too_far_away_is_refused():
     assert not out_of_reach(GRAPH, {4: claim(3.5, 0.0)}, HERE, longest_m=3.4), "not surely"
 
 
+def test_with_no_free_ground_seen_up_to_it_a_node_that_likely_lies_too_far_away_is_refused():
+    seen = {3: claim(2.5, 0.0), 4: claim(3.5, 0.0)}
+    assert set(out_of_reach(GRAPH, seen, HERE, longest_m=3.4, hidden={3, 4})) == {4}
+    assert not out_of_reach(GRAPH, seen, HERE, hidden={3, 4})
+
+
 def test_what_is_seen_on_the_wrong_side_is_out_of_reach():
     assert refused({2: claim(-1.5, 0.0)}) == {2}
 
