@@ -43,6 +43,6 @@ class DriveSettings(ServiceSettings):
         profiles = {
             "default": DriveLimits(base=base),
             "thesis": DriveLimits(base=base, avoidance="momentary", speeds=INDOOR),
-            "thesis_outdoor": DriveLimits(base=base, avoidance="momentary", obstacle_range_m=1.5),
+            "thesis_outdoor": DriveLimits(base=base, avoidance="momentary", obstacle_range_m=1.0),
         }
         return profiles[self.profile]

@@ -27,21 +27,27 @@ FAILURE_M = 2.0
 SUSPENDED_M = 1000.0
 """Cost of an edge that experience speaks against: more than a path across any map, so the last resort."""
 
-WEAK_NODES = 100.0
-"""Nodes that a path may have more to go without an edge too weak for the thesis's rules; chosen: more than
-paths have in a village."""
+UNCROSSABLE_NODES = 100.0
+"""Nodes that a path may have more without an edge that is none to the thesis; chosen: more than paths have in
+a village."""
 
 UNCLEAR_M = 12.0
 """Added to an edge along which no free ground was seen: a detour of so many metres is preferred; chosen."""
 
 
-def fewest_nodes(edge: Edge, similarity_min: int = -1) -> float:
-    """The thesis's cost: every edge counts one (section 4.1).
+def fewest_nodes(edge: Edge) -> float:
+    """The thesis's cost: every edge counts one (section 4.1)."""
+    return 1.0 + SUSPENDED_M * edge.suspended
 
-    One of no more than `similarity_min` raw matches is none by its rules (equation 4.1): in a map that others
-    made it comes after all that are, and before suspended ones.
+
+def fewest_crossable(edge: Edge, similarity_min: int) -> float:
+    """The same for a map that other rules may have made.
+
+    To the thesis an edge is a crossable path (section 1.1) of more than `similarity_min` matches (equation
+    4.1). One over ground that nobody saw free, or of fewer, comes after all that are, and before suspended ones.
     """
-    return 1.0 + SUSPENDED_M * edge.suspended + WEAK_NODES * (edge.raw_matches <= similarity_min)
+    crossable = edge.raw_matches > similarity_min and (edge.clear or edge.traversals > 0)
+    return fewest_nodes(edge) + (0.0 if crossable else UNCROSSABLE_NODES)
 
 
 def way_m(graph: MapGraph, edge: Edge) -> float:

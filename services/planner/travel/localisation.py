@@ -10,7 +10,7 @@ from services.planner.surroundings import is_clear, length_m
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.keep_clear import clear_nodes, keep_clear
-from shared.mapgraph.routing import HOP_M, UNSEEN_GROUND, EdgeCost, fewest_nodes, way_m
+from shared.mapgraph.routing import HOP_M, UNSEEN_GROUND, EdgeCost, fewest_crossable, way_m
 from shared.mapgraph.rules import Limits
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
@@ -110,5 +110,5 @@ def in_sight(match: NodeMatch, graph: MapGraph, ranges: Ranges, profile: Profile
 def edge_cost(graph: MapGraph, profile: Profile) -> EdgeCost:
     """The cost of an edge by the profile."""
     if profile.travel.path_cost == "nodes":
-        return partial(fewest_nodes, similarity_min=profile.mapping.s_edge_min)
+        return partial(fewest_crossable, similarity_min=profile.mapping.s_edge_min)
     return partial(way_m, graph)

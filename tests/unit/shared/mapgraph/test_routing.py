@@ -9,7 +9,7 @@ import pytest
 
 from shared.mapgraph.edge_ends import edge_between
 from shared.mapgraph.graph import MapGraph
-from shared.mapgraph.routing import fewest_nodes, plan_path, way_m
+from shared.mapgraph.routing import fewest_crossable, fewest_nodes, plan_path, way_m
 from shared.messages.maps import DeleteNode, Edge, Node, PutEdge
 
 
@@ -67,18 +67,22 @@ def test_suspended_edge_is_the_last_resort(by_length):
         assert plan_path(flat, {0: 0.0}, {1: 0.0}, cost) == way
 
 
-def test_to_the_thesiss_rules_an_edge_of_too_few_matches_is_the_last_resort_but_for_suspended_ones():
+@pytest.mark.parametrize("change", [{"raw_matches": 80}, {"clear": False}])
+def test_an_edge_that_is_none_to_the_thesis_is_the_last_resort_but_for_suspended_ones(change):
+    """Of too few matches, or over ground that nobody saw free."""
     nodes = [Node(node_id=n) for n in range(4)]
-    weak = Edge(a=0, b=3, raw_matches=80, inliers=80)
-    strong = [Edge(a=n, b=n + 1, raw_matches=81, inliers=20) for n in range(3)]
-    cost = partial(fewest_nodes, similarity_min=80)
-    suspended = strong[1].model_copy(update={"suspended": True})
-    for edges, way in (
-        ([weak, *strong], [0, 1, 2, 3]),
-        ([weak, strong[0], suspended, strong[2]], [0, 3]),
-        ([weak], [0, 3]),
+    way = [Edge(a=n, b=n + 1, raw_matches=81, inliers=20, clear=True) for n in range(3)]
+    across = Edge(a=0, b=3, raw_matches=90, inliers=80, clear=True).model_copy(update=change)
+    suspended = way[1].model_copy(update={"suspended": True})
+    driven = across.model_copy(update={"raw_matches": 81, "traversals": 1})
+    cost = partial(fewest_crossable, similarity_min=80)
+    for edges, path in (
+        ([across, *way], [0, 1, 2, 3]),
+        ([across, way[0], suspended, way[2]], [0, 3]),
+        ([across], [0, 3]),
+        ([driven, *way], [0, 3]),
     ):
-        assert plan_path(MapGraph(nodes, edges), {0: 0.0}, {3: 0.0}, cost) == way
+        assert plan_path(MapGraph(nodes, edges), {0: 0.0}, {3: 0.0}, cost) == path
 
 
 def test_an_edge_of_infinite_cost_is_no_way():
