@@ -44,7 +44,7 @@ def fewest_crossable(edge: Edge, similarity_min: int) -> float:
     """The same for a map that other rules may have made.
 
     To the thesis an edge is a crossable path (section 1.1) of more than `similarity_min` matches (equation
-    4.1). One over ground that nobody saw free, or of fewer, comes after all that are, and before suspended ones.
+    4.1). One over ground that nobody saw free, or of fewer, comes after all that are.
     """
     crossable = edge.raw_matches > similarity_min and (edge.clear or edge.traversals > 0)
     return fewest_nodes(edge) + (0.0 if crossable else UNCROSSABLE_NODES)
