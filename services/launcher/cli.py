@@ -4,6 +4,7 @@ A command module imports only typer and its options at its top, and its work in 
 must not wait for zenoh, torch or matplotlib.
 """
 
+import os
 import sys
 from collections.abc import Iterable
 from importlib.metadata import EntryPoint, entry_points
@@ -107,6 +108,9 @@ add_commands(app, entry_points(group=ADDED))
 
 def main() -> None:
     """Run a command; what users can mend is one line on standard error and exit 1."""
+    # For commands that load torch: its threads wait by spinning, and beside one busy process a network takes
+    # five times as long.
+    os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
     try:
         app()  # reports wrong options itself and raises SystemExit
     except KeyboardInterrupt:

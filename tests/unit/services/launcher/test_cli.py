@@ -1,5 +1,6 @@
 """The commands of `topnav`: its own, those of other distributions, and those that are not to be had."""
 
+import os
 import subprocess
 import sys
 from importlib.metadata import EntryPoint
@@ -95,3 +96,19 @@ def test_the_list_of_commands_loads_nothing_heavy():
     code = "import sys; from services.launcher import cli; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert not {name.partition(".")[0] for name in loaded.split()} & HEAVY
+
+
+LEARNED = """
+import services.launcher.cli as command
+command.app = lambda: __import__("torch")
+command.main()
+"""
+
+
+def test_threads_of_a_command_that_loads_torch_do_not_spin(repository):
+    plain = {name: value for name, value in os.environ.items() if not name.startswith("OMP_")}
+    told = {**plain, "OMP_DISPLAY_ENV": "VERBOSE"}  # the library says what it has read
+    run = subprocess.run(
+        [sys.executable, "-c", LEARNED], cwd=repository, env=told, capture_output=True, check=True, text=True
+    )
+    assert "GOMP_SPINCOUNT = '0'" in run.stderr
