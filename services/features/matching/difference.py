@@ -23,8 +23,8 @@ PATCH_PX = 9
 """Side of the patches in which a difference is averaged; chosen: 13 degrees, a picture on a wall 2 m away."""
 BLUR_PX = 1.0
 """Standard deviation of a blur before pictures are compared: edges fall on pixels differently from spot to
-spot. Of 12 spots in three development hostels, each seen from 1 to 5 cm beside it, the other three rooms differ
-3.6 times as much and more, 10.8 at the median; 1.6 and 3.2 without it, more than 1 px gains little."""
+spot. Of 12 spots in three development hostels, each seen from 1 to 5 cm beside it, the other three rooms
+differ 3.6 times as much and more, 11 at the median; 1.6 and 3.2 without it. More than 1 px gains little."""
 LARGEST_SHARE = 0.01
 """Share of the view that differs most and counts; chosen: a picture on a wall."""
 CROP_DEG = 45.0

@@ -28,12 +28,12 @@ def test_equal_matches_leave_a_rival():
 
 
 def test_a_place_that_differs_by_more_than_chance_is_excluded_though_it_has_more_matches():
-    seen = evidence(Visit(180, 0.8), EQUAL, here=[25.0, 9.0, 14.0], there=[40.0, 23.0])
+    seen = evidence(Visit(180, 0.8), EQUAL, here=[25.0, 9.0, 14.0], there=[40.0, 28.0])
     assert (seen.best(), seen.rivals()) == (HERE, [])
 
 
 def test_equal_rooms_differ_by_chance_and_stay_rivals():
-    seen = evidence(EQUAL, Visit(195, 0.86), here=[9.0], there=[17.0])
+    seen = evidence(EQUAL, Visit(195, 0.86), here=[9.0], there=[26.0])
     assert seen.rivals() == [THERE]
 
 
