@@ -33,7 +33,7 @@ def test_a_place_that_differs_by_more_than_chance_is_excluded_though_it_has_more
 
 
 def test_equal_rooms_differ_by_chance_and_stay_rivals():
-    seen = evidence(EQUAL, Visit(195, 0.86), here=[9.0], there=[26.0])
+    seen = evidence(EQUAL, Visit(195, 0.86), here=[9.0], there=[22.0])
     assert seen.rivals() == [THERE]
 
 
