@@ -93,8 +93,8 @@ def of_world(asked: Asked, world: str, data_dir: Path) -> Proposal:
     if asked.rules.sensing.similarity == "verified":
         thresholds = propose(found, asked.spans)
         if asked.spans == INDOOR.spans:
-            keypoints = asked.pipeline.profile.keypoints
-            thresholds["edge_longest_m"] = longest_edge_m(found, asked.spans, keypoints)
+            keypoints, bound_m = asked.pipeline.profile.keypoints, asked.rules.mapping.edge_longest_m
+            thresholds["edge_longest_m"] = longest_edge_m(found, asked.spans, keypoints, bound_m)
     else:
         thresholds = propose_by_count(found, asked.spans, asked.pipeline.profile.keypoints)
     return Proposal(found, thresholds, distance_table(results))

@@ -17,7 +17,6 @@ from experiments.rendered.tables import BINS_M
 from services.launcher.client.environments import Spans
 from services.launcher.client.failure import ExperimentError
 from services.launcher.terminal.output import rounded
-from services.planner.profiles import MappingRules
 from shared.mapgraph.local.view_range import ROOM_HALF_M, half_told_m
 
 WRONG_RAD = math.radians(20.0)
@@ -31,7 +30,7 @@ DOUBTFUL_SHARE = 0.05
 answers about photographs three differ by 170 degrees, with 93 to 188 matches."""
 
 BLOCKED_SHARE = 0.05
-"""Of edges so many may lead past something: a path of ten then has one in two of three cases none."""
+"""Of edges so many may lead past something: of paths of ten, six in ten then have no such edge."""
 
 EDGE_TO_NODE = 80 / 110
 """The thesis's threshold of an edge to that of a new node (section 6.1): nodes that follow each other have an
@@ -140,7 +139,7 @@ def propose_by_count(pairs: Sequence[Pair], spans: Spans, keypoints: int) -> dic
     }
 
 
-def longest_edge_m(pairs: Sequence[Pair], spans: Spans, keypoints: int) -> float:
+def longest_edge_m(pairs: Sequence[Pair], spans: Spans, keypoints: int, bound_m: float) -> float:
     """The bound on edges in a room, for a pipeline whose views carry as far as in these pairs of one.
 
     In a hall edges may be longer, by as much as views carry further there than the default pipeline's do in a
@@ -150,10 +149,10 @@ def longest_edge_m(pairs: Sequence[Pair], spans: Spans, keypoints: int) -> float
         pairs: of verified matches, in a room.
         spans: distances between nodes.
         keypoints: of a picture.
+        bound_m: for the default pipeline; 0 is none.
     """
     near = [pair for pair in pairs if pair.is_within(*spans.node_m)]
     carries = [half_told_m(pair.distance_m or 0.0, pair.similarity, keypoints) for pair in near]
-    bound_m: float = MappingRules().edge_longest_m
     return round(bound_m * min(1.0, ROOM_HALF_M / statistics.median(carries)), 2)
 
 

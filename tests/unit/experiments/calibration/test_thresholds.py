@@ -83,4 +83,6 @@ def test_nodes_that_follow_each_other_keep_their_edge_however_many_ways_are_shut
 def test_with_a_pipeline_that_sees_further_edges_of_a_room_are_no_longer(carries_m, bound_m):
     """So many times longer as it takes the room to be larger, and never longer than with the default one."""
     pairs = [pair(d, round(270 / (1 + d / carries_m))) for d in (0.5, 0.6, 0.7, 0.8)]
-    assert longest_edge_m([*pairs, pair(2.5, 200)], Spans(), 300) == pytest.approx(bound_m, rel=0.02)
+    pairs.append(pair(2.5, 200))
+    assert longest_edge_m(pairs, Spans(), 300, 3.0) == pytest.approx(bound_m, rel=0.02)
+    assert longest_edge_m(pairs, Spans(), 300, 0.0) == 0.0, "where edges may be of any length they still may"
