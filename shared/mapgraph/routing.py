@@ -46,13 +46,13 @@ def fewest_crossable(edge: Edge, similarity_min: int) -> float:
     To the thesis an edge is a crossable path (section 1.1) of more than `similarity_min` matches (equation
     4.1). One over ground that nobody saw free, or of fewer, comes after all that are.
     """
-    crossable = edge.raw_matches > similarity_min and (edge.clear or edge.traversals > 0)
+    crossable = edge.raw_matches > similarity_min and _is_free(edge)
     return fewest_nodes(edge) + (0.0 if crossable else UNCROSSABLE_NODES)
 
 
 def way_m(graph: MapGraph, edge: Edge) -> float:
     """Length of an edge in metres, with what speaks against it; prefers edges driven or seen free."""
-    trust = 1.0 if edge.traversals or edge.clear else UNSEEN_GROUND
+    trust = 1.0 if _is_free(edge) else UNSEEN_GROUND
     failed_m = FAILURE_M * edge.failures + SUSPENDED_M * edge.suspended
     return trust * edge_length_m(graph, edge) + HOP_M + failed_m
 
@@ -98,6 +98,11 @@ def metres_to(graph: MapGraph, node_id: int, limits: Limits = NO_LIMITS) -> dict
         return edge_length_m(graph, edge) + SUSPENDED_M * edge.suspended
 
     return _to_targets(graph, {node_id: 0.0}, length_m, limits)[0]
+
+
+def _is_free(edge: Edge) -> bool:
+    """Whether somebody has driven along an edge or seen free ground there."""
+    return edge.clear or edge.traversals > 0
 
 
 def _to_targets(

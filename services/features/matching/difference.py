@@ -46,7 +46,7 @@ def difference(current: bytes, target: bytes, yaw_rad: float) -> float | None:
     if here is None or there is None:
         return None
     turned = np.roll(there, -round(yaw_rad / math.tau * WIDTH_PX), axis=1)
-    wide = _beyond_the_seam(here), _beyond_the_seam(turned)
+    wide = _blurred(_beyond_the_seam(here)), _blurred(_beyond_the_seam(turned))
     left = np.minimum(_unexplained(*wide), _unexplained(*reversed(wide)))[:, OVERLAP_PX:-OVERLAP_PX]
     grid = EquirectGrid.cropped(WIDTH_PX, HEIGHT_PX, CROP_DEG)
     latitude_rad = grid.lonlat_from_pixels(pixel_centres(1, grid.height))[..., 1]
@@ -79,7 +79,11 @@ def _decoded(jpeg: bytes) -> Picture | None:
 
 def _beyond_the_seam(picture: Picture) -> Picture:
     wide = cv2.copyMakeBorder(picture, 0, 0, OVERLAP_PX, OVERLAP_PX, cv2.BORDER_WRAP)
-    return np.asarray(cv2.GaussianBlur(wide, (0, 0), BLUR_PX), np.uint8)
+    return np.asarray(wide, np.uint8)
+
+
+def _blurred(picture: Picture) -> Picture:
+    return np.asarray(cv2.GaussianBlur(picture, (0, 0), BLUR_PX), np.uint8)
 
 
 def _lab(picture: Picture) -> npt.NDArray[np.float32]:

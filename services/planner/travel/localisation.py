@@ -25,12 +25,8 @@ def starts_in_sight(matches: Matches, graph: MapGraph, ranges: Ranges, profile: 
     The thesis sets out from the most similar one (section 4.1): the next comes where no way leads on from it.
     """
     if profile.travel.path_cost == "nodes":
-        known = [
-            n
-            for n, match in ranked(matches, profile)
-            if similarity(match, profile) > profile.travel.s_via_min
-        ]
-        return {node: LESS_SIMILAR_NODES * rank for rank, node in enumerate(known)}
+        similar = _similar(matches, profile, profile.travel.s_via_min)
+        return {node: LESS_SIMILAR_NODES * rank for rank, node in enumerate(similar)}
     clear = {node for node, match in matches.items() if is_clear(match, graph, ranges, profile)}
     return reachable_nodes(matches, graph, profile, profile.travel.s_via_min, clear)
 
@@ -48,8 +44,7 @@ def reachable_nodes(
         clear: nodes with free ground in between.
     """
     if profile.travel.path_cost == "nodes":
-        best = ranked(matches, profile)[:1]
-        return {node: 0.0 for node, match in best if similarity(match, profile) > s_min}
+        return dict.fromkeys(_similar(matches, profile, s_min)[:1], 0.0)
     return {
         node: (1.0 if node in clear else UNSEEN_GROUND) * length_m(match, graph) + HOP_M
         for node, match in matches.items()
@@ -112,3 +107,8 @@ def edge_cost(graph: MapGraph, profile: Profile) -> EdgeCost:
     if profile.travel.path_cost == "nodes":
         return partial(fewest_crossable, similarity_min=profile.mapping.s_edge_min)
     return partial(way_m, graph)
+
+
+def _similar(matches: Matches, profile: Profile, s_min: int) -> list[int]:
+    """Nodes of more similarity than that, most similar first."""
+    return [node for node, match in ranked(matches, profile) if similarity(match, profile) > s_min]

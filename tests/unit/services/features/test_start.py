@@ -29,11 +29,8 @@ process.main()
 
 def test_threads_of_torch_are_as_many_as_the_settings_allow_and_do_not_spin(repository: Path):
     plain = {name: value for name, value in os.environ.items() if not name.startswith("OMP_")}
-    told = {
-        **plain,
-        "OMP_DISPLAY_ENV": "VERBOSE",
-        "FEATURES_THREADS": "3",
-    }  # the library says what it has read
+    # The library says what it has read.
+    told = {**plain, "OMP_DISPLAY_ENV": "VERBOSE", "FEATURES_THREADS": "3"}
     command = [sys.executable, "-c", STARTED]
     run = subprocess.run(command, cwd=repository, env=told, capture_output=True, check=True, text=True)
     assert "GOMP_SPINCOUNT = '0'" in run.stderr
