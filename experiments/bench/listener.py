@@ -14,7 +14,7 @@ from shared.messages.sensors import Frame
 from shared.topics import EVENT, FEATURES, FRAME, HEADING, TRUTH, VELOCITY
 
 LOOP = {"truth": TRUTH, "features": FEATURES, "heading": HEADING, "command": VELOCITY, "event": EVENT}
-"""What the stages of the control loop are told from."""
+"""What the stages of the control loop are told from, in the order of a frame."""
 
 ENDS = {"frame": FRAME, "command": VELOCITY}
 """What the latency is told from, by a listener of its own: decoding pictures would delay other stamps."""
@@ -66,12 +66,13 @@ class Listener(Background):
 
     def _run(self) -> None:
         with self._address.open() as bus:
-            inboxes = {name: _subscribe(bus, topic, self._robot) for name, topic in self._topics.items()}
+            inboxes = [(name, _subscribe(bus, topic, self._robot)) for name, topic in self._topics.items()]
+            inboxes.reverse()  # what a message follows from is there before it, so never stamped later
             self._ready.set()
             while not self._stop.is_set():
                 if bus.wait(PERIOD_S):
                     now_s = time.perf_counter()  # before decoding: that would delay the stamp
-                    for name, inbox in inboxes.items():
+                    for name, inbox in inboxes:
                         news = [Arrival(name, now_s, _light(message)) for message in inbox.take_all()]
                         if self._most is None or len(self.arrivals) < self._most:
                             self.arrivals.extend(news)

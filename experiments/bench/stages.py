@@ -90,7 +90,8 @@ def _cycle(cycle: Mapping[str, Arrival], following: Arrival, event: Event | None
     times = {topic: arrival.time_s * 1e3 for topic, arrival in cycle.items()}
     to_features = times["features"] - times["truth"]
     to_heading = times["heading"] - times["features"]
-    stages = {"drive": times["command"] - times["heading"]}
+    # Each service is heard on a link of its own: a busy machine may bring a command before its heading.
+    stages = {"drive": max(0.0, times["command"] - times["heading"])}
     extract = _own(cycle["features"].message, "extract_ms")
     stages |= {"extract": to_features} if extract is None else {"extract": extract}
     if extract is not None:

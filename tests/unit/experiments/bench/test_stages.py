@@ -43,6 +43,12 @@ def test_a_repeated_message_does_not_move_its_first_arrival():
     assert stage_durations_ms([*cycle(1, 0.0), again, *cycle(2, 0.2)])["plan"] == pytest.approx([30.0])
 
 
+def test_a_command_that_overtook_its_heading_took_no_time():
+    *others, command = cycle(1, 0.0)
+    overtaking = Arrival("command", 0.079, command.message)
+    assert stage_durations_ms([*others, overtaking, *cycle(2, 0.2)])["drive"] == [0.0]
+
+
 def test_a_cycle_that_lacks_a_message_is_left_out():
     assert stage_durations_ms([*cycle(1, 0.0)[:-1], *cycle(2, 0.2)])["drive"] == []
 

@@ -55,11 +55,8 @@ def test_two_that_lost_each_other_and_not_the_router_meet_again(router_endpoint:
         assert wait_until(lambda: hear_each_other(here, there), SOON_S)
 
 
-def test_a_peer_that_ended_is_not_looked_for_long(
-    router_endpoint: str, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
-):
-    caplog.set_level("INFO", logger="shared.transport.reconnection")
-    monkeypatch.setattr(reconnection, "FIRST_PAUSE_S", 3.0)  # a busy machine takes a while to close a session
+def test_a_peer_that_ended_is_not_looked_for_long(router_endpoint: str, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(reconnection, "FIRST_PAUSE_S", 3.0)  # on a busy machine a loss is seen late
     with (
         zenoh.open(peer_config(router_endpoint)) as session,
         PeerReconnection(session, router_endpoint) as peers,
@@ -68,8 +65,8 @@ def test_a_peer_that_ended_is_not_looked_for_long(
             with zenoh.open(peer_config(router_endpoint)) as other:
                 assert wait_until(lambda: other.info.zid() in session.info.peers_zid(), SOON_S)
             assert wait_until(lambda: peers.lost, SOON_S)
+        # A look too early, or when somebody else was given the port, is followed by another.
         assert wait_until(lambda: not peers.lost, SOON_S)
-    assert "introduced anew" not in caplog.text
 
 
 def test_who_ended_or_was_not_dialled_is_told_from_who_stands_still(free_port: Callable[[], int]):
