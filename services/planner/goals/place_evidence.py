@@ -64,6 +64,10 @@ class PlaceEvidence:
             and (self.visits[place].similarity >= least or self._differs(place) < self._differs(best))
         ]
 
+    def least_different(self) -> Hypothesis | None:
+        """The place from which the goal differs least as a picture; None where that is known of none."""
+        return min(self._difference, key=self._differs, default=None)
+
     def told(self) -> str:
         """How much the goal differs at each place where that is known, for people."""
         known = sorted((differs, place.nodes[0]) for place, differs in self._difference.items())

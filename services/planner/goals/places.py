@@ -1,7 +1,8 @@
 """Where a goal picture can have been taken, and which of these places is it: by going there.
 
 Rooms furnished alike resemble a picture of one of them equally. Only at the very spot does the right one
-resemble it more: so each is visited, and arrival is claimed where the others are excluded.
+resemble it more: so each is visited, and arrival is claimed where the others are excluded. Where that does
+not tell, the robot goes back to the place that differs least, for a look from nearer by.
 """
 
 import math
@@ -66,6 +67,13 @@ class GoalPlaces:
         self._losses: Counter[Hypothesis] = Counter()
         self._blocks: Counter[Hypothesis] = Counter()
         self._shut: set[Hypothesis] = set()
+        self._again: Hypothesis | None = None
+        self._has_looked_again = False
+
+    @property
+    def looks_again(self) -> bool:
+        """Whether the robot goes back to a place that it visited, to see it from nearer by."""
+        return self._again is not None
 
     @property
     def names(self) -> str:
@@ -191,7 +199,7 @@ class GoalPlaces:
         if self.plain or place is None:
             return Ruling("not seen")
         self._losses[place] += 1
-        if place in self._evidence.visits or self._losses[place] < TRIES:
+        if self._is_known(place) or self._losses[place] < TRIES:
             return Ruling("not seen")
         self._evidence.visited(place, Visit())
         return self._judge(place)
@@ -202,23 +210,29 @@ class GoalPlaces:
         if self.plain or place is None:
             return Ruling("not reached")
         self._blocks[place] += 1
-        if place in self._evidence.visits or self._blocks[place] < TRIES:
+        if self._is_known(place) or self._blocks[place] < TRIES:
             return Ruling("not reached")
-        self._shut.add(place)
+        if place not in self._evidence.visits:
+            self._shut.add(place)
         return self._judge(place)
 
     def _open(self) -> list[Hypothesis]:
-        """Places to go to: those not visited yet, then the best one again."""
+        """Places to go to: those not visited yet, then that to look at again, then the best one."""
         if self.plain:
             return self._places
-        best = self._evidence.best()
+        best = self._again or self._evidence.best()
         return self._left() or ([] if best is None else [best])
 
     def _left(self) -> list[Hypothesis]:
         done = self._evidence.visits.keys() | self._shut
         return [place for place in self._places if place not in done]
 
+    def _is_known(self, place: Hypothesis) -> bool:
+        return place in self._evidence.visits and place != self._again
+
     def _judge(self, here: Hypothesis) -> Ruling:
+        if here == self._again:
+            self._again = None
         visits, best, left = self._evidence.visits, self._evidence.best(), self._left()
         if left:
             alike = f"{visits.get(here, Visit()).likeness:.0%} alike"
@@ -236,8 +250,14 @@ class GoalPlaces:
             return Ruling(why, "goal_not_in_map")
         if self._evidence.rivals():
             why = f"one of the places of nodes {self.names}, which look alike"
-            return Ruling(f"{why}; differences: {self._evidence.told()}", "ambiguous")
+            return Ruling(f"{why}; differences: {self._evidence.told()}", self._look_again())
         return Ruling() if best == here else Ruling(f"another place resembles the goal more, by {most:.0%}")
+
+    def _look_again(self) -> FailureKind:
+        """Once the place that differs least is worth another look; what is in doubt after that stays so."""
+        if not self._has_looked_again:
+            self._has_looked_again, self._again = True, self._evidence.least_different()
+        return "" if self.looks_again else "ambiguous"
 
     def _likely(self, matches: Matches) -> list[Hypothesis]:
         profile, graph = self._profile, self._maps.graph

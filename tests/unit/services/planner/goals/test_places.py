@@ -26,6 +26,11 @@ def places_of(found, profile=DEFAULT):
     return GoalPlaces(Maps(GRAPH), found, profile)
 
 
+def look(places, node, differs):
+    seen = match(GOAL, 0.1, 0.0).model_copy(update={"difference": differs})
+    places.sees(seen, Displacement(node, x_m=0.1))
+
+
 @pytest.fixture
 def two():
     return places_of(FIRST | SECOND)
@@ -147,12 +152,41 @@ def test_places_are_compared_by_matches_not_by_what_two_frames_there_shared(two)
 
 
 def test_rooms_with_equal_matches_are_told_apart_by_how_much_they_differ_as_pictures(two):
-    looks = {9: 24.0, 1: 8.0}
-    for node, differs in looks.items():
-        seen = match(GOAL, 0.1, 0.0).model_copy(update={"difference": differs})
-        two.sees(seen, Displacement(node, x_m=0.1))
+    look(two, 9, 24.0)
+    look(two, 1, 8.0)
     two.arrived(9, view(0.88))
     assert two.arrived(1, view(0.86)).why == ""
+
+
+@pytest.fixture
+def in_doubt(two):
+    """Both places visited: from the first the goal differs less, but not by enough."""
+    look(two, 1, 11.0)
+    two.arrived(1, view(0.88))
+    look(two, 9, 26.0)
+    ruling = two.arrived(9, view(0.84))
+    assert "1: 11, 9: 26" in ruling.why
+    assert not ruling.failure
+    return two
+
+
+def test_where_the_visits_do_not_tell_the_place_that_differs_least_is_looked_at_again(in_doubt):
+    assert in_doubt.looks_again
+    assert set(in_doubt.open_targets(TARGETS)) == {1, 2}
+    look(in_doubt, 1, 6.0)
+    assert in_doubt.arrived(1, view(0.90)).why == ""
+    assert not in_doubt.looks_again
+
+
+def test_who_stays_in_doubt_after_another_look_says_so(in_doubt):
+    assert in_doubt.arrived(1, view(0.88)).failure == "ambiguous"
+
+
+@pytest.mark.parametrize("missed", [GoalPlaces.lost, GoalPlaces.blocked])
+def test_a_place_not_reached_for_another_look_leaves_the_doubt(in_doubt, missed):
+    rulings = [missed(in_doubt, 1) for _ in range(2)]
+    assert [each.failure for each in rulings] == ["", "ambiguous"]
+    assert "look alike" in rulings[1].why
 
 
 def test_an_arrival_that_was_none_counts_at_the_spot_and_near_by_the_second_time(two):

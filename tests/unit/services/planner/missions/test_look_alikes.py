@@ -1,6 +1,7 @@
 """Where desks repeat no edge leads a period further, and a goal that repeats is told apart or named."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,7 +15,9 @@ from services.planner.travel.destination import Setback
 from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.states import Event
 from services.planner.travel.whereabouts import Whereabouts
+from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.routing import GOAL
+from shared.messages.matching import NodeMatch
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
 from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, picture, run
@@ -129,3 +132,21 @@ def test_look_alikes_of_a_node_are_not_known_unless_it_is_gone(explored, profile
     goal = GoalDestination(profile, maps, matcher, picture(pose), experience, where, node)
     assert goal.located().reason.startswith(told)
     assert aliased is None or goal.aliased == aliased
+
+
+def test_another_look_at_a_place_in_doubt_is_from_nearer_by(explored):
+    _, maps, matcher, where = explored
+    node = next(doubtful_nodes(maps, matcher))
+    experience = EdgeExperience(DEFAULT, maps)
+    goal = GoalDestination(DEFAULT, maps, matcher, picture(maps.poses[node]), experience, where)
+    before_rad = goal.arrival_rad
+    for differs, place in enumerate(map(int, goal.places.names.split(", ")), start=20):
+        assert goal.arrival_rad == before_rad
+        tracker = SimpleNamespace(here=Displacement(place), likeness=lambda _: 0.9)
+        goal.sees(
+            NodeMatch(node_id=GOAL, status="ok", raw_matches=300, inliers=300, difference=differs),
+            tracker.here,
+        )
+        assert goal.refutes_arrival(place, 1000, tracker)
+    assert goal.places.looks_again
+    assert 0.0 < goal.arrival_rad < before_rad
