@@ -8,6 +8,9 @@ from shared.messages.arrays import Array, ArraySpec
 from shared.messages.base import Bearing, Message, Name, Part
 from shared.messages.features import MAX_KEYPOINTS, Features
 
+DIFFERENCES_SHAPE = (16, 64)
+"""Rows and columns in which differences of two pictures are told: 5.6 degrees each."""
+
 TwoViewStatus = Literal["ok", "no_baseline", "too_few", "inconsistent"]
 
 
@@ -48,8 +51,9 @@ class NodeMatch(Part):
         noise_rad: spread of the inliers about the motion: what only looks alike stands a little differently.
         moved: inliers whose bearing changed by more than 2 degrees beside the camera's turn: the others are
             far away and look alike from many places.
-        difference: of a target near by, how much of it differs that no way explains, levels of the Lab colour
-            space (root mean square over the hundredth that differs most); None where there is no thumbnail.
+        differences: of a target near by, how much of it differs that no way explains, in levels of the Lab
+            colour space: rows from 45 degrees up to 45 down, columns as in its picture; None without a
+            thumbnail.
         matches_rad: (M, 4) lon, lat in the frame, then lon, lat in the node, all matches.
         inlier_mask: (M,) 1 where the match is an inlier.
         right: (M,) probability that each match is right, by its descriptors; of a photo only.
@@ -67,7 +71,7 @@ class NodeMatch(Part):
     confidence: float = Field(default=0.0, ge=0.0, le=1.0)
     noise_rad: float | None = Field(default=None, ge=0.0)
     moved: int | None = Field(default=None, ge=0)
-    difference: float | None = Field(default=None, ge=0.0)
+    differences: Annotated[Array, ArraySpec(("float32",), DIFFERENCES_SHAPE)] | None = None
     matches_rad: Annotated[Array, ArraySpec(("float32",), (None, 4), MAX_KEYPOINTS)] | None = None
     inlier_mask: Annotated[Array, ArraySpec(("uint8",), (None,), MAX_KEYPOINTS)] | None = None
 

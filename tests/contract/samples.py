@@ -22,6 +22,7 @@ from shared.messages import (
 from shared.messages import features as looks
 from shared.messages import missions as orders
 from shared.messages.base import Message
+from shared.messages.matching import DIFFERENCES_SHAPE
 from shared.wire import encode
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -193,7 +194,7 @@ def node_match() -> matching.NodeMatch:
         confidence=0.75,
         noise_rad=0.005,
         moved=1,
-        difference=9.5,
+        differences=np.full(DIFFERENCES_SHAPE, 9.5, np.float32),
         matches_rad=np.array([[0.5, 0.25, 0.75, 0.125], [1.0, 0.0, 2.0, 0.0]], np.float32),
         inlier_mask=np.array([1, 0], np.uint8),
         right=np.array([0.75, 0.5], np.float32),

@@ -2,7 +2,7 @@
 
 Rooms furnished alike share nearly all their keypoints; what tells them apart, a rug of another colour or
 another picture on the wall, is a small part of what is seen. Dense optical flow takes out how things shift
-from one spot to the other, and what is left most, locally, is the answer.
+from one spot to the other; what is left, locally, is the answer.
 """
 
 import math
@@ -14,6 +14,7 @@ import numpy.typing as npt
 from services.features.pipeline.thumbnail import from_thumbnail
 from shared.geometry.perspective import pixel_centres
 from shared.geometry.sphere import EquirectGrid, FloatArray
+from shared.messages.matching import DIFFERENCES_SHAPE
 
 WIDTH_PX, HEIGHT_PX = 256, 128
 """Pixels compared; chosen: 1.4 degrees each, a hundredth of a picture's area is a rug 2 m away."""
@@ -25,8 +26,8 @@ BLUR_PX = 1.0
 """Standard deviation of a blur before pictures are compared: edges fall on pixels differently from spot to
 spot. Of 12 spots in three development hostels, each seen from 1 to 5 cm beside it, the other three rooms
 differ 3.6 times as much and more, 11 at the median; 1.6 and 3.2 without it. More than 1 px gains little."""
-LARGEST_SHARE = 0.01
-"""Share of the view that differs most and counts; chosen: a picture on a wall."""
+CELL_PX = WIDTH_PX // DIFFERENCES_SHAPE[1]
+"""Side of the cells for which differences are told: half a patch."""
 CROP_DEG = 45.0
 """Left out above and below, once the flow is known: further down lies floor nearer than the camera is high,
 which shifts most from spot to spot, and there the robot sees itself."""
@@ -34,8 +35,10 @@ which shifts most from spot to spot, and there the robot sees itself."""
 Picture = npt.NDArray[np.uint8]
 
 
-def difference(current: bytes, target: bytes, yaw_rad: float) -> float | None:
-    """Root mean square of what differs most, in levels of the Lab colour space; None without both pictures.
+def differences(current: bytes, target: bytes, yaw_rad: float) -> npt.NDArray[np.float32] | None:
+    """Differences in the other picture, levels of the Lab colour space; None without both pictures.
+
+    Shape and order are those of `NodeMatch.differences`.
 
     Args:
         current: JPEG of the equirectangular frame, centre column ahead.
@@ -45,14 +48,15 @@ def difference(current: bytes, target: bytes, yaw_rad: float) -> float | None:
     here, there = _decoded(current), _decoded(target)
     if here is None or there is None:
         return None
-    turned = np.roll(there, -round(yaw_rad / math.tau * WIDTH_PX), axis=1)
+    turn_px = round(yaw_rad / math.tau * WIDTH_PX)
+    turned = np.roll(there, -turn_px, axis=1)
     wide = _blurred(_beyond_the_seam(here)), _blurred(_beyond_the_seam(turned))
     left = np.minimum(_unexplained(*wide), _unexplained(*reversed(wide)))[:, OVERLAP_PX:-OVERLAP_PX]
     grid = EquirectGrid.cropped(WIDTH_PX, HEIGHT_PX, CROP_DEG)
     latitude_rad = grid.lonlat_from_pixels(pixel_centres(1, grid.height))[..., 1]
-    weighted = left[grid.row_slice] * np.cos(latitude_rad)
-    count = int(weighted.size * LARGEST_SHARE)
-    return float(np.sqrt(np.partition(weighted.ravel(), -count)[-count:].mean()))
+    weighted = np.roll(left[grid.row_slice] * np.cos(latitude_rad), turn_px, axis=1)
+    middle = slice(CELL_PX // 2, None, CELL_PX)
+    return np.asarray(np.sqrt(weighted[middle, middle]), np.float32)
 
 
 def _unexplained(here: Picture, there: Picture) -> FloatArray:

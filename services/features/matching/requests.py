@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from services.features.map_features.map_features import MapFeatures
-from services.features.matching.difference import difference
+from services.features.matching.difference import differences
 from services.features.matching.photo_verification import verify_photo
 from services.features.matching.ranking import answer, considered, is_settled, shortlist
 from services.features.matching.verification import Candidate, feature_set, verify
@@ -139,8 +139,8 @@ def _looked_at(match: NodeMatch, thumbnail: bytes, target: Features) -> NodeMatc
     """The match of a picture that was taken nearby, with how much the two differ as pictures."""
     if match.yaw_rad is None or match.disparity_rad is None or match.disparity_rad > BESIDE_RAD:
         return match
-    differs = difference(thumbnail, target.thumbnail, match.yaw_rad)
-    return match.model_copy(update={"difference": differs})
+    differ = differences(thumbnail, target.thumbnail, match.yaw_rad)
+    return match.model_copy(update={"differences": differ})
 
 
 def _wanted(request: MatchRequest, query: FeatureSet, nodes: MapFeatures) -> Sequence[int]:

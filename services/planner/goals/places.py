@@ -100,8 +100,8 @@ class GoalPlaces:
             here: where the frame was taken.
         """
         place = None if self.plain or here is None else self._nearest(here.node_id)
-        if place is not None and goal.difference is not None:
-            self._evidence.looked(place, goal.difference)
+        if place is not None and goal.differences is not None:
+            self._evidence.looked(place, goal.differences)
 
     def is_near(self, node: int | None) -> bool:
         """Whether a robot about `node` can be at the place, where there is but one and both are known."""

@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from services.features.matching.difference import difference
+from services.features.matching.difference import differences
+from shared.messages.matching import DIFFERENCES_SHAPE
 from tests.unit.services.features.matching.blobs import blobs
 
 COLUMNS = 320
@@ -15,6 +16,12 @@ COLUMNS = 320
 @pytest.fixture(scope="module")
 def room():
     return blobs(COLUMNS, 8, seed=1)
+
+
+def difference(current, target, yaw_rad):
+    """Root mean square of the ten cells that differ most."""
+    cells = differences(current, target, yaw_rad)
+    return float(np.sqrt(np.mean(np.sort(cells, axis=None)[-10:] ** 2)))
 
 
 def jpeg(picture):
@@ -56,6 +63,16 @@ def test_a_turned_camera_sees_no_difference(room):
     )
 
 
+def test_what_differs_is_told_where_the_other_picture_has_it(room):
+    turned_px = 90
+    turned = np.roll(room, -turned_px, axis=1)
+    cells = differences(jpeg(turned), jpeg(with_another_rug(room)), turned_px / COLUMNS * math.tau)
+    assert cells.shape == DIFFERENCES_SHAPE
+    row, column = np.unravel_index(np.argmax(cells), cells.shape)
+    assert 95 <= 40 + 5 * (row + 0.5) < 125  # of 160 rows 40 are left out above
+    assert 150 <= 5 * (column + 0.5) < 190
+
+
 def test_what_the_camera_sees_of_its_robot_and_of_who_stands_beside_it_is_little_of_one(room):
     beside = room.copy()
     beside[-24:] = 40
@@ -77,5 +94,5 @@ LARGE = jpeg(np.zeros((1100, 2200, 3), np.uint8))
 
 @pytest.mark.parametrize("thumbnail", [b"", b"no picture", LARGE], ids=["none", "no JPEG", "no thumbnail"])
 def test_without_both_pictures_nothing_is_said(room, thumbnail):
-    assert difference(jpeg(room), thumbnail, 0.0) is None
-    assert difference(thumbnail, jpeg(room), 0.0) is None
+    assert differences(jpeg(room), thumbnail, 0.0) is None
+    assert differences(thumbnail, jpeg(room), 0.0) is None

@@ -1,10 +1,20 @@
 """Which of several places it is: by matches, and by what differs as pictures."""
 
+import numpy as np
+
 from services.planner.goals.place_evidence import PlaceEvidence, Visit
 from shared.mapgraph.local.hypotheses import Hypothesis
+from shared.messages.matching import DIFFERENCES_SHAPE
 
 HERE, THERE = (Hypothesis((node,), 150, 400) for node in (1, 9))
 EQUAL = Visit(200, 0.88)
+
+
+def look(differs, columns=slice(None)):
+    """What differs: so much in these columns, hardly anything elsewhere."""
+    cells = np.full(DIFFERENCES_SHAPE, 2.0, np.float32)
+    cells[6:10, columns] = differs
+    return cells
 
 
 def evidence(first, second, **differs):
@@ -13,7 +23,7 @@ def evidence(first, second, **differs):
         seen.visited(place, visit)
     for place, name in ((HERE, "here"), (THERE, "there")):
         for difference in differs.get(name, ()):
-            seen.looked(place, difference)
+            seen.looked(place, look(difference))
     return seen
 
 
@@ -54,3 +64,20 @@ def test_nobody_has_been_anywhere():
 
 def test_what_differs_is_told_the_least_first():
     assert evidence(EQUAL, EQUAL, here=[25.0], there=[9.0]).told() == "9: 9, 1: 25"
+
+
+def test_what_differs_at_both_places_tells_nothing():
+    """A robot stands in the goal picture; the rug is another one at the second place."""
+    robot, a_cell_aside, rug = slice(10, 14), slice(11, 15), slice(40, 44)
+    seen = evidence(EQUAL, EQUAL)
+    seen.looked(HERE, look(30.0, robot))
+    seen.looked(THERE, np.maximum(look(30.0, a_cell_aside), look(20.0, rug)))
+    assert (seen.best(), seen.rivals()) == (HERE, [])
+    assert seen.told() == "1: 2, 9: 20"
+
+
+def test_what_was_moved_since_at_both_places_leaves_a_rival():
+    seen = evidence(EQUAL, EQUAL)
+    seen.looked(HERE, look(25.0, slice(10, 14)))
+    seen.looked(THERE, look(25.0, slice(40, 44)))
+    assert seen.rivals() == [THERE]

@@ -1,5 +1,6 @@
 """Which of several places that look alike the goal is: each is visited, arrival excludes the others."""
 
+import numpy as np
 import pytest
 
 from services.planner.goals.place_evidence import Visit
@@ -7,6 +8,7 @@ from services.planner.goals.places import GoalPlaces
 from services.planner.profiles import DEFAULT, THESIS
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.routing import GOAL
+from shared.messages.matching import DIFFERENCES_SHAPE
 from tests.unit.services.planner.travel.seen import Maps, by_node, match
 from tests.unit.shared.mapgraph.local.grid import grid
 
@@ -27,7 +29,9 @@ def places_of(found, profile=DEFAULT):
 
 
 def look(places, node, differs):
-    seen = match(GOAL, 0.1, 0.0).model_copy(update={"difference": differs})
+    seen = match(GOAL, 0.1, 0.0).model_copy(
+        update={"differences": np.full(DIFFERENCES_SHAPE, differs, np.float32)}
+    )
     places.sees(seen, Displacement(node, x_m=0.1))
 
 
@@ -152,7 +156,7 @@ def test_places_are_compared_by_matches_not_by_what_two_frames_there_shared(two)
 
 
 def test_rooms_with_equal_matches_are_told_apart_by_how_much_they_differ_as_pictures(two):
-    look(two, 9, 24.0)
+    look(two, 9, 26.0)
     look(two, 1, 8.0)
     two.arrived(9, view(0.88))
     assert two.arrived(1, view(0.86)).why == ""

@@ -17,7 +17,7 @@ from services.planner.travel.states import Event
 from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.routing import GOAL
-from shared.messages.matching import NodeMatch
+from shared.messages.matching import DIFFERENCES_SHAPE, NodeMatch
 from simulator.world.freespace import free_space
 from simulator.world.world_file import load_world
 from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, picture, run
@@ -144,7 +144,13 @@ def test_another_look_at_a_place_in_doubt_is_from_nearer_by(explored):
         assert goal.arrival_rad == before_rad
         tracker = SimpleNamespace(here=Displacement(place), likeness=lambda _: 0.9)
         goal.sees(
-            NodeMatch(node_id=GOAL, status="ok", raw_matches=300, inliers=300, difference=differs),
+            NodeMatch(
+                node_id=GOAL,
+                status="ok",
+                raw_matches=300,
+                inliers=300,
+                differences=np.full(DIFFERENCES_SHAPE, differs, np.float32),
+            ),
             tracker.here,
         )
         assert goal.refutes_arrival(place, 1000, tracker)
