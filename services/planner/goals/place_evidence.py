@@ -19,9 +19,9 @@ apart come to 1.6 at most (from 1 to 10 cm); with somebody in the picture one of
 LARGEST_SHARE = 0.01
 """Share of the view that differs most and counts; chosen: a picture on a wall."""
 COMMON_SHARE = 0.12
-"""Share of the view that differs most at all places, and tells none apart: who stands in the goal picture, or
-what has changed since. Of 36 pairs with somebody in the picture 14 were told apart without it, 35 with 8 %,
-all with 12 %: by factors of 6.7 and more. Without anybody it costs nothing: 8.9 and more."""
+"""Share of the view that differs most at all places, and tells none apart: who stands in the goal picture. Of
+36 pairs with somebody in the picture 14 were told apart without it, 35 with 8 %, all with 12 %: by factors of
+6.7 and more. Without anybody it costs nothing: 8.9 and more."""
 
 
 @dataclass(frozen=True, order=True)
