@@ -167,7 +167,13 @@ class GoalDestination:
             self._targets[setback.path[-2]] += LAST_EDGE_M
         if waypoint == GOAL:
             self._settle(self._place_missed(setback))
-        return self._setbacks.count(setback)
+        verdict = self._setbacks.count(setback)
+        shut = self.places.way_failed(waypoint)
+        if shut is None:
+            return verdict
+        self._settle(shut)
+        self._setbacks.begin_anew()
+        return Verdict((*verdict.notes, Note("place_shut", shut.why)))
 
     def _place_missed(self, setback: Setback) -> Ruling:
         """What it says of the place headed for that the robot did not arrive there."""

@@ -85,6 +85,18 @@ class PlaceEvidence:
         differs = self._differ()
         return min(differs, key=lambda place: differs[place], default=None)
 
+    def risk(self, unseen: int) -> float:
+        """Chance that the goal is at one of some places that nobody saw, though another one fits it.
+
+        It is there only if that place looks like the best one in everything, and then as likely as not. How
+        many of a building's places do is what the visits say (Laplace's rule of succession).
+
+        Args:
+            unseen: how many nobody saw.
+        """
+        told = sum(place not in (self.best(), *self.rivals()) for place in self.visits)
+        return unseen / (2 * (told + 2))
+
     def told(self) -> str:
         """How much the goal differs at each place where that is known, for people."""
         known = sorted((differs, place.nodes[0]) for place, differs in self._differ().items())

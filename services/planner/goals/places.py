@@ -8,7 +8,7 @@ not tell, the robot goes back to the place that differs least, for a look from n
 import math
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from services.planner.goals.place_evidence import PlaceEvidence, Visit
 from services.planner.mapping.reach import claims, distances, elsewhere
@@ -39,6 +39,12 @@ BEYOND_FACTOR = 2.0
 ten edges of three worlds that is right to a factor of 1.6."""
 TRIES = 2
 """Times the picture may be lost, refuted or the way shut at one place before that counts."""
+WAYS_TRIED = 4
+"""Ways to a place's nodes that may fail before it counts as shut; chosen: a bed on the spot shuts them all,
+and a mission bears eight."""
+EQUAL_RISK = 0.125
+"""Accepted chance that the goal is at a place that could not be reached, see `PlaceEvidence.risk`; chosen:
+one place, where two others could be told from the best one."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +72,7 @@ class GoalPlaces:
         self._evidence = PlaceEvidence()
         self._losses: Counter[Hypothesis] = Counter()
         self._blocks: Counter[Hypothesis] = Counter()
+        self._ways: Counter[Hypothesis] = Counter()
         self._shut: set[Hypothesis] = set()
         self._again: Hypothesis | None = None
         self._has_looked_again = False
@@ -216,6 +223,18 @@ class GoalPlaces:
             self._shut.add(place)
         return self._judge(place)
 
+    def way_failed(self, waypoint: int) -> Ruling | None:
+        """A way to one of a place's nodes failed: None while others are worth a try."""
+        place = next((place for place in self._left() if waypoint in place.nodes), None)
+        if self.plain or place is None:
+            return None
+        self._ways[place] += 1
+        if self._ways[place] < WAYS_TRIED:
+            return None
+        self._shut.add(place)
+        ruling = self._judge(place)
+        return replace(ruling, why=f"{WAYS_TRIED} ways to node {place.nodes[0]} failed; {ruling.why}")
+
     def _open(self) -> list[Hypothesis]:
         """Places to go to: those not visited yet, then that to look at again, then the best one."""
         if self.plain:
@@ -241,7 +260,7 @@ class GoalPlaces:
                 f"{alike}; {len(left)} places that look alike are not excluded; differences: {told}"
             )
         most = visits[best].likeness if best is not None else 0.0
-        if self._shut:
+        if self._shut and (most < SPOT_SHARE or self._evidence.risk(len(self._shut)) > EQUAL_RISK):
             shut = ", ".join(str(place.nodes[0]) for place in self._places if place in self._shut)
             why = f"of the places of nodes {self.names} that of {shut} could not be reached"
             return Ruling(why, "ambiguous" if most >= SPOT_SHARE else "blocked")

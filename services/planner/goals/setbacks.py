@@ -75,6 +75,10 @@ class Setbacks:
         notes += self._experience.stuck(edge, waypoint)
         return Verdict(notes, "blocked" if self._stuck > STUCK_MAX else "")
 
+    def begin_anew(self) -> None:
+        """The mission leads elsewhere now: what failed on the way to a place given up does not count."""
+        self._lost = self._stuck = 0
+
     def judge_suspect(self, seen: Matches) -> tuple[Note, ...]:
         """A robot that finds itself far from the edge it lost was carried: that says nothing about the edge.
 

@@ -6,7 +6,7 @@ import { TEXT } from "../page/text.js";
 const KEPT = 2000;
 const SHOWN = 200;
 const EVERY_STEP = ["heading", "hold"];
-const BAD = ["failed", "lost_mode", "edge_suspended", "edge_failed", "edge_deleted", "travel_failed", "replan", "blocked"];
+const BAD = ["failed", "lost_mode", "edge_suspended", "edge_failed", "edge_deleted", "travel_failed", "replan", "blocked", "place_shut"];
 const GOOD = ["succeeded", "found_again", "goal_located", "node_added", "edge_restored"];
 
 export class Events {

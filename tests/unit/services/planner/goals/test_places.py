@@ -16,6 +16,7 @@ GRAPH = grid(20, 2)
 FIRST = by_node(match(1, 0.0, 0.0, 150), match(2, 1.0, 0.0, 80))
 SECOND = by_node(match(9, 0.0, 0.0, 140), match(10, 1.0, 0.0, 80))
 THIRD = by_node(match(17, 0.0, 0.0, 140), match(18, 1.0, 0.0, 80))
+FOURTH = by_node(match(25, 0.0, 0.0, 140), match(26, 1.0, 0.0, 80))
 FAR = next(n for n in GRAPH.nodes if n not in GRAPH.nearest(1, 8))
 TARGETS = dict.fromkeys((1, 2, 9, 10, 17, 18), 0.1)
 
@@ -133,6 +134,38 @@ def test_a_goal_that_none_of_the_places_seen_resembles_may_be_at_the_one_not_rea
     two.arrived(2, view(0.48))
     two.blocked(9)
     assert two.blocked(9).failure == "blocked"
+
+
+def shut(places, node):
+    rulings = [places.way_failed(waypoint) for waypoint in (node, node + 1, node, node + 1)]
+    assert rulings[:3] == [None] * 3
+    return rulings[3]
+
+
+def test_a_place_to_whose_nodes_four_ways_failed_is_shut(two):
+    assert two.way_failed(12) is None
+    assert "9 failed" in shut(two, 9).why
+    assert set(two.open_targets(TARGETS)) == {1, 2}
+    assert two.way_failed(9) is None
+
+
+def test_one_place_not_reached_leaves_no_doubt_where_two_others_are_excluded():
+    places = places_of(FIRST | SECOND | THIRD | FOURTH)
+    places.arrived(1, view(0.88))
+    places.arrived(9, view(0.48))
+    places.arrived(17, view(0.48))
+    ruling = shut(places, 25)
+    assert ruling.failure == ""
+    assert "another place" in ruling.why
+    assert set(places.open_targets(TARGETS)) == {1, 2}
+    assert places.arrived(1, view(0.86)).why == ""
+
+
+def test_it_leaves_a_doubt_where_one_other_is_excluded():
+    places = places_of(FIRST | SECOND | THIRD)
+    places.arrived(1, view(0.88))
+    places.arrived(9, view(0.48))
+    assert shut(places, 17).failure == "ambiguous"
 
 
 def test_places_that_resemble_it_equally_are_ambiguous(two):

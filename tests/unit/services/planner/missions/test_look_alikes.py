@@ -156,3 +156,22 @@ def test_another_look_at_a_place_in_doubt_is_from_nearer_by(explored):
         assert goal.refutes_arrival(place, 1000, tracker)
     assert goal.places.looks_again
     assert 0.0 < goal.arrival_rad < before_rad
+
+
+def test_a_look_alike_that_no_way_leads_to_is_given_up_for_the_others(explored):
+    """A bed stands on its spot, say: elsewhere the mission's patience begins anew."""
+    _, maps, matcher, _ = explored
+    node = next(doubtful_nodes(maps, matcher))
+    experience = EdgeExperience(DEFAULT, maps)
+    goal = GoalDestination(DEFAULT, maps, matcher, picture(maps.poses[node]), experience, Whereabouts())
+    first, *others = map(int, goal.places.names.split(", "))
+    assert first in goal.targets()
+
+    def stuck(waypoint):
+        return goal.setback(Setback(Event.NO_PROGRESS, None, waypoint, (waypoint, GOAL), "no progress"))
+
+    verdicts = [stuck(waypoint) for waypoint in [first] * 4 + [max(maps.poses) + 1] * 7]
+    assert {verdict.failure for verdict in verdicts} == {""}
+    assert [note.kind for note in verdicts[3].notes] == ["replan", "place_shut"]
+    assert first not in goal.targets()
+    assert not goal.targets().keys().isdisjoint(others)
