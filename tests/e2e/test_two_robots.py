@@ -24,8 +24,8 @@ from tests.e2e.fleet import Robot, another_robot, taking_part
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(600)]
 
 WORLD, MAP, FIRST, SECOND = "apartment", "flat", "r1", "r2"
-ALONE = {"action": "explore", "map": MAP, "max_steps": 40}
-TOGETHER = {"action": "explore", "map": MAP, "max_steps": 60}
+ALONE = {"action": "explore", "map": MAP, "max_steps": 30}
+TOGETHER = {"action": "explore", "map": MAP, "max_steps": 50}
 """Too few steps for the whole apartment, so that nobody is ready before the other."""
 
 
@@ -64,7 +64,7 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Shared]:
         start = join_truth(WORLD, require_map(stack, MAP).nodes, first.client.trail, None).poses[begun[0]]
         second.client.wait_for_frame(second.experimenter.place_robot(turned(start)).stamp_ns)
         list(threads.map(lambda each: each.run(**TOGETHER), robots.values()))
-        mapping = threads.submit(first.run, **TOGETHER)
+        mapping = threads.submit(first.run, **ALONE)
         second.run(action="goto", map=MAP, goal_node=max(begun), max_steps=200)
         mapping.result()
         first.run(**ALONE)  # writes that the second hears of while it has nothing to do

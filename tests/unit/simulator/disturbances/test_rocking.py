@@ -121,8 +121,8 @@ def tilts_of_a_drive(simulation, seed, legs=4):
 
 def test_tilt_of_frames_while_driving_has_three_degrees_on_each_axis(hall):
     simulation = rocking_robot(hall, 1.0)
-    tilts = np.concatenate([tilts_of_a_drive(simulation, seed) for seed in range(12)])
-    assert len(tilts) > 1200
+    tilts = np.concatenate([tilts_of_a_drive(simulation, seed) for seed in range(5)])
+    assert len(tilts) > 500
     assert np.sqrt((tilts**2).mean(axis=0)) == pytest.approx([RMS_RAD, RMS_RAD], rel=0.1)
 
 
