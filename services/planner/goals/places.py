@@ -254,11 +254,9 @@ class GoalPlaces:
             self._again = None
         visits, best, left = self._evidence.visits, self._evidence.best(), self._left()
         if left:
-            alike = f"{visits.get(here, Visit()).likeness:.0%} alike"
+            alike = f"{visits[here].likeness:.0%} alike; " if here in visits else ""
             told = self._evidence.told()
-            return Ruling(
-                f"{alike}; {len(left)} places that look alike are not excluded; differences: {told}"
-            )
+            return Ruling(f"{alike}{len(left)} places that look alike are not excluded; differences: {told}")
         most = visits[best].likeness if best is not None else 0.0
         if self._shut and (most < SPOT_SHARE or self._evidence.risk(len(self._shut)) > EQUAL_RISK):
             shut = ", ".join(str(place.nodes[0]) for place in self._places if place in self._shut)
