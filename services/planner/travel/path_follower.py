@@ -7,9 +7,10 @@ from services.planner.mapping.reach import distances
 from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.similarity import heading_of, similarity
+from services.planner.surroundings import free_way_m
 from services.planner.travel.destination import Destination
 from services.planner.travel.edge_experience import EdgeExperience
-from services.planner.travel.last_leg import reckoned_rad
+from services.planner.travel.last_leg import REACHED_M, reckoned, reckoned_end
 from services.planner.travel.lookahead import Lookahead
 from services.planner.travel.patience import Patience
 from services.planner.travel.states import Event
@@ -49,6 +50,7 @@ class PathFollower:
         self._passed, self._last, self._stopped_at = 0, len(path) - 1, -1
         self._strict = is_strict(profile)
         self._heading_rad: float | None = None
+        self._reckons = False
         self._steady = SteadyHeading()
         self.progress = Progress(via_points=tuple(path))
 
@@ -72,14 +74,17 @@ class PathFollower:
             return None, _hold(f"at {name}, others go first", notes)
         if self._next_is_unclear(match, matches, observation.ranges):
             return Event.WAY_UNCLEAR, _hold(f"no free ground seen beyond {name}", notes)
-        if self._has_waited_too_long(match) and not self._goes_on_blind():
+        if self._has_waited_too_long(match):
+            if blind := self._next_blind(observation.ranges, notes):
+                return None, blind
             return Event.NO_PROGRESS, _hold(f"at {name}, {_name(self.path[self.index + 1])} unseen", notes)
         found = heading_of(match, self._profile) if match is not None else None
         if found is None and self._patience.waits:
             return None, _hold(f"at {name}, S {s_cv}", notes)
         if match is None or found is None or s_cv < self._profile.travel.s_via_min:
-            return self._unseen(name, s_cv, notes)
+            return self._unseen(name, s_cv, observation.ranges, notes)
         self._patience.see()
+        self._reckons = False
         self._heading_rad, method = self._steadied(waypoint, found[0], s_cv), found[1]
         if self._no_progress(match):
             if self._near_end(match):
@@ -204,35 +209,64 @@ class PathFollower:
             return seen_rad
         return self._steady.follow(waypoint, seen_rad, close=s_cv >= self._profile.mapping.s_node_max)
 
-    def _unseen(self, name: str, s_cv: int, notes: tuple[Note, ...]) -> tuple[Event | None, Decision]:
-        """The waypoint is not seen: to a goal by the map, else on for a few frames; then it is lost."""
-        blind_rad = self._blind_rad() if self.path[self.index] == GOAL else None
-        if blind_rad is not None:
-            self._heading_rad = blind_rad
-            why = f"{name} not seen, S {s_cv}: to where the map has it"
-            return None, Decision("go", blind_rad, s_cv, 1.0, "reckoned", why, notes)
+    def _unseen(
+        self, name: str, s_cv: int, ranges: Ranges, notes: tuple[Note, ...]
+    ) -> tuple[Event | None, Decision]:
+        """The waypoint is not seen: on for a few frames, then by the map; a goal by the map at once."""
+        at_goal = self.path[self.index] == GOAL
+        if at_goal and (blind := self._blind(ranges, notes)):
+            return None, blind
         self._patience.miss()
         unseen_frames = self._patience.unseen_frames
-        if unseen_frames >= self._profile.travel.suspend_after or self._heading_rad is None:
-            return Event.WAYPOINT_LOST, _hold(f"{name} not seen, S {s_cv}", notes)
-        why = f"{name} not seen for {unseen_frames:.0f} frames, keeping on"
-        return None, Decision("go", self._heading_rad, s_cv, 1.0, "previous", why, notes)
+        if unseen_frames < self._profile.travel.suspend_after and self._heading_rad is not None:
+            why = f"{name} not seen for {unseen_frames:.0f} frames, keeping on"
+            return None, Decision("go", self._heading_rad, s_cv, 1.0, "previous", why, notes)
+        blind = None if at_goal else self._blind(ranges, notes)
+        return (None, blind) if blind else (Event.WAYPOINT_LOST, _hold(f"{name} not seen, S {s_cv}", notes))
 
-    def _goes_on_blind(self) -> bool:
-        """Whether the goal, which does not show from the last node, is headed for by where the map has it."""
-        blind = self.path[self.index + 1] == GOAL and self._blind_rad() is not None
-        if blind:
-            self._head_for(self.index + 1)
+    def _next_blind(self, ranges: Ranges, notes: tuple[Note, ...]) -> Decision | None:
+        """On to the next waypoint, which does not show from this one; None where that has to be given up."""
+        present = self.index
+        self._head_for(present + 1)
+        blind = self._blind(ranges, notes)
+        if blind is None:
+            self._head_for(present)
+        else:
             self._patience.stand(False)
         return blind
 
-    def _blind_rad(self) -> float | None:
-        """Bearing of the goal by the map; None where that is not known, and after so many frames."""
-        if self._strict or len(self.path) < 2:
+    def _blind(self, ranges: Ranges, notes: tuple[Note, ...]) -> Decision | None:
+        """To where the map has the waypoint, and past it to the next one; only for some frames of a path.
+
+        Not where what stands on the nearer half of the way shuts it; who is on such a way goes round. A
+        picture that is near has to show.
+        """
+        if self._strict or len(self.path) < 2 or self._destination.picture is None:
             return None
         if not self._patience.goes_on_blind():
             return None
-        return reckoned_rad(self._maps.graph, self._tracker.here, self._destination.lies(self.path[-2]))
+        graph, here = self._maps.graph, self._tracker.here
+        for index in range(self.index, self._last + 1):
+            waypoint = self.path[index]
+            if waypoint == GOAL:
+                spot = reckoned(graph, here, self._destination.lies(self.path[-2]))
+            else:
+                spot = reckoned_end(graph, here, self.path[: index + 1])
+            if spot is None:
+                return None
+            heading_rad, left_m = spot
+            if left_m < REACHED_M:
+                continue
+            is_shut = free_way_m(ranges, heading_rad, self._profile) < 0.5 * left_m
+            if is_shut and waypoint != GOAL and not self._reckons:
+                return None
+            self._reckons = True
+            if index != self.index:
+                self._head_for(index)
+            self._heading_rad = heading_rad
+            why = f"{_name(waypoint)} not seen: to where the map has it"
+            return Decision("go", heading_rad, 0, 1.0, "reckoned", why, notes, distance_m=left_m)
+        return None
 
     def _no_progress(self, match: NodeMatch) -> bool:
         disparity = match.disparity_rad if match.disparity_rad is not None else 0.0

@@ -19,8 +19,8 @@ NEAREST_STEPS = 8
 s."""
 
 BLIND_FRAMES = 40
-"""Frames in which a goal is headed for that does not show; chosen: 4.8 m in a room, further than any picture
-that is located in the map lies from its node."""
+"""Frames of a path in which a waypoint or goal is headed for that does not show; chosen: 4.8 m in a room,
+further than any picture that is located in the map lies from its node."""
 
 
 class Patience:
@@ -67,7 +67,7 @@ class Patience:
         self.unseen_frames += self._share
 
     def goes_on_blind(self) -> bool:
-        """Count a frame in which the goal is headed for by the map alone; False after so many."""
+        """Count a frame in which the way leads by the map alone; False after so many."""
         self._blind_frames += self._share
         return self._blind_frames <= BLIND_FRAMES
 

@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from services.planner.travel.last_leg import reckoned_rad
+from services.planner.travel.last_leg import along_edges, reckoned_rad
+from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
 from tests.unit.shared.mapgraph.local.grid import grid
 
@@ -39,3 +40,23 @@ def test_the_bearing_is_that_in_the_frame_of_the_robot():
 )
 def test_at_the_spot_or_where_nobody_knows_there_is_no_bearing(here, goal):
     assert reckoned_rad(GRAPH, here, goal) is None
+
+
+def test_along_edges_a_node_lies_where_they_lead_suspended_ones_too():
+    graph = MapGraph(
+        GRAPH.nodes.values(), [e.model_copy(update={"suspended": True}) for e in GRAPH.edges.values()]
+    )
+    there, back = along_edges(graph, [1, 2, 6]), along_edges(graph, [6, 2, 1])
+    assert (there.node_id, there.x_m, there.y_m) == pytest.approx((1, 1.0, 1.0))
+    assert (back.node_id, back.x_m, back.y_m) == pytest.approx((6, -1.0, -1.0))
+    assert reckoned_rad(graph, Displacement(1), there) == pytest.approx(math.pi / 4)
+
+
+def test_along_an_edge_to_a_camera_that_looks_elsewhere_the_next_one_is_turned():
+    turned = [e.model_copy(update={"yaw_ab_rad": math.pi / 2}) for e in GRAPH.edges.values()]
+    there = along_edges(MapGraph(GRAPH.nodes.values(), turned), [0, 1, 2])
+    assert (there.x_m, there.y_m) == pytest.approx((1.0, 1.0))
+
+
+def test_along_an_edge_that_is_not_there_nothing_is_known():
+    assert along_edges(GRAPH, [0, 3]) is None

@@ -11,6 +11,7 @@ from services.planner.missions.explore import FrontierExploration
 from services.planner.missions.goto import Goto
 from services.planner.profiles import DEFAULT
 from services.planner.travel.destination import Verdict
+from services.planner.travel.patience import Patience
 from services.planner.travel.states import TRANSITIONS, Event, State
 from services.planner.travel.whereabouts import Whereabouts
 from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, picture, run
@@ -80,6 +81,10 @@ def test_a_robot_that_never_finds_anything_again_fails_as_lost(mapped):
     assert (decision.outcome, decision.failure) == ("failed", "lost")
 
 
+def sees_no_node(self, _nodes, _best_k=0, targets=(), match=PlaneMatcher.match):
+    return match(self, [], 0, targets)
+
+
 def test_who_is_lost_asks_the_map_the_next_time(mapped, monkeypatch):
     """One went on believing to be 20 m further along a street, mission after mission."""
     world, maps = mapped
@@ -88,15 +93,22 @@ def test_who_is_lost_asks_the_map_the_next_time(mapped, monkeypatch):
     mission = Goto(DEFAULT, maps, PlaneMatcher(world, maps), picture(HALL), where)
     run(world, mission, DriveLimits(), 5)
     assert where.here is not None
-    match = PlaneMatcher.match
-
-    def sees_no_node(self, _nodes, _best_k=0, targets=()):
-        return match(self, [], 0, targets)
-
     monkeypatch.setattr(PlaneMatcher, "match", sees_no_node)
+    monkeypatch.setattr(Patience, "goes_on_blind", lambda _: False)
     monkeypatch.setattr(GoalDestination, "setback", lambda *_: Verdict(failure="lost"))
     decision, _ = run(world, mission, DriveLimits(), 30)
     assert (decision.failure, where.here) == ("lost", None)
+
+
+def test_who_sees_no_node_any_more_arrives_by_where_the_map_has_them(mapped, monkeypatch):
+    world, maps = mapped
+    world.pose = START
+    mission = Goto(DEFAULT, maps, PlaneMatcher(world, maps), picture(HALL), Whereabouts())
+    run(world, mission, DriveLimits(), 5)
+    monkeypatch.setattr(PlaneMatcher, "match", sees_no_node)
+    decision, _ = run(world, mission, DriveLimits(), 150)
+    assert decision.outcome == "succeeded"
+    assert math.dist(world.pose[:2], HALL[:2]) < 0.2
 
 
 def test_exploration_travels_by_the_same_machine():

@@ -18,7 +18,8 @@ from shared.mapgraph.routing import GOAL
 from shared.messages.base import SECTORS
 from shared.messages.maps import Node
 from shared.messages.sensors import Ranges
-from tests.unit.services.planner.travel.seen import Maps, by_node, features, match
+from shared.motion.motion import Motion
+from tests.unit.services.planner.travel.seen import Maps, Matcher, by_node, features, match
 from tests.unit.shared.mapgraph.local.grid import edge, grid
 
 ANGLES_RAD = tuple(math.radians(30.0 * sector) for sector in range(SECTORS))
@@ -108,6 +109,54 @@ def test_a_goal_that_does_not_show_from_the_last_node_is_headed_for_by_the_map()
     assert blind
     assert math.degrees(blind[0].heading_rad) == pytest.approx(90.0, abs=1.0)
     assert all(event is None for event, _ in found)
+
+
+def blind_steps(shows, path, free_m=3.0, steps=16):
+    """What a robot at the first node of a row decides that sees of the nodes ahead those that show."""
+    maps = Maps(grid(4, 1))
+    tracker = Tracker(DEFAULT, maps, Matcher(), certain=False)
+    tracker.stand_at(Displacement(0, spread_m=0.1))
+    goal = SimpleNamespace(
+        picture=features(), arrival_rad=0.01, aliased=False, cuts_corners=True, sees=lambda *_: None,
+        lies=lambda _: Displacement(3, x_m=1.0),
+    )  # fmt: skip
+    follower = PathFollower(DEFAULT, maps, [*path, GOAL], goal, set(), EdgeExperience(DEFAULT, maps), tracker)
+    ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(free_m,) * SECTORS, max_range_m=4.0)
+    x_m, decisions, event = 0.0, [], None
+    while event is None and len(decisions) < steps:
+        seen = by_node(*(match(node, node - x_m, 0.0, 200) for node in shows if abs(node - x_m) < 0.5))
+        matcher = SimpleNamespace(match=lambda *_, seen=seen, **__: dict(seen))
+        event, decision = follower.step(Observation(features(), ranges), matcher)
+        step_m = 0.12 if decision.action == "go" else 0.0
+        x_m += step_m * math.cos(decision.heading_rad)
+        tracker.observe(Observation(features(), ranges, moved=Motion(step_m)))
+        decisions.append(decision)
+    return event, follower, decisions
+
+
+def test_a_node_that_does_not_show_from_the_one_before_is_headed_for_by_the_map():
+    """Furniture moved behind a door: from there the next room looks like another one."""
+    event, follower, found = blind_steps([0], [0, 1, 2])
+    assert event is None
+    assert [one.method for one in found].count("reckoned") > 2
+    assert follower.index == 1
+    assert found[-1].heading_rad == pytest.approx(0.0, abs=0.1)
+
+
+def test_where_the_way_is_shut_a_node_that_does_not_show_is_not_headed_for():
+    event, follower, found = blind_steps([0], [0, 1, 2], free_m=0.5)
+    assert event is Event.NO_PROGRESS
+    assert follower.failed_edge() == ((0, 1), 1)
+    assert all(one.action == "hold" for one in found)
+
+
+def test_past_where_the_map_has_it_the_next_one_is_headed_for_and_at_last_the_path_is_lost():
+    """Forty frames in all."""
+    _, follower, found = blind_steps([0], [0, 1, 2], steps=24)
+    assert follower.index == 2
+    event, follower, found = blind_steps([0], [0, 1, 2], steps=200)
+    assert event is Event.WAYPOINT_LOST
+    assert len(found) < 70
 
 
 def test_the_nodes_around_are_compared_beside_those_ahead():
