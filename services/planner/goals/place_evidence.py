@@ -94,8 +94,8 @@ class PlaceEvidence:
         Args:
             unseen: how many nobody saw.
         """
-        told = sum(place not in (self.best(), *self.rivals()) for place in self.visits)
-        return unseen / (2 * (told + 2))
+        told = self.visits.keys() - {self.best(), *self.rivals()}
+        return unseen / (2 * (len(told) + 2))
 
     def told(self) -> str:
         """How much the goal differs at each place where that is known, for people."""
