@@ -17,6 +17,8 @@ MODELS = "mesh"  # our own furniture is drawn where it belongs
 
 def floating(world: WorldFile) -> list[str]:
     """Names and heights of models that nothing holds."""
+    if not any(item.kind == MODELS for item in world.furniture):
+        return []
     pieces = [placed(item).parts for item in world.furniture]
     extents = [_extent(parts) for parts in pieces]
     found = []

@@ -130,7 +130,10 @@ class FreeSpace:
 
 
 def free_space(
-    world: WorldFile, robot_radius_m: float = 0.26, resolution_m: float | None = None
+    world: WorldFile,
+    robot_radius_m: float = 0.26,
+    resolution_m: float | None = None,
+    parts: tuple[Part, ...] | None = None,
 ) -> FreeSpace:
     """Grid of the floor where a disc of the robot's radius fits, connected to the world's start.
 
@@ -138,16 +141,20 @@ def free_space(
         world: the world.
         robot_radius_m: of the disc.
         resolution_m: side of a cell; None takes a finer one for small worlds.
+        parts: those of the world, where they are known.
     """
-    whole = ground_clearance(world, robot_radius_m, resolution_m)
+    whole = ground_clearance(world, robot_radius_m, resolution_m, parts)
     return replace(whole, free=_flood(whole.free, whole.cell((world.start.x_m, world.start.y_m))))
 
 
 def ground_clearance(
-    world: WorldFile, robot_radius_m: float = 0.26, resolution_m: float | None = None
+    world: WorldFile,
+    robot_radius_m: float = 0.26,
+    resolution_m: float | None = None,
+    parts: tuple[Part, ...] | None = None,
 ) -> FreeSpace:
     """The same with all floor where the disc fits, whether one gets there from the start or not."""
-    parts, _ = expand(world)
+    parts = expand(world)[0] if parts is None else parts
     rects = world.rectangles()
     x0, y0 = min(r[0][0] for r in rects), min(r[1][0] for r in rects)
     x1, y1 = max(r[0][1] for r in rects), max(r[1][1] for r in rects)

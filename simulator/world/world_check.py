@@ -48,14 +48,15 @@ def examine(world: WorldFile, robot_radius_m: float = ROBOT_RADIUS_M) -> WorldRe
     parts, lights = expand(world)
     rects = world.rectangles()
     looks = len({part.material for part in parts})
-    faults, doubts = start_faults(world, robot_radius_m), _opening_doubts(world)
+    at_start, doubts = start_faults(world, robot_radius_m, parts), _opening_doubts(world)
+    faults = list(at_start)
     if looks > MOST_LOOKS:
         faults.append(
             f"at most {MOST_LOOKS} different materials can be shown, got {looks}; share colours and seeds"
         )
     if not lights and not any(part.material.glow for part in parts) and not getattr(world, "sun", None):
         doubts.append("no lamps: only the even light of `lighting` is there; add a ceiling_light")
-    space = None if faults else free_space(world, robot_radius_m)
+    space = None if faults else free_space(world, robot_radius_m, parts=parts)
     cell = space.resolution_m**2 if space else 0.0
     lost = _unreachable(world, space) if space else ()
     doubts += [f"{name}: the robot cannot get there from the start" for name in lost]
@@ -80,7 +81,7 @@ def examine(world: WorldFile, robot_radius_m: float = ROBOT_RADIUS_M) -> WorldRe
         solids=sum(part.solid for part in parts),
         lights=len(lights),
         looks=looks,
-        start_free=not start_faults(world, robot_radius_m),
+        start_free=not at_start,
         unreachable=lost,
         passages=passages,
         faults=tuple(faults),
@@ -100,9 +101,17 @@ def _floor_m2(world: WorldFile, parts: tuple[Part, ...]) -> float:
     return total
 
 
-def start_faults(world: WorldFile, robot_radius_m: float = ROBOT_RADIUS_M) -> list[str]:
-    """What stands where the robot starts, and how far it would have to be."""
-    parts, _ = expand(world)
+def start_faults(
+    world: WorldFile, robot_radius_m: float = ROBOT_RADIUS_M, parts: tuple[Part, ...] | None = None
+) -> list[str]:
+    """What stands where the robot starts, and how far it would have to be.
+
+    Args:
+        world: the world.
+        robot_radius_m: of the robot's disc.
+        parts: those of the world, where they are known.
+    """
+    parts = expand(world)[0] if parts is None else parts
     start = np.array([[world.start.x_m, world.start.y_m]])
     gap = float(clearance_m(start, footprints(parts, *BODY_BAND_M))[0])
     if gap >= robot_radius_m:
