@@ -1,15 +1,16 @@
 """A topological map in memory: nodes, edges and who is joined to whom. Pure."""
 
 from collections.abc import Callable, Hashable, Iterable
-from typing import Any, TypeVar
-
-import networkx as nx
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from shared.mapgraph.operations import Draft
 from shared.mapgraph.operations import EdgeKey as EdgeKey
 from shared.mapgraph.triangle import Sight
 from shared.messages.maps import AddNode, Edge, Node, Operation, UpdateNode
 from shared.messages.places import Place, Route, Rule, Sign, key_of
+
+if TYPE_CHECKING:
+    from shared.mapgraph.links import Links
 
 Made = TypeVar("Made")
 
@@ -88,8 +89,7 @@ class MapGraph:
 
     def neighbours(self, node_id: int) -> list[int]:
         """Nodes an edge leads to, suspended ones excluded, in ascending order."""
-        links = self._links()
-        return sorted(links[node_id]) if node_id in links else []
+        return self._links().neighbours(node_id)
 
     def heading(self, node_id: int, neighbour: int) -> float | None:
         """Bearing of a neighbour in the node's camera frame, radians; None when unknown."""
@@ -109,7 +109,7 @@ class MapGraph:
 
     def within(self, start: int, hops: int) -> set[int]:
         """Nodes at most so many edges from `start`, suspended ones excluded; `start` is one of them."""
-        return set(nx.single_source_shortest_path_length(self._links(), start, cutoff=hops))
+        return self._links().within(start, hops)
 
     def edges_among(self, nodes: Iterable[int]) -> list[Edge]:
         """The edges that join two of these nodes, suspended ones excluded, by their numbers."""
@@ -125,18 +125,14 @@ class MapGraph:
             most: cost of a path.
             cost: of an edge; None where it may not be used.
         """
-
-        def weight(a: int, b: int, _: dict[str, Any]) -> float | None:
-            return cost(self.edges[edge_key(a, b)])
-
-        return set(nx.single_source_dijkstra_path_length(self._links(), start, cutoff=most, weight=weight))
+        return self._links().within_cost(start, most, lambda a, b: cost(self.edges[edge_key(a, b)]))
 
     def nearest(self, start: int, most: int) -> list[int]:
         """`start` and the nodes that edges join to it, nearest by number of edges first, at most so many."""
         links = self._links()
         order, known = [start], {start}
         for node in order:
-            for neighbour in sorted(links[node]):
+            for neighbour in links.neighbours(node):
                 if neighbour not in known and len(order) < most:
                     known.add(neighbour)
                     order.append(neighbour)
@@ -147,25 +143,21 @@ class MapGraph:
 
         An edge that nobody drove counts as UNDRIVEN_EDGES driven ones.
         """
-        try:
-            found = nx.dijkstra_path(self._links(), start, end, lambda a, b, _: self._edges_apart(a, b))
-        except (nx.NodeNotFound, nx.NetworkXNoPath):
-            return []
-        return [int(node) for node in found]
+        return self._links().way(start, end, self._edges_apart)
 
     def _edges_apart(self, a: int, b: int) -> float:
         return 1.0 if self.edges[edge_key(a, b)].length_m is not None else UNDRIVEN_EDGES
 
     def components(self) -> int:
         """Number of connected parts, suspended edges excluded."""
-        return int(nx.number_connected_components(self._links()))
+        return self._links().components()
 
-    def _links(self) -> "nx.Graph[int]":
+    def _links(self) -> "Links":
         """The edges that may be used."""
         return self.made_once("links", self._link)
 
-    def _link(self) -> "nx.Graph[int]":
-        links: nx.Graph[int] = nx.Graph()
-        links.add_nodes_from(self.nodes)
-        links.add_edges_from(ends for ends, edge in self.edges.items() if not edge.suspended)
-        return links
+    def _link(self) -> "Links":
+        from shared.mapgraph.links import Links  # a fifth of the start of who keeps or shows maps only
+
+        usable = (ends for ends, edge in self.edges.items() if not edge.suspended)
+        return Links(self.nodes, usable)

@@ -1,5 +1,8 @@
 """The graph in memory: what operations change, and what nodes see of one another."""
 
+import subprocess
+import sys
+
 import pytest
 
 from shared.mapgraph.graph import MapGraph
@@ -74,3 +77,9 @@ def test_a_way_takes_driven_edges_rather_than_few_long_jumps():
     assert graph.way(0, 2) == [0, 1, 2]
     assert MapGraph(graph.nodes.values(), [jump]).way(0, 2) == [0, 2]
     assert (graph.way(1, 1), graph.way(0, 5), graph.way(3, 4), graph.way(0, 99)) == ([1], [], [], [])
+
+
+def test_who_keeps_or_shows_maps_starts_without_networkx():
+    """Loading it took a fifth of their start."""
+    code = "import sys, services.gateway.app, services.map_store.api.app; sys.exit('networkx' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
