@@ -37,7 +37,7 @@ def test_the_health_command_of_the_compose_file_agrees(stack):
     def agrees():
         return subprocess.run(command, env=environment, timeout=RUN_S, check=False).returncode == 0
 
-    assert wait_until(agrees, SOON_S), "it looks for two seconds, and is asked again and again there as here"
+    assert wait_until(agrees, SOON_S), "it waits a while, and is asked again and again there as here"
     absent = subprocess.run(
         [*command[:-1], "planner"], env=environment, timeout=RUN_S, check=False, capture_output=True
     )

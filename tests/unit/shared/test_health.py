@@ -3,6 +3,11 @@
 import resource
 import subprocess
 import sys
+import threading
+import time
+
+from shared import health
+from shared.bus import open_bus
 
 HEAVY = {"pydantic", "numpy", "msgpack", "shared.messages"}
 
@@ -23,3 +28,21 @@ def test_it_costs_next_to_nothing_and_names_what_it_did_not_find(monkeypatch, fr
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     assert (answer.returncode, answer.stderr[:9]) == (1, "planner: ")
     assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 0.3, "0.07 s on an idle core"
+
+
+def test_a_check_begun_too_early_waits_for_its_service_and_says_so_at_once(monkeypatch, router_endpoint):
+    """Beside 16 busy loops many short checks took what the simulator needed to start at all."""
+    monkeypatch.setenv("TOPNAV_ENDPOINT", router_endpoint)
+    monkeypatch.setattr(health, "PATIENCE_S", 60.0)
+    answers = []
+    check = threading.Thread(target=lambda: answers.append((health.main(["planner"]), time.monotonic())))
+    check.start()
+    with open_bus(router_endpoint) as bus:
+        check.join(timeout=3.0)
+        assert answers == [], "nothing is there, and it waits"
+        begun_s = time.monotonic()
+        bus.announce("planner")
+        check.join(timeout=50.0)
+    ((code, answered_s),) = answers
+    assert code == 0
+    assert answered_s - begun_s < 40.0
