@@ -22,6 +22,7 @@ from shared.mapgraph.local.likely_places import likely
 from shared.mapgraph.local.resection import resected
 from shared.mapgraph.local.view_range import openness
 from shared.mapgraph.routing import GOAL
+from shared.messages.features import Features
 from shared.messages.matching import NodeMatch
 from shared.messages.sensors import Ranges
 
@@ -83,7 +84,7 @@ class Tracker:
 
     def observe(self, observation: Observation) -> None:
         """A new frame, and how far the robot went since the one before."""
-        self._at.before, self._at.now = self._at.now, observation.features
+        self._at.observe(observation.features, observation.moved)
         self._ranges = observation.ranges
         if self.here is not None:
             self.here = self.here.moved(observation.moved)
@@ -166,12 +167,12 @@ class Tracker:
 
     def was_carried(self) -> bool:
         """Whether this frame shows another place than the one before it."""
-        match = self._against_before()
+        match = self._against(self._at.before)
         return self._at.before is not None and (match is None or not self._resembles(match))
 
     def likeness(self, s_goal: int) -> float:
-        """Similarity of this frame to a picture, as a share of its similarity to the frame before."""
-        match = self._against_before()
+        """Similarity of this frame to a picture, as a share of its similarity to a frame from beside it."""
+        match = self._against(self._at.apart or self._at.before)
         return s_goal / max(similarity(match, self._profile) if match is not None else s_goal, 1)
 
     def _resume(self) -> None:
@@ -195,10 +196,9 @@ class Tracker:
         at_node = is_at(match, self._maps.graph, self._profile)
         return at_node and is_elsewhere(node, self._ranges, match.yaw_rad)
 
-    def _against_before(self) -> NodeMatch | None:
-        """This frame against the one before it."""
-        before = self._at.before
-        return None if before is None else self._matcher.match([], 0, (before,)).get(GOAL)
+    def _against(self, frame: Features | None) -> NodeMatch | None:
+        """This frame against an earlier one."""
+        return None if frame is None else self._matcher.match([], 0, (frame,)).get(GOAL)
 
     def _is_away(self) -> bool:
         """Whether the robot is not where its own motion says; that is forgotten then."""

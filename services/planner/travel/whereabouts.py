@@ -1,9 +1,14 @@
 """Where a robot is in a map, as one mission leaves it and the next one finds it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from shared.mapgraph.local.displacement import Displacement
 from shared.messages.features import Features
+from shared.motion.motion import NO_MOTION, Motion
+
+APART_M = 0.05
+"""Between two frames that are to say how much views of one spot share; chosen: as far as a robot stops from
+where a picture was taken. Where it stands still two frames are one picture, and share more than any other."""
 
 
 @dataclass
@@ -19,6 +24,7 @@ class Whereabouts:
         here: where the robot is relative to a node; None while nobody knows.
         guessed: it was found at one of several places that look alike, and followed from there.
         now, before: the frame that says so, and the one before it.
+        apart: the latest of the frames that the robot left `APART_M` behind, and somewhat more.
     """
 
     map: str = ""
@@ -26,6 +32,16 @@ class Whereabouts:
     guessed: bool = False
     now: Features | None = None
     before: Features | None = None
+    apart: Features | None = None
+    _left: Features | None = field(default=None, init=False)
+    _since: Motion = field(default=NO_MOTION, init=False)
+
+    def observe(self, features: Features, moved: Motion) -> None:
+        """A new frame, and how the robot moved since the one before."""
+        self.before, self.now = self.now, features
+        self._since = self._since.then(moved)
+        if self._left is None or self._since.way_m >= APART_M:
+            self.apart, self._left, self._since = self._left, features, NO_MOTION
 
     def of(self, name: str) -> "Whereabouts":
         """This, where the next mission is in the same map; else nobody knows anything."""

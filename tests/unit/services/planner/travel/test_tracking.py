@@ -1,6 +1,7 @@
 """A robot does not jump: what looks alike elsewhere is not where it is."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -146,6 +147,17 @@ def test_likeness_is_a_share_of_what_two_frames_in_a_row_have_in_common(matcher)
     assert tracker.likeness(100) == 1.0
     drive(tracker, seq=2)
     assert tracker.likeness(100) == 0.5
+
+
+def test_likeness_is_a_share_of_what_a_frame_from_beside_it_has_in_common_while_the_robot_stands():
+    """Two frames from one spot are one picture: a goal 4 cm off had half of their matches, and was none."""
+    asked = []
+    tracker = tracker_of(SimpleNamespace(match=lambda _, __, targets: asked.append(targets) or {}))
+    for seq, moved_m in enumerate([0.0, 0.04, 0.04, 0.0, 0.0, 0.01]):
+        drive(tracker, (moved_m, 0.0), seq)
+    tracker.likeness(100)
+    ((apart,),) = asked
+    assert apart.seq == 0, "9 cm back; all later ones are nearer than a hand's breadth"
 
 
 def test_weak_or_doubtful_matches_do_not_say_where_it_is(matcher):
