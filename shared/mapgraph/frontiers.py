@@ -39,29 +39,44 @@ def sector_rad(sector: int) -> float:
     return math.remainder(sector * SECTOR_RAD, math.tau)
 
 
-def with_explored(node: Node, graph: MapGraph, rules: ExploredRules, longest_m: float = math.inf) -> Node:
+def with_explored(
+    node: Node,
+    graph: MapGraph,
+    rules: ExploredRules,
+    longest_m: float = math.inf,
+    covers_m: float = math.inf,
+) -> Node:
     """The node with the sectors explored that its edges in `graph` cover.
+
+    Beside an edge, a sector stays open in which the sensors saw so far beyond what its end covers that there
+    is floor for another node: a door may be there, and a room behind it of which the end knows nothing.
 
     Args:
         node: of the map.
         graph: its edges.
         rules: what they cover.
         longest_m: a longer edge covers nothing.
+        covers_m: how far around a node floor counts as known.
     """
     explored = list(node.explored)
     for neighbour in graph.neighbours(node.node_id):
         edge, heading = graph.edge(node.node_id, neighbour), graph.heading(node.node_id, neighbour)
         if edge is None or heading is None or edge.inliers < rules.s_explored:
             continue
-        if math.isfinite(longest_m) and edge_length_m(graph, edge) > longest_m:
+        length_m = edge_length_m(graph, edge)
+        if length_m > longest_m:
             continue
         near = edge.inliers > NEARER * rules.s_explored
         half_rad = rules.near_half_rad if near else rules.explored_half_rad
         if not edge.clear:
             half_rad = min(half_rad, rules.blind_half_rad)
         for sector in range(SECTORS):
-            if abs(math.remainder(sector_rad(sector) - heading, math.tau)) < half_rad:
-                explored[sector] = True
+            off_rad = abs(math.remainder(sector_rad(sector) - heading, math.tau))
+            if off_rad >= half_rad:
+                continue
+            beside = off_rad > SECTOR_RAD / 2
+            sees_on = node.free_m is not None and node.free_m[sector] > length_m + 2.0 * covers_m
+            explored[sector] = explored[sector] or not (beside and sees_on)
     return node.model_copy(update={"explored": tuple(explored)})
 
 

@@ -51,7 +51,7 @@ def without_poor_directions(graph: MapGraph, root: int, profile: Profile, views:
     Returns:
         Those nodes, with the directions explored that are not worth the way.
     """
-    covers_m = _covered_m(graph, root, profile)
+    covers_m = covered_m(graph, root, profile)
     if not covers_m:
         return []
     poses = _poses_around(graph, root)
@@ -65,7 +65,7 @@ def without_poor_directions(graph: MapGraph, root: int, profile: Profile, views:
     return changed
 
 
-def _covered_m(graph: MapGraph, node_id: int, profile: Profile) -> float:
+def covered_m(graph: MapGraph, node_id: int, profile: Profile) -> float:
     """How far around a node floor counts as known; 0 where every direction is to be explored."""
     if profile.mapping.covers_m is not None:
         return profile.mapping.covers_m
@@ -95,7 +95,7 @@ def best_sector(
         turn_rad = abs(math.remainder(sector_rad(sector) - preferred_rad, math.tau))
         return round(gains[sector] * (1.0 - STRAIGHT_SHARE * turn_rad / math.pi), 6), -sector
 
-    node, covers_m = graph.nodes[node_id], _covered_m(graph, node_id, profile)
+    node, covers_m = graph.nodes[node_id], covered_m(graph, node_id, profile)
     gains = dict.fromkeys(sectors, 1.0)
     if covers_m and sectors:
         worths = _gains(graph, _poses_around(graph, node_id), node, covers_m, views)
@@ -115,7 +115,7 @@ def gain_here(
         profile: how far a node covers.
         views: what was seen from the nodes, and on the way here.
     """
-    covers_m = _covered_m(graph, here.node_id, profile)
+    covers_m = covered_m(graph, here.node_id, profile)
     if not covers_m:
         return 0.0
     poses = _poses_around(graph, here.node_id)

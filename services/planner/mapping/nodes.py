@@ -6,7 +6,7 @@ from typing import Any
 
 from services.planner.echoes import by_sector_m
 from services.planner.mapping.edges import NewEdges
-from services.planner.mapping.floor_gain import without_poor_directions
+from services.planner.mapping.floor_gain import covered_m, without_poor_directions
 from services.planner.mapping.floor_views import FloorViews
 from services.planner.ports import MapAccess, Matches, Note, Observation
 from services.planner.profiles import Profile
@@ -89,9 +89,10 @@ def explored_along(graph: MapGraph, node: Node, seen: Sequence[Edge], profile: P
     longest_m = EXPLORED_FACTOR * covers_m if covers_m else math.inf
     grown = MapGraph([*graph.nodes.values(), node], [*graph.edges.values(), *seen])
     others = [graph.nodes[e.b if e.a == node.node_id else e.a] for e in seen]
-    known = [with_explored(other, grown, rules, longest_m) for other in others]
+    known_m = covered_m(grown, node.node_id, profile) or math.inf
+    known = [with_explored(other, grown, rules, longest_m, known_m) for other in others]
     changed = [n for n in known if n != graph.nodes[n.node_id]]
-    return [with_explored(node, grown, rules, longest_m), *changed]
+    return [with_explored(node, grown, rules, longest_m, known_m), *changed]
 
 
 def edges_to(node_id: int, matches: Matches, judged: NewEdges, profile: Profile) -> list[Edge]:

@@ -54,3 +54,19 @@ def test_a_longer_edge_than_nodes_cover_leaves_the_ground_between_unexplored():
     graph = MapGraph(nodes, [seen])
     assert with_explored(nodes[0], graph, ExploredRules(), longest_m=2.1).explored[0]
     assert not any(with_explored(nodes[0], graph, ExploredRules(), longest_m=1.9).explored)
+
+
+def test_beside_an_edge_a_way_that_was_seen_far_beyond_what_its_end_covers_stays_open():
+    """As through a door beside the way to the next node."""
+    near = Edge(a=0, b=1, heading_ab_rad=math.pi / 2, heading_ba_rad=-math.pi / 2, inliers=80, length_m=0.9)
+    free_m = tuple(3.0 if sector == 2 else 1.5 for sector in range(12))
+    nodes = [Node(node_id=0, open=ALL_OPEN, free_m=free_m), Node(node_id=1, open=ALL_OPEN)]
+    graph = MapGraph(nodes, [near])
+
+    def explored(covers_m):
+        node = with_explored(nodes[0], graph, ExploredRules(), covers_m=covers_m)
+        return [s for s in range(12) if node.explored[s]]
+
+    assert explored(covers_m=1.0) == [3, 4]
+    assert explored(covers_m=1.1) == [2, 3, 4]
+    assert explored(covers_m=0.1) == [3], "straight along an edge its end has directions of its own"
