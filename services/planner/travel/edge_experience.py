@@ -30,12 +30,13 @@ class EdgeExperience:
     Attributes:
         banned: edges not to be tried again for now.
         unreachable: nodes that no way was found to, twice.
+        tried_again: bans were lifted: there is no way but those that failed.
     """
 
     def __init__(self, profile: Profile, maps: MapAccess) -> None:
         self._profile, self._maps = profile, maps
         self._stuck_at: dict[int, int] = {}
-        self._tried_again = False
+        self.tried_again = False
         self.banned: set[EdgeKey] = set()
         self.unreachable: set[int] = set()
 
@@ -56,9 +57,9 @@ class EdgeExperience:
 
     def lift_bans(self) -> bool:
         """Lift all bans, once a mission: obstacles move, and a second try from elsewhere may succeed."""
-        if self._tried_again or not (self.banned or self.unreachable):
+        if self.tried_again or not (self.banned or self.unreachable):
             return False
-        self._tried_again = True
+        self.tried_again = True
         self.banned.clear()
         self.unreachable.clear()
         self._stuck_at.clear()

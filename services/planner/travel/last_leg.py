@@ -5,7 +5,7 @@ the robot sees there need not be enough to head for it. Behind a door furniture 
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
 from shared.mapgraph.graph import MapGraph
@@ -13,6 +13,7 @@ from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import NEAR_NODES
 from shared.mapgraph.local.relative_poses import relative_poses
 from shared.mapgraph.local.view_range import edge_length_m
+from shared.mapgraph.routing import GOAL
 from shared.motion.motion import Motion
 
 REACHED_M = 0.3
@@ -66,6 +67,35 @@ def reckoned_end(
     """Bearing and distance of the last node of a path, over edges that are suspended by these alone."""
     legs = (along_edges(graph, path[first:]) for first in range(len(path) - 1, -1, -1))
     return next((spot for leg in legs if (spot := reckoned(graph, here, leg)) is not None), None)
+
+
+def next_reckoned(
+    graph: MapGraph,
+    here: Displacement | None,
+    path: Sequence[int],
+    ahead: Iterable[int],
+    picture: Displacement | None,
+) -> tuple[int, float, float] | None:
+    """The first waypoint that the robot is not at by the map, as it lies from here.
+
+    Args:
+        graph: the map.
+        here: where the robot is.
+        path: nodes, and at its end maybe GOAL.
+        ahead: indices of the waypoints to ask for, in order.
+        picture: where the goal picture was taken, relative to a node.
+
+    Returns:
+        Its index, bearing in the robot frame (radians) and distance (metres); None where nobody knows.
+    """
+    for index in ahead:
+        if path[index] == GOAL:
+            spot = reckoned(graph, here, picture)
+        else:
+            spot = reckoned_end(graph, here, path[: index + 1])
+        if spot is None or spot[1] >= REACHED_M:
+            return None if spot is None else (index, *spot)
+    return None
 
 
 def reckoned_rad(graph: MapGraph, here: Displacement | None, goal: Displacement | None) -> float | None:

@@ -10,7 +10,7 @@ from services.planner.similarity import heading_of, similarity
 from services.planner.surroundings import free_way_m
 from services.planner.travel.destination import Destination
 from services.planner.travel.edge_experience import EdgeExperience
-from services.planner.travel.last_leg import REACHED_M, reckoned, reckoned_end
+from services.planner.travel.last_leg import next_reckoned
 from services.planner.travel.lookahead import Lookahead
 from services.planner.travel.patience import Patience
 from services.planner.travel.states import Event
@@ -238,35 +238,29 @@ class PathFollower:
     def _blind(self, ranges: Ranges, notes: tuple[Note, ...]) -> Decision | None:
         """To where the map has the waypoint, and past it to the next one; only for some frames of a path.
 
-        Not where what stands on the nearer half of the way shuts it; who is on such a way goes round. A
-        picture that is near has to show.
+        Not where what stands on the nearer half of the way shuts it, while there is another; who is on such a
+        way goes round. A picture that is near has to show.
         """
         if self._strict or len(self.path) < 2 or self._destination.picture is None:
             return None
         if not self._patience.goes_on_blind():
             return None
-        graph, here = self._maps.graph, self._tracker.here
-        for index in range(self.index, self._last + 1):
-            waypoint = self.path[index]
-            if waypoint == GOAL:
-                spot = reckoned(graph, here, self._destination.lies(self.path[-2]))
-            else:
-                spot = reckoned_end(graph, here, self.path[: index + 1])
-            if spot is None:
-                return None
-            heading_rad, left_m = spot
-            if left_m < REACHED_M:
-                continue
-            is_shut = free_way_m(ranges, heading_rad, self._profile) < 0.5 * left_m
-            if is_shut and waypoint != GOAL and not self._reckons:
-                return None
-            self._reckons = True
-            if index != self.index:
-                self._head_for(index)
-            self._heading_rad = heading_rad
-            why = f"{_name(waypoint)} not seen: to where the map has it"
-            return Decision("go", heading_rad, 0, 1.0, "reckoned", why, notes, distance_m=left_m)
-        return None
+        ahead = range(self.index, self._last + 1)
+        picture = self._destination.lies(self.path[-2]) if self.path[-1] == GOAL else None
+        spot = next_reckoned(self._maps.graph, self._tracker.here, self.path, ahead, picture)
+        if spot is None:
+            return None
+        index, heading_rad, left_m = spot
+        is_shut = free_way_m(ranges, heading_rad, self._profile) < 0.5 * left_m
+        goes_round = self._reckons or self._experience.tried_again
+        if is_shut and self.path[index] != GOAL and not goes_round:
+            return None
+        self._reckons = True
+        if index != self.index:
+            self._head_for(index)
+        self._heading_rad = heading_rad
+        why = f"{_name(self.path[index])} not seen: to where the map has it"
+        return Decision("go", heading_rad, 0, 1.0, "reckoned", why, notes, distance_m=left_m)
 
     def _no_progress(self, match: NodeMatch) -> bool:
         disparity = match.disparity_rad if match.disparity_rad is not None else 0.0

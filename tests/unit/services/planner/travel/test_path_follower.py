@@ -111,16 +111,18 @@ def test_a_goal_that_does_not_show_from_the_last_node_is_headed_for_by_the_map()
     assert all(event is None for event, _ in found)
 
 
-def blind_steps(shows, path, free_m=3.0, steps=16):
+def blind_steps(shows, path, free_m=3.0, steps=16, *, tried_again=False):
     """What a robot at the first node of a row decides that sees of the nodes ahead those that show."""
     maps = Maps(grid(4, 1))
+    experience = EdgeExperience(DEFAULT, maps)
+    experience.tried_again = tried_again
     tracker = Tracker(DEFAULT, maps, Matcher(), certain=False)
     tracker.stand_at(Displacement(0, spread_m=0.1))
     goal = SimpleNamespace(
         picture=features(), arrival_rad=0.01, aliased=False, cuts_corners=True, sees=lambda *_: None,
         lies=lambda _: Displacement(3, x_m=1.0),
     )  # fmt: skip
-    follower = PathFollower(DEFAULT, maps, [*path, GOAL], goal, set(), EdgeExperience(DEFAULT, maps), tracker)
+    follower = PathFollower(DEFAULT, maps, [*path, GOAL], goal, set(), experience, tracker)
     ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(free_m,) * SECTORS, max_range_m=4.0)
     x_m, decisions, event = 0.0, [], None
     while event is None and len(decisions) < steps:
@@ -148,6 +150,12 @@ def test_where_the_way_is_shut_a_node_that_does_not_show_is_not_headed_for():
     assert event is Event.NO_PROGRESS
     assert follower.failed_edge() == ((0, 1), 1)
     assert all(one.action == "hold" for one in found)
+
+
+def test_where_no_other_way_is_left_it_goes_round_what_shuts_the_one_there_is():
+    event, _, found = blind_steps([0], [0, 1, 2], free_m=0.5, tried_again=True)
+    assert event is None
+    assert "reckoned" in [one.method for one in found]
 
 
 def test_past_where_the_map_has_it_the_next_one_is_headed_for_and_at_last_the_path_is_lost():
