@@ -8,7 +8,7 @@ class RestartPolicy:
     """Exponential back-off over the exits of the recent past.
 
     Attributes:
-        first_s: pause before the first restart.
+        first_s: pause before the first restart, that of Docker.
         factor: growth of the pause per further exit within the window.
         longest_s: upper bound of the pause.
         window_s: how long an exit counts.
@@ -16,8 +16,8 @@ class RestartPolicy:
         settle_s: a degraded service must stay ready for so long to count as healthy again.
     """
 
-    first_s: float = 0.3
-    factor: float = 2.0
+    first_s: float = 0.1
+    factor: float = 3.0
     longest_s: float = 10.0
     window_s: float = 60.0
     storm_exits: int = 5
