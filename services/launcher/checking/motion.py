@@ -87,6 +87,15 @@ class Seen:
         return self.match.status == "no_baseline" and not turned
 
 
+def falls_short(one: Seen) -> bool:
+    """Whether the wheels went as drive told them and not far enough: something may have interrupted them."""
+    if one.odometry is None or one.told_share < LEAST_TOLD or not _of_odometry([one]):
+        return False
+    told = (one.move.forward_m, one.move.left_m, one.move.turn_rad)
+    done = sum(a * b for a, b in zip(one.odometry, told, strict=True)) / sum(b * b for b in told)
+    return 0.0 <= done < one.told_share
+
+
 def motion_problems(seen: Sequence[Seen]) -> list[str]:
     """What is wrong, a sentence each; each cause once."""
     done = [one for one in seen if one.told_share >= LEAST_TOLD]

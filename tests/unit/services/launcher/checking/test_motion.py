@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from services.launcher.checking.motion import MOVES, Seen, below_above, motion_problems
+from services.launcher.checking.motion import MOVES, Seen, below_above, falls_short, motion_problems
 from shared.messages.matching import NodeMatch
 
 
@@ -123,3 +123,21 @@ def test_what_is_below_the_horizon_moves_more_unless_the_camera_hangs_upside_dow
     ]
     turns = [seen(move, turn=lambda rad: -rad) for move in MOVES[4:]]
     assert motion_problems([*swapped, *turns])[0].startswith("the camera hangs upside down")
+
+
+@pytest.mark.parametrize(
+    ("move", "share", "odometry", "short"),
+    [
+        (MOVES[3], 1.0, (0.0, -0.07, 0.0), True),  # a pause of the machine
+        (MOVES[3], 1.0, (0.0, -0.19, 0.0), False),
+        (MOVES[3], 0.6, (0.0, -0.11, 0.0), False),  # drive kept it from a wall
+        (MOVES[3], 0.3, (0.0, 0.0, 0.0), False),
+        (MOVES[3], 1.0, (0.0, 0.19, 0.0), False),  # the wrong way is no interruption
+        (MOVES[1], 1.0, (-0.05, 0.0, 0.0), True),
+        (MOVES[5], 1.0, (0.0, 0.0, -math.radians(12.0)), True),
+        (MOVES[5], 1.0, (0.0, 0.0, math.radians(12.0)), False),
+        (MOVES[0], 1.0, None, False),
+    ],
+)
+def test_a_move_that_went_the_right_way_and_not_far_enough_falls_short(move, share, odometry, short):
+    assert falls_short(seen(move, share=share, odometry=odometry)) is short
