@@ -21,13 +21,12 @@ fi
 
 compose() { "${docker[@]}" compose --env-file "${file:-/dev/null}" "$@"; }
 robot_host() { "${docker[@]}" compose --env-file /dev/null --project-name topnav-robot --file deploy/compose.robot.yml "$@"; }
-load() { # N busy loops beside the stack
-    [ -z "${loops:-}" ] || kill $loops 2>/dev/null || :
+load() { # N busy loops beside the stack, in a session of their own, as those of another terminal are
+    [ -z "${loops:-}" ] || kill -- "-$loops" 2>/dev/null || :
     loops=""
-    for ((i = 0; i < $1; i++)); do
-        (while :; do :; done) &
-        loops+=" $!"
-    done
+    [ "$1" -gt 0 ] || return 0
+    setsid bash -c 'for ((i = 0; i < $0; i++)); do while :; do :; done & done; wait' "$1" &
+    loops=$!
 }
 say() { printf '%s (%d s)\n' "$*" "$((SECONDS - began))"; began=$SECONDS; }
 finish() {
@@ -49,7 +48,7 @@ began=$SECONDS
 ask() { "${curl[@]}" --silent --show-error --fail-with-body --max-time 100 --header "Authorization: Bearer $token" "$@"; }
 failed_up() { "$@" ps --all --format '{{.Service}} {{.Status}}' | cat "$folder/up.log" - >"$folder/failed"; } # said last
 up_by() { # COMMAND: what runs Compose
-    "$@" up --detach --wait --wait-timeout 600 >"$folder/up.log" 2>&1 || { failed_up "$@"; return 1; }
+    "$@" up --detach --wait --wait-timeout 900 >"$folder/up.log" 2>&1 || { failed_up "$@"; return 1; }
 }
 up() { up_by compose "$@"; }
 read_token() { token=$(compose exec -T gateway cat /var/lib/topnav/token/token); }
@@ -63,10 +62,12 @@ goto() {
     done
     grep --quiet '"state":"succeeded"' <<<"$answer" || { echo "not arrived: $answer"; return 1; }
 }
-explores() { # a mission that maps: until the first node is there
-    ask --json '{"action": "explore", "map": "flat"}' "$robot/missions" >/dev/null
-    until ask "$api/maps/flat" | grep --quiet '"nodes":[1-9]'; do
-        [ "$((SECONDS - began))" -lt 300 ] || return 1
+explores() { # a mission that maps
+    ask --json '{"action": "explore", "map": "flat", "seed": 1}' "$robot/missions" >/dev/null
+}
+has_nodes() { # NUMBER: waits until the map has so many
+    until [[ $(ask "$api/maps/flat") =~ '"nodes":'([0-9]+) && ${BASH_REMATCH[1]} -ge $1 ]]; do
+        [ "$((SECONDS - began))" -lt 600 ] || { echo "the map has not $1 nodes"; return 1; }
         sleep 1
     done
 }
@@ -85,13 +86,14 @@ read_token
 say "ready without any file"
 test "$("${curl[@]}" --silent --output /dev/null --write-out '%{http_code}' "$api/robots")" = 401
 
-ask --json '{"action": "explore", "map": "flat", "seed": 1}' "$robot/missions" >/dev/null
-sleep "${EXPLORE_S:-60}"
+explores
+has_nodes 4
 ask "$robot/frame.jpg?width=1024" >"$folder/goal.jpg"
-sleep "$((${EXPLORE_S:-60} / 3))"
+has_nodes 12
+ask "$robot/frame.jpg?width=1024" >"$folder/other.jpg"
+has_nodes 20 # what is around both pictures is mapped
 ask --request POST "$robot/missions/cancel" >/dev/null
 say "explored: $(ask "$api/maps/flat" | cut -c 1-120)"
-ask "$robot/frame.jpg?width=1024" >"$folder/other.jpg"
 goto "$folder/goal.jpg"
 say "at the picture"
 
@@ -140,6 +142,7 @@ export TOPNAV_BUS=tls
 up --profile secure
 read_token
 explores
+has_nodes 1
 say "a mission on the secured bus"
 compose --profile secure down --volumes --timeout 5 >/dev/null 2>&1
 
@@ -153,4 +156,5 @@ export TOPNAV_ROBOT_CERTS=$folder/certs
 up_by robot_host || { robot_host logs --tail 20; exit 1; }
 read_token
 explores
+has_nodes 1
 say "a mission with the robot on a host of its own"
