@@ -7,6 +7,7 @@ against distance are those measured on rendered frames; headings carry noise and
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import Protocol
 
 import numpy as np
@@ -98,13 +99,19 @@ class Walker:
         return post(*self.point, (0.0, 1.7), self.radius_m, Material("lacquer"))
 
 
+@cache
+def apartment() -> FreeSpace:
+    """The floor of the apartment, which nothing changes in place."""
+    return free_space(load_world("apartment"))
+
+
 @dataclass
 class PlaneWorld:
     """The robot's true pose and everything that can be sensed from it."""
 
     pose: Pose
     rng: np.random.Generator
-    space: FreeSpace = field(default_factory=lambda: free_space(load_world("apartment")))
+    space: FreeSpace = field(default_factory=apartment)
     seq: int = 0
     collisions: int = 0
     driven_m: float = 0.0

@@ -19,7 +19,7 @@ def test_bench_loop_reports_rate_stages_and_machine(repository, tmp_path, real_t
         "bench",
         "loop",
         "--steps",
-        "30",
+        "20",
         "--json",
         str(figures),
         *(["--real-time"] if real_time else []),

@@ -24,8 +24,8 @@ from tests.e2e.fleet import Robot, another_robot, taking_part
 pytestmark = [pytest.mark.render, pytest.mark.slow, pytest.mark.timeout(600)]
 
 WORLD, MAP, FIRST, SECOND = "apartment", "flat", "r1", "r2"
-ALONE = {"action": "explore", "map": MAP, "max_steps": 30}
-TOGETHER = {"action": "explore", "map": MAP, "max_steps": 50}
+ALONE = {"action": "explore", "map": MAP, "max_steps": 24}
+TOGETHER = {"action": "explore", "map": MAP, "max_steps": 40}
 """Too few steps for the whole apartment, so that nobody is ready before the other."""
 
 

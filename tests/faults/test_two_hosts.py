@@ -14,6 +14,7 @@ from tests.faults.two_hosts import NO_NETWORK
 pytestmark = [pytest.mark.timeout(600)]
 
 DELAY_S, LOSS, CUTS = 0.1, 0.02, 3
+EXPLORE_S = 30.0
 STOPS_S = 0.5 + DELAY_S
 
 
@@ -21,7 +22,7 @@ def test_the_wheels_stand_soon_after_a_cut_and_the_mission_completes_when_it_hea
     if shutil.which("ip") is None or not Path("/dev/net/tun").exists():
         pytest.skip("a line between two hosts needs the program ip and /dev/net/tun")
     report = tmp_path / "report.json"
-    line = [f"--delay-s={DELAY_S}", f"--loss={LOSS}", f"--cuts={CUTS}"]
+    line = [f"--delay-s={DELAY_S}", f"--loss={LOSS}", f"--cuts={CUTS}", f"--explore-s={EXPLORE_S}"]
     command = [sys.executable, "-m", "tests.faults.two_hosts", *line, f"--json={report}"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=580, check=False)
     if NO_NETWORK in done.stderr:

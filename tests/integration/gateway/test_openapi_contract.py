@@ -9,7 +9,7 @@ from services.launcher.processes.supervisor import Launcher
 from tests.integration.gateway.conftest import UNHURRIED
 
 CHECKS = "not_a_server_error,status_code_conformance,content_type_conformance,response_schema_conformance"
-EXAMPLES = 5
+EXAMPLES = 3
 
 
 NO_RATE_LIMITS = {f"GATEWAY_{name.upper()}": str(value) for name, value in UNHURRIED.items()}

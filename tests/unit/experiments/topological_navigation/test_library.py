@@ -222,6 +222,7 @@ def test_the_examples_run(program, mapped, files, repository, tmp_path):
     }[program]
     script = repository / "deploy" / "examples" / program
     environment = {"PYTHONPATH": str(repository), "PATH": "/usr/bin:/bin", "HOME": str(tmp_path)}
+    environment |= {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
     done = subprocess.run(
         [sys.executable, script, *arguments],
         cwd=tmp_path,

@@ -53,7 +53,7 @@ def test_no_edge_leads_a_period_further(explored):
     assert spread_m > 1.5 * PERIOD_M
     assert len(errors) > 100
     assert longest_m < 0.8 * PERIOD_M
-    assert np.mean(np.array(errors) < math.radians(20.0)) > 0.99  # of all sights here 2 % point anywhere
+    assert np.mean(np.array(errors) < math.radians(20.0)) > 0.985  # of all sights here 2 % point anywhere
 
 
 def test_driven_edges_are_as_long_as_the_robot_drove(explored):

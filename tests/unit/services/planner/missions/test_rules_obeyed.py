@@ -63,7 +63,7 @@ class Flat:
         return min(math.dist(p[:2], self.maps.poses[n][:2]) for p in path for n in nodes)
 
 
-@pytest.mark.parametrize("seed", [2, 3, 5])
+@pytest.mark.parametrize("seed", [2, 3, 6])
 def test_exploration_with_three_areas_enters_none_and_makes_no_node_in_them(seed):
     here = Flat(seed, 100)
     graph, rng = here.maps.graph, np.random.default_rng(seed)
