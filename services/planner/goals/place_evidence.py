@@ -98,9 +98,10 @@ class PlaceEvidence:
         return unseen / (2 * (len(told) + 2))
 
     def told(self) -> str:
-        """How much the goal differs at each place where that is known, for people."""
+        """How much the goal differs at each place where that is known, for people, to end a sentence with."""
         known = sorted((differs, place.nodes[0]) for place, differs in self._differ().items())
-        return ", ".join(f"{node}: {differs:.0f}" for differs, node in known)
+        told = ", ".join(f"{node}: {differs:.0f}" for differs, node in known)
+        return f"; differences: {told}" if told else ""
 
     def _alive(self) -> list[Hypothesis]:
         differs = self._differ()

@@ -257,7 +257,7 @@ class GoalPlaces:
         if left:
             alike = f"{visits[here].likeness:.0%} alike; " if here in visits else ""
             told = self._evidence.told()
-            return Ruling(f"{alike}{len(left)} places that look alike are not excluded; differences: {told}")
+            return Ruling(f"{alike}{len(left)} places that look alike are not excluded{told}")
         most = visits[best].likeness if best is not None else 0.0
         if self._shut and (most < SPOT_SHARE or self._evidence.risk(len(self._shut)) > EQUAL_RISK):
             shut = ", ".join(str(place.nodes[0]) for place in self._places if place in self._shut)
@@ -268,7 +268,7 @@ class GoalPlaces:
             return Ruling(why, "goal_not_in_map")
         if self._evidence.rivals():
             why = f"one of the places of nodes {self.names}, which look alike"
-            return Ruling(f"{why}; differences: {self._evidence.told()}", self._look_again())
+            return Ruling(why + self._evidence.told(), self._look_again())
         return Ruling() if best == here else Ruling(f"another place resembles the goal more, by {most:.0%}")
 
     def _look_again(self) -> FailureKind:

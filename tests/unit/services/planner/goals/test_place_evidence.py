@@ -63,7 +63,7 @@ def test_nobody_has_been_anywhere():
 
 
 def test_what_differs_is_told_the_least_first():
-    assert evidence(EQUAL, EQUAL, here=[25.0], there=[9.0]).told() == "9: 9, 1: 25"
+    assert evidence(EQUAL, EQUAL, here=[25.0], there=[9.0]).told() == "; differences: 9: 9, 1: 25"
 
 
 def test_what_differs_at_both_places_tells_nothing():
@@ -73,7 +73,7 @@ def test_what_differs_at_both_places_tells_nothing():
     seen.looked(HERE, look(30.0, robot))
     seen.looked(THERE, np.maximum(look(30.0, a_cell_aside), look(20.0, rug)))
     assert (seen.best(), seen.rivals()) == (HERE, [])
-    assert seen.told() == "1: 2, 9: 20"
+    assert seen.told() == "; differences: 1: 2, 9: 20"
 
 
 def test_what_was_moved_since_at_both_places_leaves_a_rival():
