@@ -85,4 +85,4 @@ def parameters_of(record: MissionRecord) -> dict[str, Any]:
 
 def has_goal(record: MissionRecord) -> bool:
     """Whether the mission is to get to somewhere that the map has."""
-    return record.goal is not None or not {"goal_node", "place"}.isdisjoint(parameters_of(record))
+    return record.goal is not None or not {"goal_node", "place", "sign"}.isdisjoint(parameters_of(record))
