@@ -14,7 +14,10 @@ from simulator.world.world_file import Ground, Room, WorldFile
 CONTACT_M = 1e-6
 POST_EVERY_M = 2.0
 PICKET_EVERY_M = 0.32
-PANEL_M, PANELS = 3.2, 6
+TILE_M = 1.6
+"""Length of a bar after which its texture repeats."""
+PANELS, BLOCKS = 12, 6
+"""Looks of walls' panels and of barriers' blocks; chosen: a panel has equals, 20 m away and among others."""
 Span = tuple[float, float]
 Edge = tuple[int, float, float]
 """Axis of the normal, place of the edge on it, and +1 or -1 towards the outside."""
@@ -76,15 +79,17 @@ def _bar(edge: Edge, span: Span, depth: Span, z: Span, material: Material, solid
     axis, line, outward = edge
     across = (line + outward * depth[0], line + outward * depth[1])
     x, y = (across, span) if axis == 0 else (span, across)
-    return box(x, y, z, material, solid=solid, tile_m=1.6)
+    return box(x, y, z, material, solid=solid, tile_m=TILE_M)
 
 
 def _panelled(edge: Edge, span: Span, depth: Span, z: Span, material: Material) -> list[Part]:
-    """A long bar in panels that differ."""
-    parts = []
-    for piece in cut(span, PANEL_M):
-        look = replace(material, seed=material.seed + variant(PANELS, edge[0], edge[1], piece[0]))
-        parts.append(_bar(edge, piece, depth, z, look))
+    """A long bar in panels that differ, each as long as its texture: a longer one would show it twice."""
+    parts, last = [], -1
+    for piece in cut(span, TILE_M):
+        look = variant(PANELS, edge[0], edge[1], piece[0])
+        look = (look + 1) % PANELS if look == last else look
+        parts.append(_bar(edge, piece, depth, z, replace(material, seed=material.seed + look)))
+        last = look
     return parts
 
 
@@ -111,7 +116,7 @@ def _barrier(edge: Edge, span: Span) -> list[Part]:
     parts = []
     for low, high in pairwise(ends):
         piece = (float(low) + 0.02, float(high) - 0.02)
-        look = replace(CONCRETE, seed=CONCRETE.seed + variant(PANELS, edge[0], edge[1], low))
+        look = replace(CONCRETE, seed=CONCRETE.seed + variant(BLOCKS, edge[0], edge[1], low))
         parts.append(_bar(edge, (float(low), float(high)), (0.0, 0.5), (0.0, 0.3), look))
         parts.append(_bar(edge, piece, (0.12, 0.38), (0.3, 0.82), look))
     return parts

@@ -1,5 +1,7 @@
 """Open ground: floors, and borders that nobody crosses."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -29,6 +31,18 @@ def test_borders_stop_the_robot_on_all_four_sides(border):
             abs(p.centre_m[0] - x) <= p.size_m[0] / 2 and abs(p.centre_m[1] - y) <= p.size_m[1] / 2
             for p in solids
         ), (x, y)
+
+
+@pytest.mark.parametrize(("border", "texture"), [("wall", "bricks"), ("sidewalk", "paving")])
+def test_no_texture_follows_on_itself_along_a_border(border, texture):
+    """Beside bricks that repeated every 1.6 m a robot took spots so far apart for one."""
+    parts = ground_parts(world([ground([0, 40], [0, 30], border)]))
+    south = [p for p in parts if p.material.kind == texture and p.centre_m[1] < 0.0 and p.size_m[0] < 30.0]
+    south.sort(key=lambda p: p.centre_m[0])
+    assert len(south) > 20
+    assert all(p.tile_m and p.size_m[0] < 1.5 * p.tile_m for p in south)
+    assert all(a.material.seed != b.material.seed for a, b in pairwise(south))
+    assert len({p.material.seed for p in south}) > 6
 
 
 def test_nothing_stands_where_two_grounds_touch():
