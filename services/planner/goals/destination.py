@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from services.planner.goals.place_evidence import Visit
-from services.planner.goals.places import GoalPlaces, Ruling
+from services.planner.goals.places import SPOT_M, GoalPlaces, Ruling
 from services.planner.goals.setbacks import Setbacks
 from services.planner.mapping.reach import claims
 from services.planner.ports import MapAccess, Matcher, Matches, Note
@@ -13,6 +13,7 @@ from services.planner.similarity import trusted
 from services.planner.surroundings import is_clear, is_clear_from
 from services.planner.travel.destination import Setback, Verdict
 from services.planner.travel.edge_experience import EdgeExperience
+from services.planner.travel.last_leg import reckoned
 from services.planner.travel.localisation import reachable_nodes
 from services.planner.travel.states import Event
 from services.planner.travel.tracking import Tracker
@@ -197,7 +198,7 @@ class GoalDestination:
         if similarity < GOAL_SHARE * s_map:
             self.aliased = True
             if self.places.plain:
-                self._rule_out(view)
+                self._rule_out(view, tracker.here)
             else:
                 self._settle(self.places.refuted(tracker.here))
             return f"aliased: a node of the map resembles this view more than the goal does, S {s_map}"
@@ -237,8 +238,16 @@ class GoalDestination:
         clear = {n for n, m in known.items() if is_clear_from(graph.nodes[n], m, graph, profile)}
         return reachable_nodes(found, graph, profile, profile.mapping.s_edge_min, clear)
 
-    def _rule_out(self, here: Matches) -> None:
-        """This is not where the picture was taken: nor is that beside the nodes seen from here."""
-        seen = {node for node, match in here.items() if trusted(match, self._profile)}
-        elsewhere = {node: cost for node, cost in self._targets.items() if node not in seen}
-        self._targets = elsewhere or self._targets
+    def _rule_out(self, view: Matches, here: Displacement | None) -> None:
+        """This is not where the picture was taken: nor is it where nodes put it that put it here.
+
+        Along a fence the next node of the right place may be in view, two metres on. Where nobody knows where
+        a node puts the picture it is not beside those in view.
+        """
+        seen = {node for node, match in view.items() if trusted(match, self._profile)}
+
+        def is_out(node: int) -> bool:
+            spot = reckoned(self._maps.graph, here, self._lies.get(node))
+            return node in seen if spot is None else spot[1] < SPOT_M
+
+        self._targets = {n: cost for n, cost in self._targets.items() if not is_out(n)} or self._targets
