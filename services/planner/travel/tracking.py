@@ -6,6 +6,7 @@ the robot has looked in vain for long.
 """
 
 import logging
+import math
 from collections.abc import Mapping
 
 from services.planner.echoes import is_elsewhere
@@ -37,6 +38,10 @@ not there; chosen: half as far again as `travel_arrival_rad` stands for."""
 AT_NODE_M = 0.2
 """How far a robot is from a node at which it arrived, where nothing more is known: half of what counts as
 there."""
+
+ABOUT_M = 0.5
+"""Who is nearer than this to a node, and whose place is known as well as that in a room, is about there;
+chosen: nodes lie so far apart at the least, and a robot goes a third of a metre between two frames."""
 
 COMPARED = 8
 """Nodes around the robot that are compared with its view; chosen: as many as a goto compares."""
@@ -164,6 +169,13 @@ class Tracker:
             return False
         away_m = distances(graph, here, [node_id]).get(node_id, 0.0)
         return away_m > BEYOND_M * openness(graph, node_id) + BEYOND_STDS * here.spread_m
+
+    def is_about(self, node_id: int) -> bool:
+        """Whether the robot is at a node by all that it saw and did, to a step or two."""
+        graph, here = self._maps.graph, self.here
+        if here is None or here.spread_m > ABOUT_M * openness(graph, node_id):
+            return False
+        return distances(graph, here, [node_id]).get(node_id, math.inf) < ABOUT_M
 
     def was_carried(self) -> bool:
         """Whether this frame shows another place than the one before it."""
