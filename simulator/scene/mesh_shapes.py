@@ -10,6 +10,8 @@ from simulator.scene.texturing import AnyFloat, edge_vertices, stretched, textur
 SIDES, SLIM_SIDES, SLIM_M = 16, 8, 0.06  # of a cylinder, and of one with a radius below this; chosen by eye
 ON_FLOOR_M = 0.02  # a face this low is floor or rug
 LARGE_M = 2.4  # textures of larger boxes run on from one to the next; chosen: more than any furniture's side
+MASONRY = ("bricks", "paving")
+"""Laid in level courses that go on from one part to the next, whatever the shape of these."""
 
 
 def mesh_of(part: Part) -> Mesh:
@@ -65,7 +67,7 @@ def _box_face(part: Part, axis: int, sign: float) -> Mesh:
     s, t = np.meshgrid(np.linspace(-1, 1, n_u, dtype=np.float32), np.linspace(1, -1, n_v, dtype=np.float32))
     points = normal * half[axis] + s[..., None] * side * half[right] + t[..., None] * lift * half[up]
     points = points.reshape(-1, 3)
-    large = max(part.size_m) > LARGE_M
+    large = max(part.size_m) > LARGE_M or part.material.kind in MASONRY
     if part.tile_m is None:
         uv = stretched(part, (s.ravel() + 1) / 2, (1 - t.ravel()) / 2)
     else:
