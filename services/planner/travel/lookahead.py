@@ -4,7 +4,6 @@ from collections.abc import Collection, Sequence
 
 from services.planner.ports import MapAccess, Matcher, Matches
 from services.planner.profiles import Profile
-from services.planner.similarity import similarity
 from services.planner.surroundings import is_half_clear
 from services.planner.travel.destination import Destination
 from services.planner.travel.tracking import Tracker
@@ -57,15 +56,11 @@ class Lookahead:
         Another light takes half of the matches, and in the open a small disparity means near only where many
         agree. Who came to a node by all that it saw and did, and sees no baseline to it, is there.
         """
-        if match is None or self.is_beyond(waypoint):
+        if match is None:
             return False
-        if is_at(match, self._maps.graph, self._profile):
-            return True
-        seen = (
-            match.status == "no_baseline"
-            and similarity(match, self._profile) > self._profile.travel.s_via_min
-        )
-        return seen and not self._strict and self._tracker.is_about(waypoint)
+        is_there = is_at(match, self._maps.graph, self._profile)
+        is_there = is_there or (not self._strict and self._tracker.came_to(waypoint, match))
+        return is_there and not self.is_beyond(waypoint)
 
     def is_beyond(self, waypoint: int) -> bool:
         """Whether what the robot did says that it is not at a waypoint; the thesis does not ask."""

@@ -170,10 +170,12 @@ class Tracker:
         away_m = distances(graph, here, [node_id]).get(node_id, 0.0)
         return away_m > BEYOND_M * openness(graph, node_id) + BEYOND_STDS * here.spread_m
 
-    def is_about(self, node_id: int) -> bool:
-        """Whether the robot is at a node by all that it saw and did, to a step or two."""
+    def came_to(self, node_id: int, match: NodeMatch) -> bool:
+        """Whether the robot is at a node by all that it saw and did, and sees no baseline to it."""
         graph, here = self._maps.graph, self.here
-        if here is None or here.spread_m > ABOUT_M * openness(graph, node_id):
+        if here is None or match.status != "no_baseline" or not self._resembles(match):
+            return False
+        if here.spread_m > ABOUT_M * openness(graph, node_id):
             return False
         return distances(graph, here, [node_id]).get(node_id, math.inf) < ABOUT_M
 
