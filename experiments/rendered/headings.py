@@ -31,7 +31,7 @@ class PairResult:
 
     Attributes:
         raw, verified: number of matches before and after verification.
-        disparity_rad: median change of bearing after yaw; None where there is no yaw.
+        disparity_rad: change of bearings after yaw; None where there is no yaw.
         verified_errors_rad: heading error by method, from verified matches; None where it gave no heading.
         raw_errors_rad: the same from all matches; epipolar is the same in both.
         yaw_error_rad: None where there is no yaw.

@@ -17,6 +17,24 @@ NOISE_DISPARITY = 1.6651
 """Median displacement by noise alone: 2 sqrt(ln 2), the median sqrt(2 ln 2) of a Rayleigh variable for the
 difference of two bearings, sqrt(2) noises per axis."""
 
+NEAR_QUANTILE, NEAR_SHARE = 0.8, 0.5
+"""The nearest fifth of what agrees says how far two pictures lie apart where the rest is too far to move: in
+a room half of what it exceeds is the median of all. Of pairs at most 1.5 m apart in a street and two yards
+the median is 5.4 to 5.9 degrees a metre with an error of a factor of 1.7 to 3.5, the larger of both 7.9 to
+8.5 with one of 1.6 to 1.8; in rooms 12.7 to 16.0 and 13.8 to 16.6."""
+
+
+def disparity_rad(apart_rad: FloatArray) -> float:
+    """How much bearings differ beside the rotation, radians: falls to zero where both pictures are taken.
+
+    The median over the inliers; where most of them are far away (sky, the end of a street) what is near tells
+    more, see NEAR_QUANTILE.
+
+    Args:
+        apart_rad: (N,) angles between the current bearings and the turned target ones, N >= 1.
+    """
+    return max(float(np.median(apart_rad)), NEAR_SHARE * float(np.quantile(apart_rad, NEAR_QUANTILE)))
+
 
 def noise_rad(residual: FloatArray, fitted: int = 2) -> float:
     """Standard deviation of inlier residuals (rad) after `fitted` parameters.
@@ -69,7 +87,7 @@ def confidence(
 
 
 def parallax_share(disparity_rad: float, noise_rad: float) -> float:
-    """Share of the squared median disparity that is parallax, [1e-3, 1].
+    """Share of the squared disparity that is parallax, [1e-3, 1].
 
     Noise enters the normal matrix as if it were parallax and would make a direction look sharp that rests on
     nothing.

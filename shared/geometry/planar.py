@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from shared.geometry.evidence import confidence, log_nfa, parallax_share
+from shared.geometry.evidence import confidence, disparity_rad, log_nfa, parallax_share
 from shared.geometry.planar_fit import NoFit, PlanarFit, fit_planar, leverage_weights
 from shared.geometry.planar_model import PlanarMatches, evaluate
 from shared.geometry.rotation import RotationFit, fit_yaw
@@ -82,7 +82,7 @@ def _rotation_result(fit: RotationFit) -> TwoViewResult:
         inlier_mask=fit.mask,
         inliers=int(fit.mask.sum()),
         confidence=0.0,
-        disparity_rad=float(np.median(apart)),
+        disparity_rad=disparity_rad(apart),
         heading_std_rad=None,
         yaw_std_rad=fit.std_rad,
         sign_margin=0.0,
@@ -97,7 +97,7 @@ def _accept(
 ) -> TwoViewResult:
     """Result of a model that chance does not explain, unless its direction is too loose to follow."""
     apart = _apart_rad(fit.yaw_rad, matches, fit.mask)
-    disparity = float(np.median(apart))
+    disparity = disparity_rad(apart)
     share = parallax_share(disparity, fit.noise_rad)
     heading_std = float(np.sqrt(fit.covariance[0, 0]) / share)
     if heading_std > settings.max_heading_std_rad:

@@ -29,8 +29,8 @@ class TwoViewSettings:
         min_matches: fewer matches than this are not tried; chosen: three times what fixes a hypothesis.
         min_inliers: fewer inliers than this are never a usable answer: with 4, unrelated pairs are answered;
             16 lose 11 % of the answers.
-        no_baseline_rad: a median disparity below this means that the camera has only turned, radians; chosen:
-            the noise of a keypoint, two thirds of a pixel at 800 columns.
+        no_baseline_rad: a median change of bearings below this means that the camera has only turned,
+            radians; chosen: the noise of a keypoint, two thirds of a pixel at 800 columns.
         no_baseline_noise: the same bound in units of the measured noise, whichever is larger; pure noise
             gives 1.7 (evidence.NOISE_DISPARITY).
         min_parallax_z: displacements away from the heading must be this many standard deviations from zero on
@@ -88,8 +88,8 @@ class TwoViewResult:
         inlier_mask: (N,) matches the model explains; all False for 'too_few'.
         inliers: their number.
         confidence: [0, 1], how far `heading_rad` can be trusted; 0 unless 'ok'.
-        disparity_rad: median angle over the inliers between the current bearing and the yaw-compensated
-            target bearing, the arrival measure; None where `yaw_rad` is None.
+        disparity_rad: by how much the bearings of the inliers differ once the target ones are turned, the
+            arrival measure, see `evidence.disparity_rad`; None where `yaw_rad` is None.
         heading_std_rad: standard deviation of the heading from the normal matrix; None unless 'ok'.
         yaw_std_rad: the same for the yaw.
         sign_margin: [0, 1], how clearly the parallax tells forwards from backwards.

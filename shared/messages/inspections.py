@@ -49,7 +49,7 @@ class CompareReply(Message):
         why: why they were not compared.
         inliers: keypoints of both that agree with one motion of the camera.
         yaw_rad: turn from the reference's camera to the frame's, counter-clockwise.
-        disparity_rad: median by which bearings differ beside the turn; nearly 0 at the same spot.
+        disparity_rad: by how much bearings differ beside the turn; nearly 0 at the same spot.
         regions: what changed, most significant first.
         took_ms: of the whole comparison.
     """

@@ -46,7 +46,7 @@ class NodeMatch(Part):
         inliers: S, those of them that agree with one camera motion.
         heading_rad: direction from the frame to the node, camera frame of the frame; None if unknown.
         yaw_rad: rotation from the frame's camera to the node's, counter-clockwise.
-        disparity_rad: median change of bearing after yaw: falls to zero on arrival.
+        disparity_rad: change of bearings after yaw: falls to zero on arrival.
         confidence: probability that heading_rad is right to 20 degrees, as far as one pair of views tells.
         noise_rad: spread of the inliers about the motion: what only looks alike stands a little differently.
         moved: inliers whose bearing changed by more than 2 degrees beside the camera's turn: the others are

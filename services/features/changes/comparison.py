@@ -48,7 +48,7 @@ def changed_regions(
         reference: (H, 2 H, 3) BGR, equirectangular, camera upright.
         current: the same from a spot up to 0.3 m away; it may have another size.
         yaw_rad: turn from the reference's camera to the current one, counter-clockwise.
-        disparity_rad: median by which bearings of what both show differ beside the turn.
+        disparity_rad: by how much bearings of what both show differ beside the turn.
         sensitivity: when a difference counts.
 
     Returns:

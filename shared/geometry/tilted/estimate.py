@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shared.geometry.evidence import NOISE_FLOOR_RAD, parallax_share
+from shared.geometry.evidence import NOISE_FLOOR_RAD, disparity_rad, parallax_share
 from shared.geometry.planar_model import PlanarMatches
 from shared.geometry.rotation import fit_rotation
 from shared.geometry.sphere import BoolArray, FloatArray, angle_between_rad, bearings_from_lonlat, wrap_rad
@@ -144,7 +144,7 @@ def _turned(rotation: FloatArray, mask: BoolArray, matches: Bearings) -> TwoView
         inlier_mask=mask,
         inliers=int(mask.sum()),
         confidence=0.0,
-        disparity_rad=float(np.median(apart)),
+        disparity_rad=disparity_rad(apart),
         heading_std_rad=None,
         yaw_std_rad=None,
         sign_margin=0.0,
@@ -159,7 +159,7 @@ def _accepted(motion: Motion, matches: Bearings, settings: TwoViewSettings) -> T
     if inliers < settings.min_inliers or motion.score < settings.min_nats:
         return refused("inconsistent", mask)
     apart = _apart_rad(matches, motion.pose.rotation[0] @ matches.target)[mask]
-    disparity = float(np.median(apart))
+    disparity = disparity_rad(apart)
     heading_std = motion.heading_std_rad / parallax_share(disparity, motion.noise_rad)
     if heading_std > settings.max_heading_std_rad or float(np.hypot(travel[0], travel[1])) < MIN_LEVEL:
         return refused("inconsistent", mask)
@@ -180,7 +180,7 @@ def _accepted(motion: Motion, matches: Bearings, settings: TwoViewSettings) -> T
     )
 
 
-def heading_probability(motion: Motion, disparity_rad: float) -> float:
+def heading_probability(motion: Motion, apart_rad: float) -> float:
     """Probability that the heading is within 20 degrees: logistic regression, see PROBABILITY."""
     constant, by_margin, by_noise, by_spread, by_disparity = PROBABILITY
     margin = (motion.score - motion.rival) / max(motion.score, 1.0)
@@ -188,7 +188,7 @@ def heading_probability(motion: Motion, disparity_rad: float) -> float:
     x += by_noise * np.log(motion.noise_rad / NOISE_RAD) + by_spread * np.log(
         np.degrees(motion.heading_std_rad)
     )
-    x += by_disparity * np.log(np.degrees(disparity_rad) + 1.0)
+    x += by_disparity * np.log(np.degrees(apart_rad) + 1.0)
     return float(1.0 / (1.0 + np.exp(-x)))
 
 

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from shared.geometry.evidence import confidence, log_nfa, parallax_share, sign_margin
+from shared.geometry.evidence import confidence, disparity_rad, log_nfa, parallax_share, sign_margin
 from shared.geometry.planar import estimate_planar
 from shared.geometry.two_view_types import TwoViewSettings
 from tests.unit.shared.geometry.synthetic_room import make_scene
@@ -23,6 +23,11 @@ def test_false_alarms_by_hand():
 def test_share_of_parallax_by_hand():
     assert parallax_share(0.0166510, 0.005) == pytest.approx(0.75, abs=1e-4)
     assert parallax_share(0.001, 0.005) == pytest.approx(1e-3)
+
+
+def test_disparity_is_the_median_or_half_of_what_the_nearest_fifth_exceeds():
+    assert disparity_rad(np.array([0.02, 0.04, 0.06, 0.08, 0.10])) == pytest.approx(0.06)
+    assert disparity_rad(np.array([0.0, 0.0, 0.0, 0.3, 0.4, 0.5])) == pytest.approx(0.2)
 
 
 def test_sign_margin_is_the_net_share_of_clipped_evidence():

@@ -35,6 +35,24 @@ def test_level_cameras_are_answered_as_such():
         assert (result.status, result.model) == ("ok", "planar")
 
 
+def test_what_is_near_tells_the_way_where_most_of_what_agrees_is_too_far_to_move():
+    """A yard under clouds: of the matches a third move, by ten times what the median of all says."""
+    rng = np.random.default_rng(13)
+    for k in range(12):
+        near, sky = make_scene(rng, 30, noise_deg=0.15), make_scene(rng, 60, distance_m=0.0, noise_deg=0.15)
+        turn = near.yaw_rad - sky.yaw_rad
+        target = sky.target - [turn, 0.0]
+        result = two_view(
+            np.concatenate([near.current, sky.current]),
+            np.concatenate([near.target, target]),
+            np.random.default_rng(k),
+            cues=Cues(np.full(90, 0.9)),
+        )
+        assert result.usable
+        assert error_deg(result.heading_rad, near.heading_rad) < 3.0
+        assert result.disparity_rad > np.deg2rad(3.0)
+
+
 def test_who_says_that_cameras_stand_level_gets_no_other_answer():
     scene = make_scene(np.random.default_rng(11), 80, 40, noise_deg=0.15, tilt_deg=10.0)
     limits = dataclasses.replace(LIMITS, tilting=False)
