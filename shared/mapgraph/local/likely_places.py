@@ -31,7 +31,9 @@ LISTED_SHARE = 0.45
 others, by support or by the core; at 0.5 in all but one."""
 FIT_SHARE = 0.6
 """Of them one that has less of its expected matches than this share of what another has is none: of 290
-pictures of a hostel and an office the right place had 0.68 at the least."""
+pictures of a hostel and an office the right place had 0.68 at the least. More than are expected make none
+likelier: clouds over a yard agree with nodes of all of it, and outdid the right place, with 0.8 of what was
+expected there, in 8 of 120 pictures of two yards."""
 PLAIN_FACTOR = 1.2
 """A place alone is plain where its best node has this many times the matches of neighbours on a driven way.
 Of 137 pictures whose place had no rival 130 have; of 160 without their place in the map 5 have."""
@@ -49,7 +51,7 @@ def likely(graph: MapGraph, claims: Mapping[int, Claim], places: Sequence[Hypoth
     if len(rivals) < 2:
         return rivals
     fits = [_fit(graph, claims, place) for place in rivals]
-    least = FIT_SHARE * max((fit for fit in fits if fit is not None), default=0.0)
+    least = FIT_SHARE * min(1.0, max((fit for fit in fits if fit is not None), default=0.0))
     return [place for place, fit in zip(rivals, fits, strict=True) if fit is None or fit >= least]
 
 

@@ -67,5 +67,12 @@ def test_a_twin_that_has_what_would_be_expected_of_it_is_a_rival():
     assert len(places_of({**right, **twin})) == 2
 
 
+def test_a_place_with_more_matches_than_expected_excludes_none_that_has_most_of_its_own():
+    """Clouds over a yard: nodes of the other end agree with the picture, beyond what is near them."""
+    right = seen_from(1.5, 0.5, (1, 2, 13, 14), share=0.8)
+    clouds = seen_from(9.0, 5.0, (8, 9, 10, 20, 21, 22), share=1.6)
+    assert {place.nodes[0] for place in places_of({**right, **clouds})} >= {1}
+
+
 def test_a_map_without_driven_ways_has_no_typical_similarity():
     assert typical_similarity(MapGraph()) == 0.0
