@@ -42,12 +42,15 @@ Of 137 pictures whose place had no rival 130 have; of 160 without their place in
 def likely(graph: MapGraph, claims: Mapping[int, Claim], places: Sequence[Hypothesis]) -> list[Hypothesis]:
     """The places a picture can have been taken at, the likeliest first; one only where it has no rival.
 
+    A place of which nothing near shows is none while there is another.
+
     Args:
         graph: the map.
         claims: what the picture says of nodes of it.
         places: what they speak for, that with most support first.
     """
-    rivals = _rivals(places)
+    near = [place for place in places if any(claims[node].is_near for node in place.nodes)]
+    rivals = _rivals(near or places)
     if len(rivals) < 2:
         return rivals
     fits = [_fit(graph, claims, place) for place in rivals]

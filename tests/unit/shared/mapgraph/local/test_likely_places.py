@@ -1,5 +1,7 @@
 """Of the places that a picture resembles the likely ones are named."""
 
+from dataclasses import replace
+
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.hypotheses import hypotheses
 from shared.mapgraph.local.likely_places import is_plain, likely, typical_similarity
@@ -72,6 +74,14 @@ def test_a_place_with_more_matches_than_expected_excludes_none_that_has_most_of_
     right = seen_from(1.5, 0.5, (1, 2, 13, 14), share=0.8)
     clouds = seen_from(9.0, 5.0, (8, 9, 10, 20, 21, 22), share=1.6)
     assert {place.nodes[0] for place in places_of({**right, **clouds})} >= {1}
+
+
+def test_a_place_of_which_only_what_is_far_away_shows_is_none_beside_one_seen_from_near():
+    right = {1: claim(0.5, 0.0, 70), 2: claim(1.5, 0.0, 40)}
+    clouds = {node: replace(claim(node - 8.0, 2.0, 60), is_near=False) for node in range(7, 12)}
+    [place] = places_of({**right, **clouds})
+    assert set(place.nodes) == set(right)
+    assert places_of(clouds)
 
 
 def test_a_map_without_driven_ways_has_no_typical_similarity():
