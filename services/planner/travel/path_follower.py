@@ -17,6 +17,7 @@ from services.planner.travel.states import Event
 from services.planner.travel.steady_heading import SteadyHeading
 from services.planner.travel.tracking import Tracker
 from services.planner.travel.waypoints import (
+    AGAIN,
     has_arrived,
     is_near_end,
     is_strict,
@@ -93,6 +94,7 @@ class PathFollower:
         slow = self._at_end() and self._destination.arrival_rad > 0.0
         left_m = way_left_m(match, self._maps.graph)
         speed = speed_fraction(left_m - observation.since.way_m) if slow and left_m is not None else 1.0
+        speed = min(speed, self._pace())
         why = f"to {name}, S {s_cv}"
         return None, Decision("go", self._heading_rad, s_cv, speed, method, why, notes, distance_m=left_m)
 
@@ -160,6 +162,12 @@ class PathFollower:
         """The edge being driven; None at index 0, where there is none (thesis equation 6.4)."""
         return edge_key(*self.path[self.index - 1 : self.index + 1]) if self.index else None
 
+    def _pace(self) -> float:
+        """Share of full speed: an edge that was driven in vain is tried again slowly."""
+        ends = None if self._strict else self._current_edge()
+        edge = None if ends is None else self._maps.graph.edge(*ends)
+        return AGAIN if edge is not None and edge.failures else 1.0
+
     def _has_arrived(self, match: NodeMatch | None) -> bool:
         if match is None or not self._at_end() or self._ahead.is_beyond(self.path[self.index]):
             return False
@@ -220,7 +228,7 @@ class PathFollower:
         unseen_frames = self._patience.unseen_frames
         if unseen_frames < self._profile.travel.suspend_after and self._heading_rad is not None:
             why = f"{name} not seen for {unseen_frames:.0f} frames, keeping on"
-            return None, Decision("go", self._heading_rad, s_cv, 1.0, "previous", why, notes)
+            return None, Decision("go", self._heading_rad, s_cv, self._pace(), "previous", why, notes)
         blind = None if at_goal else self._blind(ranges, notes)
         return (None, blind) if blind else (Event.WAYPOINT_LOST, _hold(f"{name} not seen, S {s_cv}", notes))
 
@@ -260,7 +268,7 @@ class PathFollower:
             self._head_for(index)
         self._heading_rad = heading_rad
         why = f"{_name(self.path[index])} not seen: to where the map has it"
-        return Decision("go", heading_rad, 0, 1.0, "reckoned", why, notes, distance_m=left_m)
+        return Decision("go", heading_rad, 0, self._pace(), "reckoned", why, notes, distance_m=left_m)
 
     def _no_progress(self, match: NodeMatch) -> bool:
         disparity = match.disparity_rad if match.disparity_rad is not None else 0.0

@@ -12,6 +12,7 @@ from services.planner.travel.path_follower import PathFollower
 from services.planner.travel.patience import NEAREST_STEPS
 from services.planner.travel.states import Event
 from services.planner.travel.tracking import Tracker
+from services.planner.travel.waypoints import AGAIN
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.routing import GOAL
@@ -42,6 +43,19 @@ def event_before(free_m, **leg):
     follower = PathFollower(DEFAULT, maps, [0, 1], to_a_node, set(), experience, tracker)
     ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(free_m + 0.3,) * SECTORS, max_range_m=4.0)
     return follower.step(Observation(features(), ranges), Seen())[0], follower.index
+
+
+@pytest.mark.parametrize(("failures", "fraction"), [(0, 1.0), (1, AGAIN), (2, AGAIN)])
+def test_an_edge_that_was_driven_in_vain_is_tried_again_slowly(failures, fraction):
+    joined = edge(0, 1, 2).model_copy(update={"failures": failures})
+    maps = Maps(MapGraph([Node(node_id=0), Node(node_id=1)], [joined]))
+    tracker = Tracker(DEFAULT, maps, Seen(), certain=False)
+    to_a_node = SimpleNamespace(picture=None, arrival_rad=0.0, aliased=False, cuts_corners=True)
+    follower = PathFollower(DEFAULT, maps, [0, 1], to_a_node, set(), EdgeExperience(DEFAULT, maps), tracker)
+    ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(3.0,) * SECTORS, max_range_m=4.0)
+    _, decision = follower.step(Observation(features(), ranges), Seen())
+    assert (follower.index, decision.action) == (1, "go")
+    assert decision.speed_fraction == fraction
 
 
 def last_event(views):
