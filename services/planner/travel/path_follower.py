@@ -17,10 +17,12 @@ from services.planner.travel.states import Event
 from services.planner.travel.steady_heading import SteadyHeading
 from services.planner.travel.tracking import Tracker
 from services.planner.travel.waypoints import (
-    AGAIN,
+    SHUT_SHARE,
     has_arrived,
     is_near_end,
     is_strict,
+    is_taken,
+    pace_along,
     speed_fraction,
     way_left_m,
 )
@@ -91,12 +93,28 @@ class PathFollower:
             if self._near_end(match):
                 return Event.REACHED, _hold(f"as near to {name} as obstacles allow, S {s_cv}", notes)
             return Event.NO_PROGRESS, _hold(f"no progress towards {name}", notes)
-        slow = self._at_end() and self._destination.arrival_rad > 0.0
         left_m = way_left_m(match, self._maps.graph)
+        return None, self._towards(name, s_cv, method, left_m, observation, notes)
+
+    def _towards(
+        self,
+        name: str,
+        s_cv: int,
+        method: str,
+        left_m: float | None,
+        observation: Observation,
+        notes: tuple[Note, ...],
+    ) -> Decision:
+        """On to the present waypoint, slowly at the end of the path; past it where something stands there."""
+        pace, heading_rad, ranges = self._pace(), self._heading_rad or 0.0, observation.ranges
+        skips = pace < 1.0 and self.index < self._last
+        taken = skips and is_taken(ranges, heading_rad, left_m, self._profile)
+        if taken and (blind := self._next_blind(ranges, notes)):
+            return blind
+        slow = self._at_end() and self._destination.arrival_rad > 0.0
         speed = speed_fraction(left_m - observation.since.way_m) if slow and left_m is not None else 1.0
-        speed = min(speed, self._pace())
         why = f"to {name}, S {s_cv}"
-        return None, Decision("go", self._heading_rad, s_cv, speed, method, why, notes, distance_m=left_m)
+        return Decision("go", heading_rad, s_cv, min(speed, pace), method, why, notes, distance_m=left_m)
 
     def _turn(self, observation: Observation) -> None:
         """Directions are kept in the robot's frame, which turned."""
@@ -163,10 +181,9 @@ class PathFollower:
         return edge_key(*self.path[self.index - 1 : self.index + 1]) if self.index else None
 
     def _pace(self) -> float:
-        """Share of full speed: an edge that was driven in vain is tried again slowly."""
-        ends = None if self._strict else self._current_edge()
-        edge = None if ends is None else self._maps.graph.edge(*ends)
-        return AGAIN if edge is not None and edge.failures else 1.0
+        """Share of full speed: an edge driven in vain is tried again slowly, and the one after it."""
+        way = self.path[max(0, self.index - 2) : self.index + 1]
+        return 1.0 if self._strict else pace_along(self._maps.graph, way)
 
     def _has_arrived(self, match: NodeMatch | None) -> bool:
         if match is None or not self._at_end() or self._ahead.is_beyond(self.path[self.index]):
@@ -259,8 +276,8 @@ class PathFollower:
         if spot is None:
             return None
         index, heading_rad, left_m = spot
-        is_shut = free_way_m(ranges, heading_rad, self._profile) < 0.5 * left_m
-        goes_round = self._reckons or self._experience.tried_again
+        is_shut = free_way_m(ranges, heading_rad, self._profile) < SHUT_SHARE * left_m
+        goes_round = self._reckons or self._experience.tried_again or self._pace() < 1.0
         if is_shut and self.path[index] != GOAL and not goes_round:
             return None
         self._reckons = True

@@ -1,10 +1,12 @@
 """When a waypoint is reached, and when a later one is headed for instead (thesis equation 4.3). Pure."""
 
 import math
+from collections.abc import Sequence
+from itertools import pairwise
 
 from services.planner.profiles import Profile
 from services.planner.similarity import close_enough, similarity, trusted
-from services.planner.surroundings import is_clear, length_m
+from services.planner.surroundings import free_way_m, is_clear, length_m
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.view_range import openness
 from shared.messages.matching import NodeMatch
@@ -25,6 +27,11 @@ AGAIN = 0.3
 as shut at speed. Of 17 starts before a leaf that stands across a corridor of 2 m a gap of 0.82 m is passed
 from 7 at full speed and one of 0.7 m from none, at this share one of 0.66 m from all
 (tests/unit/services/drive/test_passing.py)."""
+
+SHUT_SHARE = 0.5
+"""A way is shut where less than this share of it is free; chosen: what stands on the nearer half."""
+TAKEN_M = 1.0
+"""Nearer than this to a waypoint, what shuts the way stands where it is; chosen: as deep as furniture."""
 
 SLOWEST = 0.15
 """Least share of full speed; chosen: 2 cm a step, a fifth of the arrival distance."""
@@ -102,6 +109,19 @@ def way_left_m(match: NodeMatch, graph: MapGraph) -> float | None:
 def speed_fraction(left_m: float) -> float:
     """Slow down towards the end of a path."""
     return min(1.0, max(SLOWEST, left_m / SLOW_M))
+
+
+def pace_along(graph: MapGraph, way: Sequence[int]) -> float:
+    """Share of full speed along some nodes: once an edge of them was driven in vain, AGAIN."""
+    edges = (graph.edge(*ends) for ends in pairwise(way))
+    return AGAIN if any(edge is not None and edge.failures for edge in edges) else 1.0
+
+
+def is_taken(ranges: Ranges, heading_rad: float, left_m: float | None, profile: Profile) -> bool:
+    """Whether something stands where a waypoint is, which lies so far away: nobody gets there."""
+    if left_m is None or left_m > TAKEN_M:
+        return False
+    return free_way_m(ranges, heading_rad, profile) < SHUT_SHARE * left_m
 
 
 def _nearer(match: NodeMatch, disparity_rad: float, graph: MapGraph) -> bool:

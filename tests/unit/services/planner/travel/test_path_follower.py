@@ -17,7 +17,7 @@ from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.routing import GOAL
 from shared.messages.base import SECTORS
-from shared.messages.maps import Node
+from shared.messages.maps import Node, PutEdge
 from shared.messages.sensors import Ranges
 from shared.motion.motion import Motion
 from tests.unit.services.planner.travel.seen import Maps, Matcher, by_node, features, match
@@ -56,6 +56,23 @@ def test_an_edge_that_was_driven_in_vain_is_tried_again_slowly(failures, fractio
     _, decision = follower.step(Observation(features(), ranges), Seen())
     assert (follower.index, decision.action) == (1, "go")
     assert decision.speed_fraction == fraction
+
+
+def test_past_a_waypoint_where_something_stands_it_goes_to_the_next_one_on_the_second_try():
+    """A door was left open: its leaf stands where the node was, half a metre ahead."""
+    maps = Maps(grid(4, 1))
+    maps.graph.apply([PutEdge(edge=maps.graph.edge(0, 1).model_copy(update={"failures": 1}))])
+    tracker = Tracker(DEFAULT, maps, Matcher(), certain=False)
+    tracker.stand_at(Displacement(0, x_m=0.5, spread_m=0.1))
+    to_a_node = SimpleNamespace(picture=features(), arrival_rad=0.0, aliased=False, cuts_corners=True)
+    experience = EdgeExperience(DEFAULT, maps)
+    follower = PathFollower(DEFAULT, maps, [0, 1, 2], to_a_node, set(), experience, tracker)
+    follower.index = 1
+    ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(0.4,) * SECTORS, max_range_m=4.0)
+    seen = SimpleNamespace(match=lambda *_, **__: by_node(match(1, 0.5, 0.0, 100)))
+    _, decision = follower.step(Observation(features(), ranges), seen)
+    assert (follower.index, decision.action, decision.method) == (2, "go", "reckoned")
+    assert decision.speed_fraction == AGAIN
 
 
 def last_event(views):
