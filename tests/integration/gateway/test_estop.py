@@ -6,6 +6,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from datetime import datetime
 from pathlib import Path
 
 import httpx
@@ -64,7 +65,8 @@ def test_engage_look_and_clear(clear: httpx.Client) -> None:
     cleared = clear.request("DELETE", PATH, json={"who": "bert", "why": "looked"})
     assert cleared.status_code == 200
     assert (cleared.json()["engaged"], cleared.json()["who"]) == (False, "bert")
-    assert cleared.json()["since"] > engaged.json()["since"]
+    since = [datetime.fromisoformat(answer.json()["since"]) for answer in (engaged, cleared)]
+    assert since[0] < since[1]
 
 
 def test_a_stop_needs_no_body_and_no_reason_is_too_long_for_it(clear: httpx.Client) -> None:
