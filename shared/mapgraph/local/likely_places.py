@@ -33,7 +33,7 @@ FIT_SHARE = 0.6
 """Of them one that has less of its expected matches than this share of what another has is none: of 290
 pictures of a hostel and an office the right place had 0.68 at the least. More than are expected make none
 likelier: clouds over a yard agree with nodes of all of it, and outdid the right place, with 0.8 of what was
-expected there, in 8 of 120 pictures of two yards."""
+expected there, in 6 of 120 pictures of two yards."""
 PLAIN_FACTOR = 1.2
 """A place alone is plain where its best node has this many times the matches of neighbours on a driven way.
 Of 137 pictures whose place had no rival 130 have; of 160 without their place in the map 5 have."""
