@@ -7,7 +7,6 @@ from services.planner.mapping.reach import distances
 from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress
 from services.planner.profiles import Profile
 from services.planner.similarity import heading_of, similarity
-from services.planner.surroundings import free_way_m
 from services.planner.travel.destination import Destination
 from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.last_leg import next_reckoned
@@ -17,9 +16,9 @@ from services.planner.travel.states import Event
 from services.planner.travel.steady_heading import SteadyHeading
 from services.planner.travel.tracking import Tracker
 from services.planner.travel.waypoints import (
-    SHUT_SHARE,
     has_arrived,
     is_near_end,
+    is_shut,
     is_strict,
     is_taken,
     pace_along,
@@ -106,7 +105,7 @@ class PathFollower:
         notes: tuple[Note, ...],
     ) -> Decision:
         """On to the present waypoint, slowly at the end of the path; past it where something stands there."""
-        pace, heading_rad, ranges = self._pace(), self._heading_rad or 0.0, observation.ranges
+        pace, heading_rad, ranges = self._pace(self.index), self._heading_rad or 0.0, observation.ranges
         skips = pace < 1.0 and self.index < self._last
         taken = skips and is_taken(ranges, heading_rad, left_m, self._profile)
         if taken and (blind := self._next_blind(ranges, notes)):
@@ -180,9 +179,9 @@ class PathFollower:
         """The edge being driven; None at index 0, where there is none (thesis equation 6.4)."""
         return edge_key(*self.path[self.index - 1 : self.index + 1]) if self.index else None
 
-    def _pace(self) -> float:
+    def _pace(self, index: int) -> float:
         """Share of full speed: an edge driven in vain is tried again slowly, and the one after it."""
-        way = self.path[max(0, self.index - 2) : self.index + 1]
+        way = self.path[max(0, index - 2) : index + 1]
         return 1.0 if self._strict else pace_along(self._maps.graph, way)
 
     def _has_arrived(self, match: NodeMatch | None) -> bool:
@@ -239,29 +238,27 @@ class PathFollower:
     ) -> tuple[Event | None, Decision]:
         """The waypoint is not seen: on for a few frames, then by the map; a goal by the map at once."""
         at_goal = self.path[self.index] == GOAL
-        if at_goal and (blind := self._blind(ranges, notes)):
+        if at_goal and (blind := self._blind(ranges, notes, self.index)):
             return None, blind
         self._patience.miss()
         unseen_frames = self._patience.unseen_frames
         if unseen_frames < self._profile.travel.suspend_after and self._heading_rad is not None:
             why = f"{name} not seen for {unseen_frames:.0f} frames, keeping on"
-            return None, Decision("go", self._heading_rad, s_cv, self._pace(), "previous", why, notes)
-        blind = None if at_goal else self._blind(ranges, notes)
+            return None, Decision(
+                "go", self._heading_rad, s_cv, self._pace(self.index), "previous", why, notes
+            )
+        blind = None if at_goal else self._blind(ranges, notes, self.index)
         return (None, blind) if blind else (Event.WAYPOINT_LOST, _hold(f"{name} not seen, S {s_cv}", notes))
 
     def _next_blind(self, ranges: Ranges, notes: tuple[Note, ...]) -> Decision | None:
         """On to the next waypoint, which does not show from this one; None where that has to be given up."""
-        present = self.index
-        self._head_for(present + 1)
-        blind = self._blind(ranges, notes)
-        if blind is None:
-            self._head_for(present)
-        else:
+        blind = self._blind(ranges, notes, self.index + 1)
+        if blind is not None:
             self._patience.stand(False)
         return blind
 
-    def _blind(self, ranges: Ranges, notes: tuple[Note, ...]) -> Decision | None:
-        """To where the map has the waypoint, and past it to the next one; only for some frames of a path.
+    def _blind(self, ranges: Ranges, notes: tuple[Note, ...], first: int) -> Decision | None:
+        """To where the map has that waypoint, and past it to the next one; only for some frames of a path.
 
         Not where what stands on the nearer half of the way shuts it, while there is another; who is on such a
         way goes round. A picture that is near has to show.
@@ -270,22 +267,23 @@ class PathFollower:
             return None
         if not self._patience.goes_on_blind():
             return None
-        ahead = range(self.index, self._last + 1)
+        ahead = range(first, self._last + 1)
         picture = self._destination.lies(self.path[-2]) if self.path[-1] == GOAL else None
         spot = next_reckoned(self._maps.graph, self._tracker.here, self.path, ahead, picture)
         if spot is None:
             return None
         index, heading_rad, left_m = spot
-        is_shut = free_way_m(ranges, heading_rad, self._profile) < SHUT_SHARE * left_m
-        goes_round = self._reckons or self._experience.tried_again or self._pace() < 1.0
-        if is_shut and self.path[index] != GOAL and not goes_round:
+        goes_round = self._reckons or self._experience.tried_again or self._pace(first) < 1.0
+        shut = is_shut(ranges, heading_rad, left_m, self._profile)
+        if shut and self.path[index] != GOAL and not goes_round:
             return None
         self._reckons = True
         if index != self.index:
             self._head_for(index)
         self._heading_rad = heading_rad
         why = f"{_name(self.path[index])} not seen: to where the map has it"
-        return Decision("go", heading_rad, 0, self._pace(), "reckoned", why, notes, distance_m=left_m)
+        pace = self._pace(self.index)
+        return Decision("go", heading_rad, 0, pace, "reckoned", why, notes, distance_m=left_m)
 
     def _no_progress(self, match: NodeMatch) -> bool:
         disparity = match.disparity_rad if match.disparity_rad is not None else 0.0

@@ -117,11 +117,14 @@ def pace_along(graph: MapGraph, way: Sequence[int]) -> float:
     return AGAIN if any(edge is not None and edge.failures for edge in edges) else 1.0
 
 
+def is_shut(ranges: Ranges, heading_rad: float, left_m: float, profile: Profile) -> bool:
+    """Whether something stands on the nearer part of a way so long."""
+    return free_way_m(ranges, heading_rad, profile) < SHUT_SHARE * left_m
+
+
 def is_taken(ranges: Ranges, heading_rad: float, left_m: float | None, profile: Profile) -> bool:
     """Whether something stands where a waypoint is, which lies so far away: nobody gets there."""
-    if left_m is None or left_m > TAKEN_M:
-        return False
-    return free_way_m(ranges, heading_rad, profile) < SHUT_SHARE * left_m
+    return left_m is not None and left_m <= TAKEN_M and is_shut(ranges, heading_rad, left_m, profile)
 
 
 def _nearer(match: NodeMatch, disparity_rad: float, graph: MapGraph) -> bool:

@@ -9,7 +9,7 @@ from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT
 from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.path_follower import PathFollower
-from services.planner.travel.patience import NEAREST_STEPS
+from services.planner.travel.patience import NEAREST_STEPS, STUCK_STEPS
 from services.planner.travel.states import Event
 from services.planner.travel.tracking import Tracker
 from services.planner.travel.waypoints import AGAIN
@@ -73,6 +73,21 @@ def test_past_a_waypoint_where_something_stands_it_goes_to_the_next_one_on_the_s
     _, decision = follower.step(Observation(features(), ranges), seen)
     assert (follower.index, decision.action, decision.method) == (2, "go", "reckoned")
     assert decision.speed_fraction == AGAIN
+
+
+def test_a_waypoint_that_something_stands_on_is_given_up_where_the_map_alone_does_not_lead_on():
+    """On the way to a frontier, say."""
+    maps = Maps(grid(4, 1))
+    maps.graph.apply([PutEdge(edge=maps.graph.edge(0, 1).model_copy(update={"failures": 1}))])
+    tracker = Tracker(DEFAULT, maps, Matcher(), certain=False)
+    to_a_node = SimpleNamespace(picture=None, arrival_rad=0.0, aliased=False, cuts_corners=True)
+    experience = EdgeExperience(DEFAULT, maps)
+    follower = PathFollower(DEFAULT, maps, [0, 1, 2], to_a_node, set(), experience, tracker)
+    follower.index = 1
+    ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(0.4,) * SECTORS, max_range_m=4.0)
+    seen = SimpleNamespace(match=lambda *_, **__: by_node(match(1, 0.5, 0.0, 100)))
+    events = [follower.step(Observation(features(), ranges), seen)[0] for _ in range(STUCK_STEPS + 2)]
+    assert events[-1] is Event.NO_PROGRESS
 
 
 def last_event(views):
