@@ -33,7 +33,16 @@ def disparity_rad(apart_rad: FloatArray) -> float:
     Args:
         apart_rad: (N,) angles between the current bearings and the turned target ones, N >= 1.
     """
-    return max(float(np.median(apart_rad)), NEAR_SHARE * float(np.quantile(apart_rad, NEAR_QUANTILE)))
+    return max(float(np.median(apart_rad)), NEAR_SHARE * quantile(apart_rad, NEAR_QUANTILE))
+
+
+def quantile(values: FloatArray, share: float) -> float:
+    """np.quantile(values, share), which takes ten times as long on so few."""
+    place = share * (len(values) - 1)
+    low = int(place)
+    high = min(low + 1, len(values) - 1)
+    ordered = np.sort(values)
+    return float(ordered[low] + (place - low) * (ordered[high] - ordered[low]))
 
 
 def noise_rad(residual: FloatArray, fitted: int = 2) -> float:

@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
-from shared.geometry.evidence import noise_rad, parallax_z, sign_margin
+from shared.geometry.evidence import noise_rad, parallax_z, quantile, sign_margin
 from shared.geometry.planar_model import Evaluation, PlanarMatches, evaluate, line_scores, solve_pairs
 from shared.geometry.planar_refine import refine
 from shared.geometry.sphere import BoolArray, FloatArray, wrap_rad
@@ -122,17 +122,8 @@ def leverage_weights(parallax_rad: FloatArray) -> FloatArray:
     near the epipolar plane moves a hundred times as far. The usual displacement is the lower quartile of all
     after the best yaw: it comes from right matches as long as they are a quarter of all.
     """
-    scale = PARALLAX_REACH * max(_lower_quartile(parallax_rad), PARALLAX_FLOOR_RAD)
+    scale = PARALLAX_REACH * max(quantile(parallax_rad, 0.25), PARALLAX_FLOOR_RAD)
     return np.asarray(1.0 / (1.0 + (parallax_rad / scale) ** 2), dtype=np.float64)
-
-
-def _lower_quartile(values: FloatArray) -> float:
-    """np.quantile(values, 0.25), which takes ten times as long on so few."""
-    place = 0.25 * (len(values) - 1)
-    low = int(place)
-    high = min(low + 1, len(values) - 1)
-    ordered = np.sort(values)
-    return float(ordered[low] + (place - low) * (ordered[high] - ordered[low]))
 
 
 def _winner(

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from shared.geometry import planar_fit
+from shared.geometry.evidence import quantile
 from shared.geometry.planar import estimate_planar
 from shared.geometry.planar_fit import leverage_weights
 from shared.geometry.planar_model import PlanarMatches, evaluate, solve_pairs
@@ -292,7 +293,8 @@ def test_hopeless_matches_are_not_refined(monkeypatch):
     assert len(refined) - after_wrong == 50
 
 
+@pytest.mark.parametrize("share", [0.25, 0.8])
 @pytest.mark.parametrize("count", [1, 2, 3, 6, 17, 100])
-def test_lower_quartile_is_that_of_numpy(count):
+def test_a_quantile_is_that_of_numpy(share, count):
     values = np.random.default_rng(count).normal(size=count)
-    assert planar_fit._lower_quartile(values) == pytest.approx(np.quantile(values, 0.25), rel=1e-12)
+    assert quantile(values, share) == pytest.approx(np.quantile(values, share), rel=1e-12)
