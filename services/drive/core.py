@@ -77,7 +77,8 @@ def compute_velocity(
     if steering.blocked:
         return stop_velocity(heading, steering.why, limits), memory
     contact_s = limits.contact_s + since.delay_s
-    speed_mps = speed(heading.s_cv, heading.s_slow, heading.s_max, heading.speed_fraction, limits.speeds)
+    fraction = min(heading.speed_fraction, steering.speed_fraction)
+    speed_mps = speed(heading.s_cv, heading.s_slow, heading.s_max, fraction, limits.speeds)
     if limits.avoidance == "passing":
         safe_mps = steering.clearance_m / contact_s
         speed_mps = min(speed_mps, max(SLOWEST * speed_mps, safe_mps))
@@ -85,7 +86,7 @@ def compute_velocity(
         steering.heading_rad,
         speed_mps,
         obstacles,
-        limits.passing.disc_m(heading.speed_fraction),
+        limits.passing.disc_m(fraction),
         contact_s,
         math.inf if steering.avoiding else distance_m,
     )

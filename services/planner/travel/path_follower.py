@@ -21,8 +21,8 @@ from services.planner.travel.waypoints import (
     is_shut,
     is_strict,
     is_taken,
-    pace_along,
     speed_fraction,
+    was_driven_in_vain,
     way_left_m,
 )
 from shared.mapgraph.graph import EdgeKey, edge_key
@@ -105,15 +105,15 @@ class PathFollower:
         notes: tuple[Note, ...],
     ) -> Decision:
         """On to the present waypoint, slowly at the end of the path; past it where something stands there."""
-        pace, heading_rad, ranges = self._pace(self.index), self._heading_rad or 0.0, observation.ranges
-        skips = pace < 1.0 and self.index < self._last
+        heading_rad, ranges = self._heading_rad or 0.0, observation.ranges
+        skips = self._tried_before(self.index) and self.index < self._last
         taken = skips and is_taken(ranges, heading_rad, left_m, self._profile)
         if taken and (blind := self._next_blind(ranges, notes)):
             return blind
         slow = self._at_end() and self._destination.arrival_rad > 0.0
         speed = speed_fraction(left_m - observation.since.way_m) if slow and left_m is not None else 1.0
         why = f"to {name}, S {s_cv}"
-        return Decision("go", heading_rad, s_cv, min(speed, pace), method, why, notes, distance_m=left_m)
+        return Decision("go", heading_rad, s_cv, speed, method, why, notes, distance_m=left_m)
 
     def _turn(self, observation: Observation) -> None:
         """Directions are kept in the robot's frame, which turned."""
@@ -179,10 +179,10 @@ class PathFollower:
         """The edge being driven; None at index 0, where there is none (thesis equation 6.4)."""
         return edge_key(*self.path[self.index - 1 : self.index + 1]) if self.index else None
 
-    def _pace(self, index: int) -> float:
-        """Share of full speed: an edge driven in vain is tried again slowly, and the one after it."""
+    def _tried_before(self, index: int) -> bool:
+        """Whether the edge to a waypoint, or the one before it, was driven in vain; not by the thesis."""
         way = self.path[max(0, index - 2) : index + 1]
-        return 1.0 if self._strict else pace_along(self._maps.graph, way)
+        return not self._strict and was_driven_in_vain(self._maps.graph, way)
 
     def _has_arrived(self, match: NodeMatch | None) -> bool:
         if match is None or not self._at_end() or self._ahead.is_beyond(self.path[self.index]):
@@ -244,9 +244,7 @@ class PathFollower:
         unseen_frames = self._patience.unseen_frames
         if unseen_frames < self._profile.travel.suspend_after and self._heading_rad is not None:
             why = f"{name} not seen for {unseen_frames:.0f} frames, keeping on"
-            return None, Decision(
-                "go", self._heading_rad, s_cv, self._pace(self.index), "previous", why, notes
-            )
+            return None, Decision("go", self._heading_rad, s_cv, 1.0, "previous", why, notes)
         blind = None if at_goal else self._blind(ranges, notes, self.index)
         return (None, blind) if blind else (Event.WAYPOINT_LOST, _hold(f"{name} not seen, S {s_cv}", notes))
 
@@ -273,7 +271,7 @@ class PathFollower:
         if spot is None:
             return None
         index, heading_rad, left_m = spot
-        goes_round = self._reckons or self._experience.tried_again or self._pace(first) < 1.0
+        goes_round = self._reckons or self._experience.tried_again or self._tried_before(first)
         shut = is_shut(ranges, heading_rad, left_m, self._profile)
         if shut and self.path[index] != GOAL and not goes_round:
             return None
@@ -282,8 +280,7 @@ class PathFollower:
             self._head_for(index)
         self._heading_rad = heading_rad
         why = f"{_name(self.path[index])} not seen: to where the map has it"
-        pace = self._pace(self.index)
-        return Decision("go", heading_rad, 0, pace, "reckoned", why, notes, distance_m=left_m)
+        return Decision("go", heading_rad, 0, 1.0, "reckoned", why, notes, distance_m=left_m)
 
     def _no_progress(self, match: NodeMatch) -> bool:
         disparity = match.disparity_rad if match.disparity_rad is not None else 0.0

@@ -22,12 +22,6 @@ NEARER_SHARE = 0.5
 """The end is hardly nearer than this share of what matches say, however little bearings differ: far things
 alone may agree, and rain or another light takes half of the matches at the very spot."""
 
-AGAIN = 0.3
-"""Share of full speed on an edge that was driven in vain: to a slow robot gaps are open that its sensors show
-as shut at speed. Of 17 starts before a leaf that stands across a corridor of 2 m a gap of 0.82 m is passed
-from 7 at full speed and one of 0.7 m from none, at this share one of 0.66 m from all
-(tests/unit/services/drive/test_passing.py)."""
-
 SHUT_SHARE = 0.5
 """A way is shut where less than this share of it is free; chosen: what stands on the nearer half."""
 TAKEN_M = 1.0
@@ -111,10 +105,10 @@ def speed_fraction(left_m: float) -> float:
     return min(1.0, max(SLOWEST, left_m / SLOW_M))
 
 
-def pace_along(graph: MapGraph, way: Sequence[int]) -> float:
-    """Share of full speed along some nodes: once an edge of them was driven in vain, AGAIN."""
+def was_driven_in_vain(graph: MapGraph, way: Sequence[int]) -> bool:
+    """Whether an edge along some nodes was driven in vain since it last led anywhere."""
     edges = (graph.edge(*ends) for ends in pairwise(way))
-    return AGAIN if any(edge is not None and edge.failures for edge in edges) else 1.0
+    return any(edge is not None and edge.failures > 0 for edge in edges)
 
 
 def is_shut(ranges: Ranges, heading_rad: float, left_m: float, profile: Profile) -> bool:

@@ -12,7 +12,6 @@ from services.planner.travel.path_follower import PathFollower
 from services.planner.travel.patience import NEAREST_STEPS, STUCK_STEPS
 from services.planner.travel.states import Event
 from services.planner.travel.tracking import Tracker
-from services.planner.travel.waypoints import AGAIN
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.routing import GOAL
@@ -45,19 +44,6 @@ def event_before(free_m, **leg):
     return follower.step(Observation(features(), ranges), Seen())[0], follower.index
 
 
-@pytest.mark.parametrize(("failures", "fraction"), [(0, 1.0), (1, AGAIN), (2, AGAIN)])
-def test_an_edge_that_was_driven_in_vain_is_tried_again_slowly(failures, fraction):
-    joined = edge(0, 1, 2).model_copy(update={"failures": failures})
-    maps = Maps(MapGraph([Node(node_id=0), Node(node_id=1)], [joined]))
-    tracker = Tracker(DEFAULT, maps, Seen(), certain=False)
-    to_a_node = SimpleNamespace(picture=None, arrival_rad=0.0, aliased=False, cuts_corners=True)
-    follower = PathFollower(DEFAULT, maps, [0, 1], to_a_node, set(), EdgeExperience(DEFAULT, maps), tracker)
-    ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(3.0,) * SECTORS, max_range_m=4.0)
-    _, decision = follower.step(Observation(features(), ranges), Seen())
-    assert (follower.index, decision.action) == (1, "go")
-    assert decision.speed_fraction == fraction
-
-
 def test_past_a_waypoint_where_something_stands_it_goes_to_the_next_one_on_the_second_try():
     """A door was left open: its leaf stands where the node was, half a metre ahead."""
     maps = Maps(grid(4, 1))
@@ -72,7 +58,6 @@ def test_past_a_waypoint_where_something_stands_it_goes_to_the_next_one_on_the_s
     seen = SimpleNamespace(match=lambda *_, **__: by_node(match(1, 0.5, 0.0, 100)))
     _, decision = follower.step(Observation(features(), ranges), seen)
     assert (follower.index, decision.action, decision.method) == (2, "go", "reckoned")
-    assert decision.speed_fraction == AGAIN
 
 
 def test_a_waypoint_that_something_stands_on_is_given_up_where_the_map_alone_does_not_lead_on():
