@@ -72,7 +72,9 @@ def compute_velocity(
         return stop_velocity(heading, "hold: " + heading.why[:100], limits), memory
     wished_rad, distance_m = now_at(heading, since.frame)
     obstacles = Obstacles.from_ranges(ranges.angles_rad, ranges.distances_m, ranges.max_range_m)
-    steering, passing = _steer(wished_rad, heading, ranges, obstacles, memory.passing, rng, limits)
+    steering, passing = _steer(
+        wished_rad, distance_m, heading, ranges, obstacles, memory.passing, rng, limits
+    )
     memory = replace(memory, passing=passing)
     if steering.blocked:
         return stop_velocity(heading, steering.why, limits), memory
@@ -156,6 +158,7 @@ def velocity_gain(s_cv: int, s_slow: int, s_max: int) -> float:
 
 def _steer(
     wished_rad: float,
+    distance_m: float,
     heading: Heading,
     ranges: Ranges,
     obstacles: Obstacles,
@@ -166,4 +169,5 @@ def _steer(
     if limits.avoidance == "momentary":
         near_rad = obstacle_heading(ranges.angles_rad, ranges.distances_m, limits.obstacle_range_m)
         return steer_away(wished_rad, near_rad, rng), memory
-    return steer_past(wished_rad, obstacles, memory, heading.speed_fraction, limits.passing)
+    fraction = heading.speed_fraction
+    return steer_past(wished_rad, obstacles, memory, fraction, limits.passing, distance_m)

@@ -5,7 +5,8 @@ is Pledge's (Abelson and diSessa, Turtle Geometry, 1981) with a compass that is 
 deflection from the wished heading is counted, also beyond half a turn, and the border is left only when it
 has come back to zero. A side that does not lead past in time is given up for the other, with twice the
 patience each time: without a map of the obstacle no search wastes less. What leads far aside at the speed
-asked for is tried slowly first, for to a slow robot narrower gaps are open. This memory ages in steps.
+asked for is tried slowly first, to either side: to a slow robot narrower gaps are open. This memory ages in
+steps.
 """
 
 import math
@@ -36,8 +37,14 @@ ASIDE_RAD = math.radians(70.0)
 SLOWLY = 0.2
 """Share of full speed at which such a border is followed: to a slow robot gaps are open that its twelve
 distances show as shut at speed. Of 40 starts before gaps of 0.66 to 0.82 m, beside a leaf that stands across
-a corridor and in the middle of a wall, 4 lead through at full speed alone, and all 40 so; at half of it
-29 and 40 (tests/unit/services/drive/test_passing.py)."""
+a corridor and in the middle of a wall, 4 lead through at full speed alone, and 39 so; at half of it 29 and
+38 (tests/unit/services/drive/test_passing.py)."""
+SLOW_TRIES = 2
+"""Of the tries on one border so many are slow, one to either side: no long search for a gap in a wall."""
+LAST_M = 0.03
+"""Free way that a direction needs at the very spot; chosen: two of the slowest steps."""
+BESIDE_M = 0.5
+"""Between two spots that are nearer to each other and where a robot fits stands nothing: twice its radius."""
 FULL_TURN_RAD = 2.0 * math.pi
 SPOT_M_PER_RAD = 0.1
 """A robot that goes less than this for each radian that it turns, turns on the spot; chosen: a quarter of the
@@ -70,9 +77,10 @@ class PassingLimits(BaseModel):
         """Radius of the disc that must fit at a share of full speed."""
         return self.radius_slow_m + (self.radius_m - self.radius_slow_m) * speed_fraction
 
-    def needed_m(self, speed_fraction: float) -> float:
-        """Free way that a direction needs at a share of full speed."""
-        return self.lookahead_min_m + (self.lookahead_m - self.lookahead_min_m) * speed_fraction
+    def needed_m(self, speed_fraction: float, distance_m: float) -> float:
+        """Free way that a direction needs at a share of full speed, so far from where the robot is going."""
+        ahead_m = self.lookahead_min_m + (self.lookahead_m - self.lookahead_min_m) * speed_fraction
+        return min(ahead_m, max(distance_m, LAST_M))
 
 
 class Steering(NamedTuple):
@@ -102,7 +110,7 @@ class Passing:
         steps: steps on this border; idle_steps: steps since it was left.
         wished_rad: the wish of the previous step.
         tries: earlier ones on this border, at the speed asked for and to either side; each doubles the
-            patience, and after the first the border is followed slowly.
+            patience.
     """
 
     side: int = 0
@@ -112,14 +120,17 @@ class Passing:
     tries: int = 0
     wished_rad: float | None = None
 
-    def towards(self, wished_rad: float) -> "Passing":
-        """The memory for a new wish: the border is kept while the wish drifts, forgotten when it jumps."""
+    def towards(self, wished_rad: float, distance_m: float) -> "Passing":
+        """The memory for a new wish: the border is kept while the wish drifts, forgotten when it jumps.
+
+        Beside where the robot is going to nothing stands between: a border that leads back from it is left.
+        """
         if self.wished_rad is None:
             return replace(self, wished_rad=wished_rad)
         change_rad = _wrap(wished_rad - self.wished_rad)
-        if abs(change_rad) > JUMP_RAD:
-            return Passing(wished_rad=wished_rad)
         turned_rad = max(0.0, self.deflection_rad - self.side * change_rad) if self.deflection_rad else 0.0
+        if abs(change_rad) > JUMP_RAD or (distance_m < BESIDE_M and turned_rad > ONWARD_RAD):
+            return Passing(wished_rad=wished_rad)
         return replace(self, deflection_rad=turned_rad, wished_rad=wished_rad)
 
     def turned(self, step: Motion) -> "Passing":
@@ -142,7 +153,12 @@ class Passing:
 
 
 def steer_past(
-    wished_rad: float, obstacles: Obstacles, memory: Passing, speed_fraction: float, limits: PassingLimits
+    wished_rad: float,
+    obstacles: Obstacles,
+    memory: Passing,
+    speed_fraction: float,
+    limits: PassingLimits,
+    distance_m: float = math.inf,
 ) -> tuple[Steering, Passing]:
     """Choose the direction nearest to the wished one that keeps the border on the chosen side.
 
@@ -152,25 +168,32 @@ def steer_past(
         memory: result of the previous step.
         speed_fraction: the planner's limit; a slow robot near its goal looks less far ahead.
         limits: sizes and patience.
+        distance_m: of where the planner wants to go; inf where it is not known.
     """
-    memory = memory.towards(wished_rad)
+    memory = memory.towards(wished_rad, distance_m)
     if memory.deflection_rad == 0.0:
         clearance_m = float(obstacles.clearance_m(np.array([wished_rad]), limits.disc_m(speed_fraction))[0])
-        if clearance_m >= limits.needed_m(speed_fraction):
+        if clearance_m >= limits.needed_m(speed_fraction, distance_m):
             return Steering(wished_rad, False, "free", clearance_m), memory.rested(limits)
     if not memory.tries:
-        steering, after = _follow_border(wished_rad, obstacles, memory, speed_fraction, limits)
+        steering, after = _follow_border(wished_rad, obstacles, memory, speed_fraction, limits, distance_m)
         if not steering.blocked and after.deflection_rad <= ASIDE_RAD:
             return steering, after
         memory = replace(memory, tries=1)
-    return _follow_border(wished_rad, obstacles, memory, min(SLOWLY, speed_fraction), limits)
+    share = min(SLOWLY, speed_fraction) if memory.tries <= SLOW_TRIES else speed_fraction
+    return _follow_border(wished_rad, obstacles, memory, share, limits, distance_m)
 
 
 def _follow_border(
-    wished_rad: float, obstacles: Obstacles, memory: Passing, speed_fraction: float, limits: PassingLimits
+    wished_rad: float,
+    obstacles: Obstacles,
+    memory: Passing,
+    speed_fraction: float,
+    limits: PassingLimits,
+    distance_m: float,
 ) -> tuple[Steering, Passing]:
     """The same at this share of full speed, where something is in the way."""
-    lookahead_m, radius_m = limits.needed_m(speed_fraction), limits.disc_m(speed_fraction)
+    lookahead_m, radius_m = limits.needed_m(speed_fraction, distance_m), limits.disc_m(speed_fraction)
     if memory.steps > limits.patience_steps * limits.patience_growth**memory.tries:
         memory = Passing(side=-memory.side, tries=memory.tries + 1, wished_rad=wished_rad)
     side = memory.side
