@@ -38,6 +38,7 @@ class Setbacks:
         self._lost = self._stuck = self._refuted = 0
         self._suspect: tuple[EdgeKey, str] | None = None
         self._relocated: set[EdgeKey] = set()
+        self._stayed_near = False
 
     @property
     def any_on_a_straight_way(self) -> bool:
@@ -66,7 +67,7 @@ class Setbacks:
             if edge is not None:
                 self._suspect = (edge, "lost")
             self._lost += 1
-            given_up: FailureKind = "blocked" if self._experience.banned else "lost"
+            given_up: FailureKind = "blocked" if self._experience.banned or self._stayed_near else "lost"
             return Verdict(notes, given_up if self._lost > LOST_MAX else "")
         if setback.event is Event.ALIASED:
             self._refuted += 1
@@ -78,10 +79,12 @@ class Setbacks:
     def begin_anew(self) -> None:
         """The mission leads elsewhere now: what failed on the way to a place given up does not count."""
         self._lost = self._stuck = 0
+        self._stayed_near = False
 
     def judge_suspect(self, seen: Matches) -> tuple[Note, ...]:
         """A robot that finds itself far from the edge it lost was carried: that says nothing about the edge.
 
+        One that is near it is not lost, as its mission may say in the end: what leads on is shut.
         Nobody carries it off the same edge twice: then the edge leads elsewhere than the map says.
         """
         if self._suspect is None or not seen:
@@ -93,4 +96,5 @@ class Setbacks:
         if best not in near and edge not in self._relocated:
             self._relocated.add(edge)
             return (Note("relocated", f"lost near edge {edge}, found again at node {best}"),)
+        self._stayed_near = True
         return (self._experience.failed(edge, why),)
