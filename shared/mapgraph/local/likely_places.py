@@ -18,7 +18,7 @@ from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.claims import Claim
 from shared.mapgraph.local.hypotheses import CORE_NODES, NEAR_NODES, Hypothesis
 from shared.mapgraph.local.relative_poses import relative_poses
-from shared.mapgraph.local.resection import resected
+from shared.mapgraph.local.resection import bearing_miss_rad, resected
 from shared.mapgraph.local.view_range import similarity_at
 
 RIVAL_SHARE, RIVAL_CORE_SHARE = 0.5, 0.6
@@ -34,6 +34,10 @@ FIT_SHARE = 0.6
 pictures of a hostel and an office the right place had 0.68 at the least. More than are expected make none
 likelier: clouds over a yard agree with nodes of all of it, and outdid the right place, with 0.8 of what was
 expected there, in 6 of 120 pictures of two yards."""
+CROSSING_RAD = math.radians(6.0)
+"""Bearings of a place that miss its nodes by more than this, at the median, cross nowhere: far off in a yard
+all nodes of one corner see the picture the same way. Of 432 places of development that were right the worst
+missed by 4.9 degrees; of 19 others more than 8 m off, outdoors, the median was 9."""
 PLAIN_FACTOR = 1.2
 """A place alone is plain where its best node has this many times the matches of neighbours on a driven way.
 Of 137 pictures whose place had no rival 130 have; of 160 without their place in the map 5 have."""
@@ -42,7 +46,7 @@ Of 137 pictures whose place had no rival 130 have; of 160 without their place in
 def likely(graph: MapGraph, claims: Mapping[int, Claim], places: Sequence[Hypothesis]) -> list[Hypothesis]:
     """The places a picture can have been taken at, the likeliest first; one only where it has no rival.
 
-    A place of which nothing near shows is none while there is another.
+    A place of which nothing near shows, or whose bearings cross nowhere, is none while there is another.
 
     Args:
         graph: the map.
@@ -50,7 +54,8 @@ def likely(graph: MapGraph, claims: Mapping[int, Claim], places: Sequence[Hypoth
         places: what they speak for, that with most support first.
     """
     near = [place for place in places if any(claims[node].is_near for node in place.nodes)]
-    rivals = _rivals(near or places)
+    crossing = [place for place in near or places if _crosses(graph, claims, place)]
+    rivals = _rivals(crossing or near or places)
     if len(rivals) < 2:
         return rivals
     fits = [_fit(graph, claims, place) for place in rivals]
@@ -86,6 +91,14 @@ def _rivals(places: Sequence[Hypothesis]) -> list[Hypothesis]:
     if len(with_share(RIVAL_SHARE, RIVAL_CORE_SHARE)) < 2:
         return [places[0]]
     return with_share(LISTED_SHARE, LISTED_SHARE)
+
+
+def _crosses(graph: MapGraph, claims: Mapping[int, Claim], place: Hypothesis) -> bool:
+    """Whether the bearings of a place put the picture somewhere, or say nothing of it."""
+    seen = {node: claims[node] for node in place.nodes}
+    at = resected(graph, seen, place.nodes[0], NEAR_NODES)
+    miss_rad = bearing_miss_rad(graph, seen, at, NEAR_NODES) if at is not None else None
+    return miss_rad is None or miss_rad < CROSSING_RAD
 
 
 def _fit(graph: MapGraph, claims: Mapping[int, Claim], place: Hypothesis) -> float | None:

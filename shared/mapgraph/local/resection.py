@@ -100,6 +100,31 @@ def resected(
     return Displacement(root, float(x_m), float(y_m), yaw_rad, spread_m)
 
 
+def bearing_miss_rad(
+    graph: MapGraph, claims: Mapping[int, Claim], at: Displacement, most: int
+) -> float | None:
+    """By how much the bearings claimed miss the nodes, seen from where they put the frame, at the median.
+
+    None where no node lies far enough from there to have a bearing.
+
+    Args:
+        graph: the map.
+        claims: those that `at` was resected by.
+        at: where they put the frame.
+        most: nodes reckoned with, as in `resected`.
+    """
+    poses = relative_poses(graph, at.node_id, set(claims), most)
+    misses = []
+    for node, claim in claims.items():
+        if claim.heading_rad is None or node not in poses:
+            continue
+        ahead_m, aside_m = poses[node].position_m - np.array([at.x_m, at.y_m])
+        if math.hypot(ahead_m, aside_m) >= SPOT_M:
+            there_rad = math.atan2(aside_m, ahead_m)
+            misses.append(abs(math.remainder(there_rad - at.yaw_rad - claim.heading_rad, math.tau)))
+    return float(np.median(misses)) if misses else None
+
+
 def _yaw_rad(seen: list[tuple[RelativePose, Claim]]) -> float:
     """Yaw of the frame's camera in the root's frame: that which most nodes agree on."""
     said = np.array([pose.yaw_rad - claim.yaw_rad for pose, claim in seen])

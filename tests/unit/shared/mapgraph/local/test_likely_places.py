@@ -55,6 +55,14 @@ def test_a_place_alone_is_plain_where_it_resembles_as_much_as_itself():
     assert not is_plain([], typical)
 
 
+def test_a_place_all_of_whose_nodes_see_the_picture_one_way_is_none_beside_one_whose_bearings_cross():
+    """A goal in a yard, and nodes in a far corner of it: parallel, and by their matches two metres away."""
+    crossing = {0: claim(-1.0, -0.5, 70), 1: claim(0.0, -0.5, 80), 13: claim(0.0, 0.5, 70)}
+    parallel = {node: claim(2.0, 0.1, 75) for node in (8, 9, 20, 21)}
+    assert [set(place.nodes) for place in places_of({**crossing, **parallel})] == [set(crossing)]
+    assert [set(place.nodes) for place in places_of(parallel)] == [set(parallel)], "one alone is named"
+
+
 def test_a_twin_whose_nodes_stand_nearer_to_the_spot_is_none_where_it_lacks_matches():
     """The right place is half a metre from its nodes; a twin at the very spot of one has as many matches."""
     right = seen_from(1.5, 0.5, (1, 2, 13, 14))
