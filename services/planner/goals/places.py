@@ -244,7 +244,8 @@ class GoalPlaces:
         return self._left() or ([] if best is None else [best])
 
     def _left(self) -> list[Hypothesis]:
-        done = self._evidence.visits.keys() | self._shut
+        """Places worth going to: one missed before, which differs more than another does, is none."""
+        done = self._evidence.visits.keys() | self._shut | self._evidence.told_apart((+self._losses).keys())
         return [place for place in self._places if place not in done]
 
     def _is_known(self, place: Hypothesis) -> bool:

@@ -195,6 +195,24 @@ def test_rooms_with_equal_matches_are_told_apart_by_how_much_they_differ_as_pict
     assert two.arrived(1, view(0.86)).why == ""
 
 
+def test_a_place_where_it_was_lost_once_is_not_gone_to_again_once_another_differs_far_less(two):
+    look(two, 9, 42.0)
+    assert two.lost(9).why == "not seen"
+    assert set(two.open_targets(TARGETS)) == {1, 2, 9, 10}, "nothing to compare it with"
+    look(two, 1, 3.0)
+    assert two.arrived(1, view(0.90)).why == ""
+
+
+@pytest.mark.parametrize(("lost", "differs"), [(False, 42.0), (True, 8.0), (True, None)])
+def test_it_is_where_it_was_not_lost_or_differs_little_or_was_not_seen_from_near(two, lost, differs):
+    if differs is not None:
+        look(two, 9, differs)
+    if lost:
+        two.lost(9)
+    look(two, 1, 3.0)
+    assert "1 places that look alike are not excluded" in two.arrived(1, view(0.90)).why
+
+
 @pytest.fixture
 def in_doubt(two):
     """Both places visited: from the first the goal differs less, but not by enough."""
