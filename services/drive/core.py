@@ -70,11 +70,9 @@ def compute_velocity(
         return _facing(heading, heading.face_rad, since, limits), memory
     if heading.action == "hold":
         return stop_velocity(heading, "hold: " + heading.why[:100], limits), memory
-    wished_rad, distance_m = now_at(heading, since.frame)
+    aim = now_at(heading, since.frame)
     obstacles = Obstacles.from_ranges(ranges.angles_rad, ranges.distances_m, ranges.max_range_m)
-    steering, passing = _steer(
-        wished_rad, distance_m, heading, ranges, obstacles, memory.passing, rng, limits
-    )
+    steering, passing = _steer(aim, heading, ranges, obstacles, memory.passing, rng, limits)
     memory = replace(memory, passing=passing)
     if steering.blocked:
         return stop_velocity(heading, steering.why, limits), memory
@@ -90,7 +88,7 @@ def compute_velocity(
         obstacles,
         limits.passing.disc_m(fraction),
         contact_s,
-        math.inf if steering.avoiding else distance_m,
+        math.inf if steering.avoiding else aim[1],
     )
     twist, manoeuvre = follow(course, memory.manoeuvre, limits)
     velocity = stop_velocity(heading, steering.why, limits).model_copy(
@@ -157,8 +155,7 @@ def velocity_gain(s_cv: int, s_slow: int, s_max: int) -> float:
 
 
 def _steer(
-    wished_rad: float,
-    distance_m: float,
+    aim: tuple[float, float],
     heading: Heading,
     ranges: Ranges,
     obstacles: Obstacles,
@@ -166,8 +163,8 @@ def _steer(
     rng: np.random.Generator,
     limits: DriveLimits,
 ) -> tuple[Steering, Passing]:
+    wished_rad, distance_m = aim
     if limits.avoidance == "momentary":
         near_rad = obstacle_heading(ranges.angles_rad, ranges.distances_m, limits.obstacle_range_m)
         return steer_away(wished_rad, near_rad, rng), memory
-    fraction = heading.speed_fraction
-    return steer_past(wished_rad, obstacles, memory, fraction, limits.passing, distance_m)
+    return steer_past(wished_rad, obstacles, memory, heading.speed_fraction, limits.passing, distance_m)
