@@ -8,7 +8,7 @@ import pytest
 
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
-from shared.mapgraph.local.resection import resected
+from shared.mapgraph.local.resection import bearing_miss_rad, resected
 from shared.messages.maps import Node
 from tests.unit.shared.mapgraph.local.grid import at, claim, edge, grid
 
@@ -33,6 +33,18 @@ def test_bearings_cross_whatever_matches_say():
     near = {n: replace(c, length_m=0.5 * c.length_m) for n, c in claims.items()}
     assert off_m(place(SQUARE, claims), 1.4, 0.7) < 0.02
     assert off_m(place(SQUARE, near), 1.4, 0.7) < 0.15
+
+
+def test_bearings_that_cross_miss_no_node_and_parallel_ones_do():
+    """As from far away: by their matches all are 2 m ahead."""
+    claims, far = seen(5, (0, 1, 5, 6, 12), 1.4, 0.7), {n: claim(2.0, 0.0) for n in (0, 1, 5, 6)}
+    assert bearing_miss_rad(SQUARE, claims, place(SQUARE, claims), 60) < math.radians(1.0)
+    assert bearing_miss_rad(SQUARE, far, place(SQUARE, far), 60) > math.radians(9.0)
+
+
+def test_nodes_at_the_very_spot_have_no_bearing_to_miss():
+    claims = {6: claim(0.0, 0.0)}
+    assert bearing_miss_rad(SQUARE, claims, place(SQUARE, claims, root=6), 60) is None
 
 
 def test_along_a_corridor_nodes_before_and_behind_say_how_far_views_carry():
