@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import pytest
+
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.hypotheses import hypotheses
 from shared.mapgraph.local.likely_places import is_plain, likely, typical_similarity
@@ -61,6 +63,14 @@ def test_a_place_all_of_whose_nodes_see_the_picture_one_way_is_none_beside_one_w
     parallel = {node: claim(2.0, 0.1, 75) for node in (8, 9, 20, 21)}
     assert [set(place.nodes) for place in places_of({**crossing, **parallel})] == [set(crossing)]
     assert [set(place.nodes) for place in places_of(parallel)] == [set(parallel)], "one alone is named"
+
+
+@pytest.mark.parametrize(("similarity", "named"), [(40, {0, 1, 13}), (100, {9})])
+def test_one_node_taken_for_near_does_not_outdo_a_place_with_far_more_matches(similarity, named):
+    """Of the right place only what is far away moved: 190 matches in its core."""
+    right = {0: claim(-1.0, -0.5, 60), 1: claim(0.0, -0.5, 70), 13: claim(0.0, 0.5, 60)}
+    far = {node: replace(seen, is_near=False) for node, seen in right.items()}
+    assert [set(place.nodes) for place in places_of({**far, 9: claim(1.0, 0.0, similarity)})] == [named]
 
 
 def test_a_twin_whose_nodes_stand_nearer_to_the_spot_is_none_where_it_lacks_matches():
