@@ -108,7 +108,10 @@ def test_a_move_that_a_pause_cut_short_is_made_again(monkeypatch, checked):
     [
         (lambda picture: picture[:, ::-1], "left and right are swapped in the picture"),
         (lambda picture: picture[::-1, ::-1], "upside down"),
-        (lambda picture: np.roll(picture, picture.shape[1] // 4, axis=1), "90 degrees to the left"),
+        (
+            lambda picture: np.roll(picture, picture.shape[1] // 4, axis=1),
+            r"\b(8[89]|9[012]) degrees to the left",
+        ),
     ],
     ids=["mirrored", "upside down", "turned"],
 )
@@ -116,7 +119,7 @@ def test_a_camera_that_is_mounted_otherwise_is_named(monkeypatch, checked, edit,
     monkeypatch.setattr(body, "picture_of", changed(edit))
     assert checked.check.senses(), checked.text
     checked.check.moves()
-    assert any(named in one for one in checked.check.problems), checked.text
+    assert any(re.search(named, one) for one in checked.check.problems), checked.text
 
 
 def test_a_base_whose_sideways_axis_is_reversed_is_named(monkeypatch, checked):
