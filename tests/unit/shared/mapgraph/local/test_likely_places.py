@@ -73,6 +73,13 @@ def test_one_node_taken_for_near_does_not_outdo_a_place_with_far_more_matches(si
     assert [set(place.nodes) for place in places_of({**far, 9: claim(1.0, 0.0, similarity)})] == [named]
 
 
+def test_of_a_place_seen_from_near_only_what_shows_it_from_there_outdoes_others():
+    right = {0: claim(-1.0, -0.5, 60), 1: claim(0.0, -0.5, 70), 13: claim(0.0, 0.5, 60)}
+    far = {node: replace(seen, is_near=False) for node, seen in right.items()}
+    mostly_far = {9: replace(claim(1.0, 0.0, 80), is_near=False), 10: claim(2.0, 0.0, 23)}
+    assert set(right) in [set(place.nodes) for place in places_of({**far, **mostly_far})]
+
+
 def test_a_twin_whose_nodes_stand_nearer_to_the_spot_is_none_where_it_lacks_matches():
     """The right place is half a metre from its nodes; a twin at the very spot of one has as many matches."""
     right = seen_from(1.5, 0.5, (1, 2, 13, 14))
