@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,13 @@ any keypoint tells."""
 NEARLY_THERE = 0.5
 """Share of its distance within which the bearing of what is headed for is no longer corrected by the way made
 since it was seen: distances are told to a factor of 1.5 (decision 0037)."""
+
+
+class Aim(NamedTuple):
+    """Where the robot is going: bearing in its frame, and how far; inf where that is not known."""
+
+    bearing_rad: float
+    distance_m: float
 
 
 @dataclass(frozen=True)
@@ -88,7 +96,7 @@ def compute_velocity(
         obstacles,
         limits.passing.disc_m(fraction),
         contact_s,
-        math.inf if steering.avoiding else aim[1],
+        math.inf if steering.avoiding else aim.distance_m,
     )
     twist, manoeuvre = follow(course, memory.manoeuvre, limits)
     velocity = stop_velocity(heading, steering.why, limits).model_copy(
@@ -128,15 +136,15 @@ def stop_velocity(heading: Heading, why: str, limits: DriveLimits) -> Velocity:
     )
 
 
-def now_at(heading: Heading, moved: Motion) -> tuple[float, float]:
+def now_at(heading: Heading, moved: Motion) -> Aim:
     """Bearing and distance of what is headed for, after the robot moved since it was seen; inf: not known."""
     distance_m = heading.distance_m
     if distance_m is None:
-        return moved.direction(heading.heading_rad), math.inf
+        return Aim(moved.direction(heading.heading_rad), math.inf)
     left_m = max(0.0, distance_m - moved.way_m)
     if moved.way_m > NEARLY_THERE * distance_m:
-        return moved.direction(heading.heading_rad), left_m
-    return moved.direction(heading.heading_rad, distance_m), left_m
+        return Aim(moved.direction(heading.heading_rad), left_m)
+    return Aim(moved.direction(heading.heading_rad, distance_m), left_m)
 
 
 def speed(s_cv: int, s_slow: int, s_max: int, speed_fraction: float, limits: SpeedLimits) -> float:
@@ -155,7 +163,7 @@ def velocity_gain(s_cv: int, s_slow: int, s_max: int) -> float:
 
 
 def _steer(
-    aim: tuple[float, float],
+    aim: Aim,
     heading: Heading,
     ranges: Ranges,
     obstacles: Obstacles,
@@ -163,8 +171,8 @@ def _steer(
     rng: np.random.Generator,
     limits: DriveLimits,
 ) -> tuple[Steering, Passing]:
-    wished_rad, distance_m = aim
     if limits.avoidance == "momentary":
         near_rad = obstacle_heading(ranges.angles_rad, ranges.distances_m, limits.obstacle_range_m)
-        return steer_away(wished_rad, near_rad, rng), memory
-    return steer_past(wished_rad, obstacles, memory, heading.speed_fraction, limits.passing, distance_m)
+        return steer_away(aim.bearing_rad, near_rad, rng), memory
+    fraction, passing = heading.speed_fraction, limits.passing
+    return steer_past(aim.bearing_rad, obstacles, memory, fraction, passing, aim.distance_m)

@@ -171,10 +171,9 @@ def steer_past(
         distance_m: of where the planner wants to go; inf where it is not known.
     """
     memory = memory.towards(wished_rad, distance_m)
-    if memory.deflection_rad == 0.0:
-        clearance_m = float(obstacles.clearance_m(np.array([wished_rad]), limits.disc_m(speed_fraction))[0])
-        if clearance_m >= limits.needed_m(speed_fraction, distance_m):
-            return Steering(wished_rad, False, "free", clearance_m), memory.rested(limits)
+    straight = _straight_on(wished_rad, obstacles, memory, speed_fraction, limits, distance_m)
+    if straight is not None:
+        return straight, memory.rested(limits)
     if not memory.tries:
         steering, after = _follow_border(wished_rad, obstacles, memory, speed_fraction, limits, distance_m)
         if not steering.blocked and after.deflection_rad <= ASIDE_RAD:
@@ -182,6 +181,23 @@ def steer_past(
         memory = replace(memory, tries=1)
     share = min(SLOWLY, speed_fraction) if memory.tries <= SLOW_TRIES else speed_fraction
     return _follow_border(wished_rad, obstacles, memory, share, limits, distance_m)
+
+
+def _straight_on(
+    wished_rad: float,
+    obstacles: Obstacles,
+    memory: Passing,
+    speed_fraction: float,
+    limits: PassingLimits,
+    distance_m: float,
+) -> Steering | None:
+    """The wished direction, where no border is followed and nothing is in the way at this share of speed."""
+    if memory.deflection_rad:
+        return None
+    clearance_m = float(obstacles.clearance_m(np.array([wished_rad]), limits.disc_m(speed_fraction))[0])
+    if clearance_m < limits.needed_m(speed_fraction, distance_m):
+        return None
+    return Steering(wished_rad, False, "free", clearance_m, speed_fraction=speed_fraction)
 
 
 def _follow_border(
@@ -196,12 +212,11 @@ def _follow_border(
     lookahead_m, radius_m = limits.needed_m(speed_fraction, distance_m), limits.disc_m(speed_fraction)
     if memory.steps > limits.patience_steps * limits.patience_growth**memory.tries:
         memory = Passing(side=-memory.side, tries=memory.tries + 1, wished_rad=wished_rad)
+    straight = _straight_on(wished_rad, obstacles, memory, speed_fraction, limits, distance_m)
+    if straight is not None:
+        return straight, memory.rested(limits)
     side = memory.side
     if memory.deflection_rad == 0.0:
-        clearance_m = float(obstacles.clearance_m(np.array([wished_rad]), radius_m)[0])
-        if clearance_m >= lookahead_m:
-            free = Steering(wished_rad, False, "free", clearance_m, speed_fraction=speed_fraction)
-            return free, memory.rested(limits)
         side = _easier_side(wished_rad, obstacles, lookahead_m, radius_m, memory.side)
     first_rad = max(0.0, memory.deflection_rad - BACKTRACK_RAD)
     offsets_rad = np.arange(first_rad, first_rad + FULL_TURN_RAD, STEP_RAD)

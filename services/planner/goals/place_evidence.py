@@ -1,7 +1,7 @@
 """What was seen at places that look alike, and what it says of which of them it is. Pure."""
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -106,16 +106,19 @@ class PlaceEvidence:
 
     def told_apart(self, places: Collection[Hypothesis]) -> set[Hypothesis]:
         """Of some places, seen but never stood at, those that differ too much beside one that was visited."""
-        differs, most = self._differ(), self._most()
+        if not places:
+            return set()
+        differs = self._differ()
+        most = self._most(differs)
         return {place for place in places if most <= differs.get(place, 0.0)}
 
-    def _most(self) -> float:
+    def _most(self, differs: Mapping[Hypothesis, float]) -> float:
         """From so much on a place differs too much: a multiple of the least at any that was visited."""
-        differs = self._differ()
         return TOLD_FACTOR * min((differs.get(place, math.inf) for place in self.visits), default=math.inf)
 
     def _alive(self) -> list[Hypothesis]:
-        differs, most = self._differ(), self._most()
+        differs = self._differ()
+        most = self._most(differs)
         return [place for place in self.visits if differs.get(place, 0.0) < most or math.isinf(most)]
 
     def _differ(self) -> dict[Hypothesis, float]:

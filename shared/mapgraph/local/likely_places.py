@@ -16,6 +16,7 @@ from collections.abc import Mapping, Sequence
 
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.claims import Claim
+from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import CORE_NODES, NEAR_NODES, Hypothesis
 from shared.mapgraph.local.relative_poses import relative_poses
 from shared.mapgraph.local.resection import bearing_miss_rad, resected
@@ -58,10 +59,11 @@ def likely(graph: MapGraph, claims: Mapping[int, Claim], places: Sequence[Hypoth
         places: what they speak for, that with most support first.
     """
     shown = _shown(claims, places)
-    rivals = _rivals([place for place in shown if _crosses(graph, claims, place)] or shown)
+    spots = {place: _spot(graph, claims, place) for place in shown}
+    rivals = _rivals([place for place in shown if _crosses(graph, claims, place, spots[place])] or shown)
     if len(rivals) < 2:
         return rivals
-    fits = [_fit(graph, claims, place) for place in rivals]
+    fits = [_fit(graph, claims, place, spots[place]) for place in rivals]
     least = FIT_SHARE * min(1.0, max((fit for fit in fits if fit is not None), default=0.0))
     return [place for place, fit in zip(rivals, fits, strict=True) if fit is None or fit >= least]
 
@@ -104,24 +106,32 @@ def _shown(claims: Mapping[int, Claim], places: Sequence[Hypothesis]) -> list[Hy
     return [place for place in places if near[place] or place.core >= least]
 
 
-def _crosses(graph: MapGraph, claims: Mapping[int, Claim], place: Hypothesis) -> bool:
-    """Whether the bearings of a place put the picture somewhere, or say nothing of it."""
-    seen = {node: claims[node] for node in place.nodes}
-    at = resected(graph, seen, place.nodes[0], NEAR_NODES)
-    miss_rad = bearing_miss_rad(graph, seen, at, NEAR_NODES) if at is not None else None
+def _spot(graph: MapGraph, claims: Mapping[int, Claim], place: Hypothesis) -> Displacement | None:
+    """Where the nodes of a place put the picture; None where no bearings say it."""
+    return resected(graph, {node: claims[node] for node in place.nodes}, place.nodes[0], NEAR_NODES)
+
+
+def _crosses(
+    graph: MapGraph, claims: Mapping[int, Claim], place: Hypothesis, at: Displacement | None
+) -> bool:
+    """Whether the bearings of a place cross at the spot where they put the picture, or say nothing of it."""
+    if at is None:
+        return True
+    miss_rad = bearing_miss_rad(graph, {node: claims[node] for node in place.nodes}, at, NEAR_NODES)
     return miss_rad is None or miss_rad < CROSSING_RAD
 
 
-def _fit(graph: MapGraph, claims: Mapping[int, Claim], place: Hypothesis) -> float | None:
+def _fit(
+    graph: MapGraph, claims: Mapping[int, Claim], place: Hypothesis, at: Displacement | None
+) -> float | None:
     """Matches of a place as a share of those expected of it; None where no bearings say where it is.
 
     Nodes were left out of the comparison as others were more alike: each may have as many matches as the
     least of those has.
     """
-    root = place.nodes[0]
-    at = resected(graph, {node: claims[node] for node in place.nodes}, root, NEAR_NODES)
     if at is None:
         return None
+    root = place.nodes[0]
     poses = relative_poses(graph, root, graph.nearest(root, NEAR_NODES), NEAR_NODES)
     away_m = {node: math.dist(pose.position_m, (at.x_m, at.y_m)) for node, pose in poses.items()}
     around = sorted(away_m, key=lambda node: (away_m[node], node))[:CORE_NODES]

@@ -88,18 +88,23 @@ def across(gap_m, width_m, left_m):
     return np.concatenate([*sides, *pieces, wall(-1.0, 0.0, width_m)])
 
 
+def stepped(points, at, memory, aim_rad, fraction, told_m=math.inf):
+    """Where a robot is one step later, that sees the points by its twelve sensors."""
+    steering, memory = steer_past(aim_rad, beams(points - at), memory, fraction, LIMITS, told_m)
+    step_m = 0.12 * min(fraction, steering.speed_fraction)
+    at = at + step_m * np.array([math.cos(steering.heading_rad), math.sin(steering.heading_rad)])
+    assert np.hypot(*(points - at).T).min() > 0.26, "touched something"
+    return at, memory, steering
+
+
 def steps_through(points, y_m, goal_y_m, speed_fraction):
     """Steps of a robot that drives past `across`, as it sees it; None where it does not get through."""
     at, goal, memory = np.array([0.5, y_m]), np.array([4.5, goal_y_m]), Passing()
-    for step in range(round(60 / speed_fraction**0.5) + 150):
+    for step in range(200):
         left = goal - at
         if np.hypot(*left) < 0.3:
             return step
-        wished_rad = math.atan2(left[1], left[0])
-        steering, memory = steer_past(wished_rad, beams(points - at), memory, speed_fraction, LIMITS)
-        step_m = 0.12 * min(speed_fraction, steering.speed_fraction)
-        at = at + step_m * np.array([math.cos(steering.heading_rad), math.sin(steering.heading_rad)])
-        assert np.hypot(*(points - at).T).min() > 0.26, "touched something"
+        at, memory, _ = stepped(points, at, memory, math.atan2(left[1], left[0]), speed_fraction)
     return None
 
 
@@ -131,10 +136,7 @@ def test_a_spot_close_to_a_wall_is_come_to_by_headings_that_are_a_little_off(see
         error_rad = 0.7 * error_rad + rng.normal(0.0, 0.25)
         wished_rad, told_m = math.atan2(-at[1], -at[0]) + error_rad, left_m * rng.uniform(0.8, 1.8)
         fraction = min(1.0, max(0.15, told_m / 1.33))
-        steering, memory = steer_past(wished_rad, beams(points - at), memory, fraction, LIMITS, told_m)
-        step_m = 0.12 * min(fraction, steering.speed_fraction)
-        at = at + step_m * np.array([math.cos(steering.heading_rad), math.sin(steering.heading_rad)])
-        assert np.hypot(*(points - at).T).min() > 0.26, "touched the wall"
+        at, memory, _ = stepped(points, at, memory, wished_rad, fraction, told_m)
     raise AssertionError(f"{left_m:.2f} m away")
 
 
@@ -145,12 +147,9 @@ def test_round_a_long_wall_it_is_slow_only_at_first():
         left = np.array([3.0, 0.0]) - at
         if np.hypot(*left) < 0.3:
             break
-        steering, memory = steer_past(
-            math.atan2(left[1], left[0]), beams(points - at), memory, 1.0, LIMITS, float(np.hypot(*left))
-        )
+        left_rad, left_m = math.atan2(left[1], left[0]), float(np.hypot(*left))
+        at, memory, steering = stepped(points, at, memory, left_rad, 1.0, left_m)
         slow += steering.speed_fraction < 1.0
-        step_m = 0.12 * steering.speed_fraction
-        at = at + step_m * np.array([math.cos(steering.heading_rad), math.sin(steering.heading_rad)])
     assert np.hypot(*left) < 0.3
     assert slow < 120
 
