@@ -1,6 +1,5 @@
 """What `topnav camera calibrate` found out about a camera with two fisheyes, as a file."""
 
-import math
 from pathlib import Path
 from typing import Literal
 
@@ -86,12 +85,6 @@ class FisheyeCalibration(BaseModel):
         )
         size = {"width_px": width_px, "height_px": round(self.height_px * factor)}
         return self.model_copy(update={**size, "lenses": lenses})
-
-    def seam_gap_deg(self) -> float:
-        """How much of the sphere no lens sees, degrees across the seam; 0 where the lenses overlap."""
-        first, second = (lens.rotation_camera_lens[:, 2] for lens in self.lenses)
-        between = math.degrees(math.acos(float(np.clip(first @ second, -1.0, 1.0))))
-        return max(0.0, 360.0 - between - sum(lens.sees_deg for lens in self.lenses))
 
 
 class CalibrationFileError(ValueError):

@@ -63,14 +63,6 @@ class RobotClock:
         self.offset_s, self._heard_s = max(expected_s, offset_s), came_s
         return Judged("good", off_s)
 
-    def ours_s(self, stamp_s: float) -> float:
-        """The same moment by our clock, as if the fastest message had taken no time."""
-        return stamp_s - (self.offset_s or 0.0)
-
-    def theirs_s(self, time_s: float) -> float:
-        """A moment of ours by the robot's clock, never in its future."""
-        return time_s + (self.offset_s or 0.0)
-
     def _restart(self, offset_s: float, came_s: float) -> None:
         self.offset_s, self._heard_s = offset_s, came_s
         self._behind.clear()

@@ -6,7 +6,6 @@ import pytest
 
 from services.camera.mount.calibration_file import (
     CalibrationFileError,
-    FisheyeCalibration,
     load_calibration,
     write_calibration,
 )
@@ -63,13 +62,3 @@ def test_a_larger_picture_of_the_same_camera_has_the_same_lenses():
     assert twice.height_px == 2 * FRONT_BACK.height_px
     assert twice.lenses[1].focal_px == 2 * FRONT_BACK.lenses[1].focal_px
     assert twice.lenses[1].centre_px[0] == 2 * FRONT_BACK.lenses[1].centre_px[0]
-
-
-def test_lenses_that_see_less_than_half_leave_a_gap():
-    narrow = FisheyeCalibration.model_validate(
-        FRONT_BACK.model_dump()
-        | {"lenses": [lens.model_dump() | {"sees_deg": 90.0} for lens in FRONT_BACK.lenses]}
-    )
-    assert FRONT_BACK.seam_gap_deg() == 0.0
-    assert narrow.seam_gap_deg() == pytest.approx(0.0, abs=3.0)
-    assert isinstance(narrow, FisheyeCalibration)
