@@ -7,22 +7,19 @@ A match becomes an edge when
    (`_is_credible`),
 3. the node lies where the frame sees it and not too far for an edge, the less so where no ground was seen
    free, as far as the robot knows what it did (`reach`),
-4. one motion alone explains it (`is_ambiguous`),
+4. one motion alone explains it (`rival_motion`),
 5. a neighbour supports it where it would close a loop, and its neighbours do not contradict it
    (`shared.mapgraph.cycle_consistency`).
 """
 
-import math
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from services.planner.mapping.reach import no_edges
+from services.planner.mapping.rival_motion import is_ambiguous
 from services.planner.ports import Matches, Observation
 from services.planner.profiles import Profile
 from services.planner.similarity import similarity, trusted
 from services.planner.surroundings import is_clear, is_clear_from
-from shared.geometry.two_view import TwoViewSettings, two_view
 from shared.mapgraph.cycle_consistency import contradicted, supported_by, unsupported_loop_closures
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
@@ -34,18 +31,6 @@ CONFIDENCE_MIN = 0.5
 SURE_MIN = 0.7
 """The same for an edge that nobody drove. In five yards of 80 such edges with less 5 were wrong by more than
 10 degrees, of 57 with 0.7 to 0.8 none; an apartment has 2 of 79 with less (decision 0047)."""
-
-SECOND_MIN = 9
-SECOND_SHARE = 0.12
-SECOND_CONFIDENCE = 0.8
-SECOND_APART_RAD = math.radians(10.0)
-SECOND_YAW_RAD = math.radians(6.0)
-"""When left-over matches make a second motion: so many, so large a share of the first one's, so sure, in a
-direction
-so far apart, with the same yaw: a repeating wall keeps the camera's yaw; things that look alike on two sides
-do not, and mislead nobody. Of 175 pairs of factory frames 0.5 to 8 m apart 3 % have one without being wrong;
-all eleven edges between the factory's brick wall and a container 1 m off that were wrong had one (decision
-0015)."""
 
 
 @dataclass(frozen=True)
@@ -103,29 +88,6 @@ def stands_alone(match: NodeMatch, profile: Profile) -> bool:
     """Whether a match becomes an edge by itself: no map, no drive and no free ground speak for it."""
     admitted = _admitted(match, profile) and _is_credible(match, profile)
     return admitted and (profile.sensing.similarity == "raw" or not is_ambiguous(match))
-
-
-def is_ambiguous(match: NodeMatch) -> bool:
-    """Whether two motions of the camera explain a match: a wall whose pattern repeats.
-
-    Most matches on such a wall are shifted by a multiple of its period and agree on a wrong direction; the
-    rest agree on the right one. Away from such walls what is left over agrees on nothing.
-    """
-    if match.status != "ok" or match.matches_rad is None or match.inlier_mask is None:
-        return False
-    rest = match.matches_rad[~match.inlier_mask.astype(bool)]
-    if len(rest) < SECOND_MIN or match.heading_rad is None or match.yaw_rad is None:
-        return False
-    rng = np.random.default_rng([match.raw_matches, match.inliers])
-    other = two_view(rest[:, :2], rest[:, 2:], rng, TwoViewSettings(tilting=False))
-    if other.status != "ok" or other.heading_rad is None or other.yaw_rad is None:
-        return False
-    return (
-        other.confidence >= SECOND_CONFIDENCE
-        and other.inliers >= max(SECOND_MIN, SECOND_SHARE * match.inliers)
-        and abs(math.remainder(other.heading_rad - match.heading_rad, math.tau)) > SECOND_APART_RAD
-        and abs(math.remainder(other.yaw_rad - match.yaw_rad, math.tau)) < SECOND_YAW_RAD
-    )
 
 
 def _admitted(match: NodeMatch, profile: Profile) -> bool:
