@@ -94,7 +94,7 @@ class GoalDestination:
         else:
             self._node = None
             found = self._matcher.locate(goal, COMPARED_NODES)
-        self.places = GoalPlaces(maps, found, profile)
+        self.places = GoalPlaces(maps, found, profile, self._at.look_alikes)
         plain, strict = self.places.plain, profile.sensing.similarity == "raw"
         self.aliased = not plain or (self._node is not None and not strict)  # its look-alikes are not known
         self.arrival_rad = profile.arrival.arrival_rad * (1.0 if plain else CLOSER_SHARE)

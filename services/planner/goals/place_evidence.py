@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from services.planner.look_alikes import LookAlikes
 from shared.mapgraph.local.hypotheses import Hypothesis
 from shared.messages.arrays import Array
 
@@ -17,6 +18,9 @@ TOLD_FACTOR = 3.0
 of rooms that a few small things tell apart, each seen from 1 to 6 cm aside, it excludes all, also where
 somebody stands in the goal picture, and 33 where the right one is seen from 10 cm. 12 that nothing tells
 apart come to 1.6 at most (from 1 to 10 cm); with somebody in the picture one of them to 3.4, others to 2."""
+SETTLED_FACTOR = 2.0
+"""A place that differs so many times less than all that were told from right ones differs as one of those
+does: two looks at rooms that nothing tells apart are 1.9 times apart at most."""
 LARGEST_SHARE = 0.01
 """Share of the view that differs most and counts; chosen: a picture on a wall."""
 COMMON_SHARE = 0.12
@@ -86,17 +90,29 @@ class PlaceEvidence:
         differs = self._differ()
         return min(differs, key=lambda place: differs[place], default=None)
 
-    def risk(self, unseen: int) -> float:
-        """Chance that the goal is at one of some places that nobody saw, though another one fits it.
+    def seen(self) -> tuple[list[float], int]:
+        """By how much each place differs that was told from the best one, and how many were not.
 
-        It is there only if that place looks like the best one in everything, and then as likely as not. How
-        many of a building's places do is what the visits say (Laplace's rule of succession).
+        One that matches alone told differs infinitely: what it differs by tells nothing.
+        """
+        rivals, differs = self.rivals(), self._differ()
+        told, most = self.visits.keys() - {self.best(), *rivals}, self._most(differs)
+        return [differs.get(p, 0.0) if differs.get(p, 0.0) >= most else math.inf for p in told], len(rivals)
+
+    def settled(self, known: LookAlikes, unseen: int, most: float) -> bool:
+        """Whether a place visited is the goal's, whatever nobody saw looks like.
+
+        It differs as little as a right place does: SETTLED_FACTOR times less than any that was told from one.
 
         Args:
-            unseen: how many nobody saw.
+            known: of this map, by earlier missions.
+            unseen: places that nobody saw.
+            most: accepted chance that one of them is as much like the goal.
         """
-        told = self.visits.keys() - {self.best(), *self.rivals()}
-        return unseen / (2 * (len(told) + 2))
+        best, seen = self.best(), known.with_more(*self.seen())
+        if best is None or self.rivals() or seen.risk(unseen) > most:
+            return False
+        return SETTLED_FACTOR * self._differ().get(best, math.inf) <= seen.least_told
 
     def told(self) -> str:
         """How much the goal differs at each place where that is known, for people, to end a sentence with."""

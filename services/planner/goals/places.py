@@ -2,7 +2,8 @@
 
 Rooms furnished alike resemble a picture of one of them equally. Only at the very spot does the right one
 resemble it more: so each is visited, and arrival is claimed where the others are excluded. Where that does
-not tell, the robot goes back to the place that differs least, for a look from nearer by.
+not tell, the robot goes back to the place that differs least, for a look from nearer by. In a building whose
+rooms were told apart often enough before, the first one that fits is it.
 """
 
 import math
@@ -11,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from services.planner.goals.place_evidence import PlaceEvidence, Visit
+from services.planner.look_alikes import LookAlikes
 from services.planner.mapping.reach import claims, distances, elsewhere
 from services.planner.ports import MapAccess, Matches
 from services.planner.profiles import Profile
@@ -63,10 +65,11 @@ class GoalPlaces:
         maps: the map.
         found: the picture against the nodes most like it.
         profile: thresholds.
+        known: how often rooms of this map look alike in everything.
     """
 
-    def __init__(self, maps: MapAccess, found: Matches, profile: Profile) -> None:
-        self._maps, self._profile = maps, profile
+    def __init__(self, maps: MapAccess, found: Matches, profile: Profile, known: LookAlikes) -> None:
+        self._maps, self._profile, self._known = maps, profile, known
         self._yaw_rad = {node: match.yaw_rad or 0.0 for node, match in found.items()}
         self._places = self._likely(found)
         self.plain = not self._places or is_plain(self._places, typical_similarity(maps.graph))
@@ -240,13 +243,24 @@ class GoalPlaces:
         """Places to go to: those not visited yet, then that to look at again, then the best one."""
         if self.plain:
             return self._places
-        best = self._again or self._evidence.best()
-        return self._left() or ([] if best is None else [best])
+        best, left = self._again or self._evidence.best(), self._left()
+        if left and self._risk(len(left) - 1) <= EQUAL_RISK:
+            return left[:1]
+        return left or ([] if best is None else [best])
 
     def _left(self) -> list[Hypothesis]:
-        """Places worth going to: one missed before, which differs more than another does, is none."""
+        """Places worth going to: one missed before, which differs more than another does, is none.
+
+        None is where another is the goal's as surely as a visit would tell.
+        """
         done = self._evidence.visits.keys() | self._shut | self._evidence.told_apart((+self._losses).keys())
-        return [place for place in self._places if place not in done]
+        left = [place for place in self._places if place not in done]
+        unseen, best = len(left) + len(self._shut), self._evidence.best()
+        fits = best is not None and self._evidence.visits[best].likeness >= SPOT_SHARE
+        return [] if fits and self._evidence.settled(self._known, unseen, EQUAL_RISK) else left
+
+    def _risk(self, unseen: int) -> float:
+        return self._known.with_more(*self._evidence.seen()).risk(unseen)
 
     def _is_known(self, place: Hypothesis) -> bool:
         return place in self._evidence.visits and place != self._again
@@ -260,7 +274,7 @@ class GoalPlaces:
             told = self._evidence.told()
             return Ruling(f"{alike}{len(left)} places that look alike are not excluded{told}")
         most = visits[best].likeness if best is not None else 0.0
-        if self._shut and (most < SPOT_SHARE or self._evidence.risk(len(self._shut)) > EQUAL_RISK):
+        if self._shut and (most < SPOT_SHARE or self._risk(len(self._shut)) > EQUAL_RISK):
             shut = ", ".join(str(place.nodes[0]) for place in self._places if place in self._shut)
             why = f"of the places of nodes {self.names} that of {shut} could not be reached"
             return Ruling(why, "ambiguous" if most >= SPOT_SHARE else "blocked")
@@ -270,13 +284,23 @@ class GoalPlaces:
         if self._evidence.rivals():
             why = f"one of the places of nodes {self.names}, which look alike"
             return Ruling(why + self._evidence.told(), self._look_again())
-        return Ruling() if best == here else Ruling(f"another place resembles the goal more, by {most:.0%}")
+        if best != here:
+            return Ruling(f"another place resembles the goal more, by {most:.0%}{self._evidence.told()}")
+        self._learn()
+        return Ruling()
 
     def _look_again(self) -> FailureKind:
         """Once the place that differs least is worth another look; what is in doubt after that stays so."""
         if not self._has_looked_again:
             self._has_looked_again, self._again = True, self._evidence.least_different()
-        return "" if self.looks_again else "ambiguous"
+        if self.looks_again:
+            return ""
+        self._learn()
+        return "ambiguous"
+
+    def _learn(self) -> None:
+        """What this mission found out is of use to the next ones."""
+        self._known.learn(*self._evidence.seen())
 
     def _likely(self, matches: Matches) -> list[Hypothesis]:
         profile, graph = self._profile, self._maps.graph

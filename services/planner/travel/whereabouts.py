@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from services.planner.look_alikes import LookAlikes
 from shared.mapgraph.local.displacement import Displacement
 from shared.messages.features import Features
 from shared.motion.motion import NO_MOTION, Motion
@@ -24,6 +25,7 @@ class Whereabouts:
         here: where the robot is relative to a node; None while nobody knows.
         guessed: it was found at one of several places that look alike, and followed from there.
         now, before: the frame that says so, and the one before it.
+        look_alikes: how often rooms of the map look alike in everything, as the missions in it found out.
         apart: the latest of the frames that the robot left `APART_M` behind, and somewhat more.
     """
 
@@ -33,6 +35,7 @@ class Whereabouts:
     now: Features | None = None
     before: Features | None = None
     apart: Features | None = None
+    look_alikes: LookAlikes = field(default_factory=LookAlikes)
     _left: Features | None = field(default=None, init=False)
     _since: Motion = field(default=NO_MOTION, init=False)
 

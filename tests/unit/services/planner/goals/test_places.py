@@ -5,6 +5,7 @@ import pytest
 
 from services.planner.goals.place_evidence import Visit
 from services.planner.goals.places import GoalPlaces
+from services.planner.look_alikes import LookAlikes
 from services.planner.profiles import DEFAULT, THESIS
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.routing import GOAL
@@ -25,8 +26,8 @@ def view(likeness):
     return Visit(round(230 * likeness), likeness)
 
 
-def places_of(found, profile=DEFAULT):
-    return GoalPlaces(Maps(GRAPH), found, profile)
+def places_of(found, profile=DEFAULT, known=None):
+    return GoalPlaces(Maps(GRAPH), found, profile, known or LookAlikes())
 
 
 def look(places, node, differs):
@@ -276,3 +277,47 @@ def test_the_thesis_knows_no_rivals():
     places = places_of(FIRST | SECOND, THESIS)
     assert places.plain
     assert set(places.open_targets(TARGETS)) == set(TARGETS)
+
+
+def stand(places, node, differs, likeness=0.88):
+    look(places, node, differs)
+    return places.arrived(node, view(likeness))
+
+
+def test_where_many_were_told_apart_before_the_first_that_fits_as_well_as_a_right_one_is_it():
+    known = LookAlikes([27.0] * 14)
+    places = places_of(FIRST | SECOND | THIRD, known=known)
+    assert set(places.open_targets(TARGETS)) == {1, 2}  # the likeliest first, however far
+    assert stand(places, 1, 6.0).why == ""
+
+
+@pytest.mark.parametrize(
+    "known", [LookAlikes([27.0] * 3), LookAlikes([27.0] * 14, equal=4), LookAlikes([27.0] * 14 + [11.0])]
+)
+def test_with_few_told_apart_or_equal_ones_or_too_large_a_difference_each_is_visited(known):
+    places = places_of(FIRST | SECOND | THIRD, known=known)
+    assert stand(places, 1, 6.0).why.startswith("88% alike; 2 places")
+
+
+def test_a_place_that_hardly_resembles_the_goal_is_not_it_however_many_were_told_apart():
+    places = places_of(FIRST | SECOND | THIRD, known=LookAlikes([27.0] * 14))
+    assert stand(places, 1, 6.0, likeness=0.5).why.startswith("50% alike; 2 places")
+
+
+def test_what_a_mission_finds_out_of_look_alikes_the_next_one_knows():
+    known = LookAlikes()
+    places = places_of(FIRST | SECOND | THIRD, known=known)
+    for node, differs in ((9, 30.0), (17, 40.0), (1, 6.0)):
+        ruling = stand(places, node, differs)
+    assert ruling.why == ""
+    assert len(known.told) == 2
+    assert known.equal == 0
+
+
+def test_equal_places_are_learned_where_a_mission_ends_in_doubt():
+    known = LookAlikes()
+    places = places_of(FIRST | SECOND, known=known)
+    for node in (1, 9, 1):
+        ruling = stand(places, node, 6.0)
+    assert ruling.failure == "ambiguous"
+    assert (known.told, known.equal) == ([], 1)
