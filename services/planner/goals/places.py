@@ -45,9 +45,12 @@ TRIES = 2
 WAYS_TRIED = 4
 """Ways to a place's nodes that may fail before it counts as shut; chosen: a bed on the spot shuts them all,
 and a mission bears eight."""
+LATER_M = 1000.0
+"""Added to the ways to all places but the likeliest one, where that comes first; chosen: more than a building
+has."""
 EQUAL_RISK = 0.125
-"""Accepted chance that the goal is at a place that could not be reached, see `PlaceEvidence.risk`; chosen:
-one place, where two others could be told from the best one."""
+"""Accepted chance that the goal is at a place that nobody saw, see `LookAlikes.risk`; chosen: one place,
+where two others could be told from the best one."""
 
 
 @dataclass(frozen=True)
@@ -92,11 +95,16 @@ class GoalPlaces:
         return ", ".join(str(place.nodes[0]) for place in self._places)
 
     def open_targets(self, targets: Mapping[int, float]) -> dict[int, float]:
-        """Of the nodes that the goal resembles those of places that may still be it."""
+        """Of the nodes that the goal resembles those of places that may still be it.
+
+        Where the first that fits will do, the likeliest comes first, and others while no way leads there.
+        """
         if not self._places:
             return dict(targets)
-        nodes = {node for place in self._open() for node in place.nodes}
-        return {node: cost for node, cost in targets.items() if node in nodes}
+        places = self._open()
+        later_m = LATER_M if self._risk(len(places) - 1) <= EQUAL_RISK else 0.0
+        more_m = {node: later_m if place != places[0] else 0.0 for place in places for node in place.nodes}
+        return {node: cost + more_m[node] for node, cost in targets.items() if node in more_m}
 
     def without(self, targets: Mapping[int, float]) -> list[int]:
         """Of each place that has none of the targets the node most like the picture."""
@@ -243,10 +251,8 @@ class GoalPlaces:
         """Places to go to: those not visited yet, then that to look at again, then the best one."""
         if self.plain:
             return self._places
-        best, left = self._again or self._evidence.best(), self._left()
-        if left and self._risk(len(left) - 1) <= EQUAL_RISK:
-            return left[:1]
-        return left or ([] if best is None else [best])
+        best = self._again or self._evidence.best()
+        return self._left() or ([] if best is None else [best])
 
     def _left(self) -> list[Hypothesis]:
         """Places worth going to: one missed before, which differs more than another does, is none.

@@ -287,7 +287,8 @@ def stand(places, node, differs, likeness=0.88):
 def test_where_many_were_told_apart_before_the_first_that_fits_as_well_as_a_right_one_is_it():
     known = LookAlikes([27.0] * 14)
     places = places_of(FIRST | SECOND | THIRD, known=known)
-    assert set(places.open_targets(TARGETS)) == {1, 2}  # the likeliest first, however far
+    costs = places.open_targets(TARGETS | {1: 90.0, 2: 90.0})
+    assert max(costs[1], costs[2]) < min(cost for node, cost in costs.items() if node > 2)
     assert stand(places, 1, 6.0).why == ""
 
 
