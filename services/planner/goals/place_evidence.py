@@ -52,6 +52,7 @@ class PlaceEvidence:
     def __init__(self) -> None:
         self.visits: dict[Hypothesis, Visit] = {}
         self._looks: dict[Hypothesis, Array] = {}
+        self._differs: dict[Hypothesis, float] | None = None  # of these looks, as each frame asks for it
 
     def visited(self, place: Hypothesis, visit: Visit) -> None:
         """The robot stood there."""
@@ -65,7 +66,7 @@ class PlaceEvidence:
             differences: `NodeMatch.differences` of the frame and the goal.
         """
         if place not in self._looks or _largest(differences) < _largest(self._looks[place]):
-            self._looks[place] = differences
+            self._looks[place], self._differs = differences, None
 
     def best(self) -> Hypothesis | None:
         """The place visited that resembles the goal most, of those that do not differ from it too much."""
@@ -109,8 +110,9 @@ class PlaceEvidence:
             unseen: places that nobody saw.
             most: accepted chance that one of them is as much like the goal.
         """
-        best, seen = self.best(), known.with_more(*self.seen())
-        if best is None or self.rivals() or seen.risk(unseen) > most:
+        best, (told, equal) = self.best(), self.seen()
+        seen = known.with_more(told, equal)
+        if best is None or equal or seen.risk(unseen) > most:
             return False
         return SETTLED_FACTOR * self._differ().get(best, math.inf) <= seen.least_told
 
@@ -139,6 +141,11 @@ class PlaceEvidence:
 
     def _differ(self) -> dict[Hypothesis, float]:
         """By how much the goal differs from each place, but for what differs at all of them."""
+        if self._differs is None:
+            self._differs = self._compared()
+        return self._differs
+
+    def _compared(self) -> dict[Hypothesis, float]:
         if len(self._looks) < 2:
             return {place: _largest(look) for place, look in self._looks.items()}
         common = _spread(np.min(list(self._looks.values()), axis=0))

@@ -25,8 +25,8 @@ class Whereabouts:
         here: where the robot is relative to a node; None while nobody knows.
         guessed: it was found at one of several places that look alike, and followed from there.
         now, before: the frame that says so, and the one before it.
-        look_alikes: how often rooms of the map look alike in everything, as the missions in it found out.
         apart: the latest of the frames that the robot left `APART_M` behind, and somewhat more.
+        look_alikes: how often rooms of the map look alike in everything, as the missions in it found out.
     """
 
     map: str = ""
