@@ -2,8 +2,9 @@
 
 from collections.abc import Iterator, Mapping
 
+from services.planner.goals.candidates import SPOT_M, Candidates
 from services.planner.goals.place_evidence import Visit
-from services.planner.goals.places import SPOT_M, GoalPlaces, Ruling
+from services.planner.goals.places import GoalPlaces, Ruling
 from services.planner.goals.setbacks import Setbacks
 from services.planner.mapping.reach import claims
 from services.planner.ports import MapAccess, Matcher, Matches, Note
@@ -94,8 +95,9 @@ class GoalDestination:
         else:
             self._node = None
             found = self._matcher.locate(goal, COMPARED_NODES)
-        self.places = GoalPlaces(maps, found, profile, self._at.look_alikes)
-        plain, strict = self.places.plain, profile.sensing.similarity == "raw"
+        self._candidates = Candidates(maps, found, profile)
+        self.places = GoalPlaces(self._candidates, self._at.look_alikes)
+        plain, strict = self._candidates.plain, profile.sensing.similarity == "raw"
         self.aliased = not plain or (self._node is not None and not strict)  # its look-alikes are not known
         self.arrival_rad = profile.arrival.arrival_rad * (1.0 if plain else CLOSER_SHARE)
         self._lies = dict(self._seen_from(found))
@@ -107,7 +109,7 @@ class GoalDestination:
         where = f"goal resembles nodes {sorted(self.targets())}"
         if self._node is not None:
             where = f"goal is node {self._node}"
-        doubt = "" if self.places.plain else f"; places of nodes {self.places.names} look alike"
+        doubt = "" if self._candidates.plain else f"; places of nodes {self._candidates.names} look alike"
         return Note("goal_located", where + doubt)
 
     def targets(self) -> dict[int, float]:
@@ -132,7 +134,7 @@ class GoalDestination:
 
         After it was lost on such a way it goes a part of it by the map first.
         """
-        return not self._setbacks.any_on_a_straight_way and self.places.may_be_seen(goal, here)
+        return not self._setbacks.any_on_a_straight_way and self._candidates.may_be_seen(goal, here)
 
     def sees(self, goal: NodeMatch, here: Displacement | None) -> None:
         """What tells places apart is looked for in every frame."""
@@ -183,7 +185,7 @@ class GoalDestination:
             return Ruling("judged on arrival")
         if setback.event is Event.WAYPOINT_LOST:
             return self.places.lost(node)
-        return self.places.stood(node) if self.places.is_at(setback.here) else self.places.blocked(node)
+        return self.places.stood(node) if self._candidates.is_at(setback.here) else self.places.blocked(node)
 
     def refutes_arrival(self, end: int, similarity: int, tracker: Tracker) -> str:  # noqa: ARG002
         """Whether another node resembles the view more than the goal does; the thesis does not ask."""
@@ -197,15 +199,15 @@ class GoalDestination:
         s_map = max((similarity_of(match, self._profile) for match in view.values()), default=0)
         if similarity < GOAL_SHARE * s_map:
             self.aliased = True
-            if self.places.plain:
+            if self._candidates.plain:
                 self._rule_out(view, tracker.here)
             else:
                 self._settle(self.places.refuted(tracker.here))
             return f"aliased: a node of the map resembles this view more than the goal does, S {s_map}"
-        if another := self.places.shows_another(view, tracker.here):
+        if another := self._candidates.shows_another(view, tracker.here):
             self.aliased = True
             tracker.shown({node: view[node] for node in another.nodes})
-            return f"aliased: this is about node {another.nodes[0]}, its place about {self.places.names}"
+            return f"aliased: this is about node {another.nodes[0]}, its place about {self._candidates.names}"
         why = self._settle(self.places.arrived(node, Visit(similarity, tracker.likeness(similarity))))
         self._at.guessed = self._at.guessed and bool(why)
         return why

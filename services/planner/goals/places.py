@@ -6,21 +6,15 @@ not tell, the robot goes back to the place that differs least, for a look from n
 rooms were told apart often enough before, the first one that fits is it.
 """
 
-import math
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from services.planner.goals.candidates import Candidates
 from services.planner.goals.place_evidence import PlaceEvidence, Visit
 from services.planner.look_alikes import LookAlikes
-from services.planner.mapping.reach import claims, distances, elsewhere
-from services.planner.ports import MapAccess, Matches
-from services.planner.profiles import Profile
-from services.planner.similarity import similarity
 from shared.mapgraph.local.displacement import Displacement
-from shared.mapgraph.local.hypotheses import Hypothesis, hypotheses
-from shared.mapgraph.local.likely_places import is_plain, likely, typical_similarity
-from shared.mapgraph.local.view_range import length_to_m
+from shared.mapgraph.local.hypotheses import Hypothesis
 from shared.messages.matching import NodeMatch
 from shared.messages.missions import FailureKind
 
@@ -29,17 +23,8 @@ SPOT_SHARE = 0.6
 place was in doubt; noise and light take from both alike. At 48 spots of two schools, an office and a
 hostel, seen from 2 and 5 cm aside and turned, 0.83 and more; at an equal desk of another row 0.47 at most.
 Rooms furnished alike have 0.68 and more: they exclude nothing."""
-NEAREST = 2
-"""Nodes most like the picture, of which one is next to whoever stands where it was taken; chosen: one before
-and one beyond."""
-SPOT_M = 0.75
-"""Who is nearer than this to the node most like the picture stands where it was taken; chosen: nodes lie half
-a metre apart, and a base stops a hand's breadth short."""
 AROUND_M = 2.0
 """Who is nearer than this to it is in the same part of a room; chosen."""
-BEYOND_FACTOR = 2.0
-"""A picture was taken within so many times the distance that its matches with a node stand for: in nine of
-ten edges of three worlds that is right to a factor of 1.6."""
 TRIES = 2
 """Times the picture may be lost, refuted or the way shut at one place before that counts."""
 WAYS_TRIED = 4
@@ -62,20 +47,15 @@ class Ruling:
 
 
 class GoalPlaces:
-    """The places of one goal picture.
+    """What is known of the places of one goal picture, and which of them to go to.
 
     Args:
-        maps: the map.
-        found: the picture against the nodes most like it.
-        profile: thresholds.
+        candidates: its places.
         known: how often rooms of this map look alike in everything.
     """
 
-    def __init__(self, maps: MapAccess, found: Matches, profile: Profile, known: LookAlikes) -> None:
-        self._maps, self._profile, self._known = maps, profile, known
-        self._yaw_rad = {node: match.yaw_rad or 0.0 for node, match in found.items()}
-        self._places = self._likely(found)
-        self.plain = not self._places or is_plain(self._places, typical_similarity(maps.graph))
+    def __init__(self, candidates: Candidates, known: LookAlikes) -> None:
+        self._candidates, self._known = candidates, known
         self._evidence = PlaceEvidence()
         self._losses: Counter[Hypothesis] = Counter()
         self._blocks: Counter[Hypothesis] = Counter()
@@ -89,17 +69,12 @@ class GoalPlaces:
         """Whether the robot goes back to a place that it visited, to see it from nearer by."""
         return self._again is not None
 
-    @property
-    def names(self) -> str:
-        """The node most like the picture of each place, for people."""
-        return ", ".join(str(place.nodes[0]) for place in self._places)
-
     def open_targets(self, targets: Mapping[int, float]) -> dict[int, float]:
         """Of the nodes that the goal resembles those of places that may still be it.
 
         Where the first that fits will do, the likeliest comes first, and others while no way leads there.
         """
-        if not self._places:
+        if not self._candidates.places:
             return dict(targets)
         places = self._open()
         later_m = LATER_M if self._risk(len(places) - 1) <= EQUAL_RISK else 0.0
@@ -108,7 +83,7 @@ class GoalPlaces:
 
     def without(self, targets: Mapping[int, float]) -> list[int]:
         """Of each place that has none of the targets the node most like the picture."""
-        rivals = [] if self.plain else self._places
+        rivals = [] if self._candidates.plain else self._candidates.places
         return [place.nodes[0] for place in rivals if targets.keys().isdisjoint(place.nodes)]
 
     def sees(self, goal: NodeMatch, here: Displacement | None) -> None:
@@ -118,45 +93,9 @@ class GoalPlaces:
             goal: the frame against the picture.
             here: where the frame was taken.
         """
-        place = None if self.plain or here is None else self._nearest(here.node_id)
+        place = None if here is None else self._candidates.nearest(here.node_id)
         if place is not None and goal.differences is not None:
             self._evidence.looked(place, goal.differences)
-
-    def is_near(self, node: int | None) -> bool:
-        """Whether a robot about `node` can be at the place, where there is but one and both are known."""
-        graph = self._maps.graph
-        if not (self.plain and self._places) or node is None or node not in graph.nodes:
-            return self.plain
-        return any(node == best or node in graph.neighbours(best) for best in self._places[0].nodes[:NEAREST])
-
-    def may_be_seen(self, goal: NodeMatch, here: Displacement | None) -> bool:
-        """Whether the picture in sight can be at its place, by where the robot is; True where nobody knows.
-
-        Args:
-            goal: the frame against the picture.
-            here: where the frame was taken.
-        """
-        if not (self.plain and self._places) or here is None or self.is_near(here.node_id):
-            return self.plain
-        nearest = self._places[0].nodes[0]
-        seen = goal.model_copy(update={"yaw_rad": (goal.yaw_rad or 0.0) + self._yaw_rad[nearest]})
-        return not elsewhere(self._maps.graph, {nearest: seen}, here, self._profile)
-
-    def shows_another(self, view: Matches, here: Displacement | None) -> Hypothesis | None:
-        """The place that a view is of, where the goal's is one alone and it is not that: a look-alike.
-
-        Args:
-            view: the frame against the nodes most like it.
-            here: where the frame was taken; None where nobody knows.
-        """
-        found = self._likely(view)
-        if not (self.plain and self._places and found):
-            return None
-        same = [not set(place.nodes).isdisjoint(self._places[0].nodes) for place in found]
-        may_be = same[0] or (any(same) and self.is_near(None if here is None else here.node_id))
-        if may_be and (here is None or not self._is_beyond(here)):
-            return None
-        return found[0]
 
     def stood(self, node: int | None) -> Ruling:
         """The robot stood at the very spot, and the goal picture did not agree with the view.
@@ -164,38 +103,24 @@ class GoalPlaces:
         The one place that there is gets another try: nothing else speaks against it, and one late picture
         may be all that was wrong.
         """
-        place = self._nearest(node)
-        if self.plain or place is None:
+        place = self._candidates.nearest(node)
+        if place is None:
             return Ruling("not seen")
-        if len(self._places) == 1:
+        if len(self._candidates.places) == 1:
             return self.lost(node)
         self._evidence.visited(place, Visit())
         return self._judge(place)
 
     def refuted(self, here: Displacement | None) -> Ruling:
         """What agreed with the goal was another view: at the very spot it counts, near by the second one."""
-        place = None if here is None else self._nearest(here.node_id)
-        if self.plain or here is None or place is None:
+        place = None if here is None else self._candidates.nearest(here.node_id)
+        if here is None or place is None:
             return Ruling("not there")
-        if not self.is_at(here):
-            self._losses[place] += self._is_within(AROUND_M, here)
+        if not self._candidates.is_at(here):
+            self._losses[place] += self._candidates.is_within(AROUND_M, here)
             if self._losses[place] < TRIES:
                 return Ruling("not there")
         return self.stood(here.node_id)
-
-    def is_at(self, here: Displacement | None) -> bool:
-        """Whether the robot stands where one of several places puts the picture, as far as is known."""
-        return not self.plain and here is not None and self._is_within(SPOT_M, here)
-
-    def _is_beyond(self, here: Displacement) -> bool:
-        """Whether a robot is further from the place than matches with it allow, as far as is known."""
-        graph, place = self._maps.graph, self._places[0]
-        apart_m = length_to_m(graph, place.nodes[0], place.similarity)
-        return not self._is_within(SPOT_M + BEYOND_FACTOR * apart_m, here)
-
-    def _is_within(self, far_m: float, here: Displacement) -> bool:
-        best = {place.nodes[0] for place in self._places}
-        return min(distances(self._maps.graph, here, best).values(), default=math.inf) < far_m
 
     def arrived(self, node: int | None, visit: Visit) -> Ruling:
         """The robot stands where the goal picture agrees with the view.
@@ -204,9 +129,7 @@ class GoalPlaces:
             node: of the map, near there.
             visit: what it sees of the goal.
         """
-        if self.plain:
-            return Ruling()
-        place = self._nearest(node)
+        place = self._candidates.nearest(node)
         if place is None:
             return Ruling()
         self._evidence.visited(place, visit)
@@ -214,8 +137,8 @@ class GoalPlaces:
 
     def lost(self, node: int | None) -> Ruling:
         """The goal picture was not found where its place should be."""
-        place = self._nearest(node)
-        if self.plain or place is None:
+        place = self._candidates.nearest(node)
+        if place is None:
             return Ruling("not seen")
         self._losses[place] += 1
         if self._is_known(place) or self._losses[place] < TRIES:
@@ -225,8 +148,8 @@ class GoalPlaces:
 
     def blocked(self, node: int | None) -> Ruling:
         """The last way to the goal is shut where its place should be: that excludes nothing."""
-        place = self._nearest(node)
-        if self.plain or place is None:
+        place = self._candidates.nearest(node)
+        if place is None:
             return Ruling("not reached")
         self._blocks[place] += 1
         if self._is_known(place) or self._blocks[place] < TRIES:
@@ -238,7 +161,7 @@ class GoalPlaces:
     def way_failed(self, waypoint: int) -> Ruling | None:
         """A way to one of a place's nodes failed: None while others are worth a try."""
         place = next((place for place in self._left() if waypoint in place.nodes), None)
-        if self.plain or place is None:
+        if self._candidates.plain or place is None:
             return None
         self._ways[place] += 1
         if self._ways[place] < WAYS_TRIED:
@@ -249,8 +172,8 @@ class GoalPlaces:
 
     def _open(self) -> list[Hypothesis]:
         """Places to go to: those not visited yet, then that to look at again, then the best one."""
-        if self.plain:
-            return self._places
+        if self._candidates.plain:
+            return self._candidates.places
         best = self._again or self._evidence.best()
         return self._left() or ([] if best is None else [best])
 
@@ -260,7 +183,7 @@ class GoalPlaces:
         None is where another is the goal's as surely as a visit would tell.
         """
         done = self._evidence.visits.keys() | self._shut | self._evidence.told_apart((+self._losses).keys())
-        left = [place for place in self._places if place not in done]
+        left = [place for place in self._candidates.places if place not in done]
         unseen, best = len(left) + len(self._shut), self._evidence.best()
         fits = best is not None and self._evidence.visits[best].likeness >= SPOT_SHARE
         return [] if fits and self._evidence.settled(self._known, unseen, EQUAL_RISK) else left
@@ -275,20 +198,21 @@ class GoalPlaces:
         if here == self._again:
             self._again = None
         visits, best, left = self._evidence.visits, self._evidence.best(), self._left()
+        names = self._candidates.names
         if left:
             alike = f"{visits[here].likeness:.0%} alike; " if here in visits else ""
             told = self._evidence.told()
             return Ruling(f"{alike}{len(left)} places that look alike are not excluded{told}")
         most = visits[best].likeness if best is not None else 0.0
         if self._shut and (most < SPOT_SHARE or self._risk(len(self._shut)) > EQUAL_RISK):
-            shut = ", ".join(str(place.nodes[0]) for place in self._places if place in self._shut)
-            why = f"of the places of nodes {self.names} that of {shut} could not be reached"
+            shut = ", ".join(str(place.nodes[0]) for place in self._candidates.places if place in self._shut)
+            why = f"of the places of nodes {names} that of {shut} could not be reached"
             return Ruling(why, "ambiguous" if most >= SPOT_SHARE else "blocked")
         if most < SPOT_SHARE:
-            why = f"the goal resembles nodes {self.names}, but is at none of them, {most:.0%} alike at most"
+            why = f"the goal resembles nodes {names}, but is at none of them, {most:.0%} alike at most"
             return Ruling(why, "goal_not_in_map")
         if self._evidence.rivals():
-            why = f"one of the places of nodes {self.names}, which look alike"
+            why = f"one of the places of nodes {names}, which look alike"
             return Ruling(why + self._evidence.told(), self._look_again())
         if best != here:
             return Ruling(f"another place resembles the goal more, by {most:.0%}{self._evidence.told()}")
@@ -307,19 +231,3 @@ class GoalPlaces:
     def _learn(self) -> None:
         """What this mission found out is of use to the next ones."""
         self._known.learn(*self._evidence.seen())
-
-    def _likely(self, matches: Matches) -> list[Hypothesis]:
-        profile, graph = self._profile, self._maps.graph
-        if profile.sensing.similarity == "raw":
-            return []
-        similar = {n: m for n, m in matches.items() if similarity(m, profile) > profile.travel.s_via_min}
-        said = claims(graph, similar, profile)
-        return likely(graph, said, hypotheses(graph, said))
-
-    def _nearest(self, node: int | None) -> Hypothesis | None:
-        """The place a node belongs to: by the fewest edges."""
-        graph = self._maps.graph
-        if node is None or node not in graph.nodes:
-            return None
-        of = {n: place for place in self._places for n in place.nodes}
-        return next((of[n] for n in graph.nearest(node, len(graph.nodes)) if n in of), None)

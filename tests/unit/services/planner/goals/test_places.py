@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from services.planner.goals.candidates import Candidates
 from services.planner.goals.place_evidence import Visit
 from services.planner.goals.places import GoalPlaces
 from services.planner.look_alikes import LookAlikes
@@ -18,7 +19,6 @@ FIRST = by_node(match(1, 0.0, 0.0, 150), match(2, 1.0, 0.0, 80))
 SECOND = by_node(match(9, 0.0, 0.0, 140), match(10, 1.0, 0.0, 80))
 THIRD = by_node(match(17, 0.0, 0.0, 140), match(18, 1.0, 0.0, 80))
 FOURTH = by_node(match(25, 0.0, 0.0, 140), match(26, 1.0, 0.0, 80))
-FAR = next(n for n in GRAPH.nodes if n not in GRAPH.nearest(1, 8))
 TARGETS = dict.fromkeys((1, 2, 9, 10, 17, 18), 0.1)
 
 
@@ -27,7 +27,7 @@ def view(likeness):
 
 
 def places_of(found, profile=DEFAULT, known=None):
-    return GoalPlaces(Maps(GRAPH), found, profile, known or LookAlikes())
+    return GoalPlaces(Candidates(Maps(GRAPH), found, profile), known or LookAlikes())
 
 
 def look(places, node, differs):
@@ -44,50 +44,11 @@ def two():
 
 def test_a_place_without_rivals_is_arrived_at_at_once():
     places = places_of(FIRST)
-    assert places.plain
     assert places.arrived(2, view(0.40)).why == ""
     assert set(places.open_targets(TARGETS)) == {1, 2}
 
 
-def test_a_goal_in_sight_is_headed_for_beside_its_place_only():
-    places = places_of(FIRST)
-    assert [places.is_near(node) for node in (1, 3, 12, None)] == [True, True, False, True]
-
-
-@pytest.mark.parametrize(("seen_m", "may"), [(4.8, True), (1.0, False)])
-def test_a_goal_seen_where_its_place_is_not_is_not_headed_for(seen_m, may):
-    """The next of equal desks, a period nearer."""
-    places, goal = places_of(FIRST), match(GOAL, -seen_m, 0.0)
-    assert places.may_be_seen(goal, Displacement(FAR)) == may
-    assert places.may_be_seen(goal, None)
-
-
-def test_a_view_of_a_look_alike_is_no_arrival():
-    places = places_of(FIRST)
-    another = places.shows_another(SECOND, Displacement(9))
-    assert another is not None
-    assert another.nodes[0] == 9
-    assert places.shows_another(FIRST, Displacement(1)) is None
-
-
-@pytest.mark.parametrize(("node", "another"), [(2, False), (10, True)])
-def test_a_view_that_may_be_of_either_is_believed_beside_the_place(node, another):
-    rival = by_node(match(9, 0.0, 0.0, 160), match(10, 1.0, 0.0, 80))
-    found = places_of(FIRST).shows_another(FIRST | rival, Displacement(node))
-    assert (found is not None) == another
-
-
-def test_a_view_like_the_place_from_further_off_than_its_matches_allow_is_of_another():
-    """As at the next of equal desks: the nodes between the two are seen from both."""
-    places = places_of(FIRST)
-    assert places.shows_another(FIRST, None) is None
-    assert places.shows_another(FIRST, Displacement(FAR)) is not None
-
-
 def test_who_stood_at_the_very_spot_and_did_not_see_the_goal_excludes_it(two):
-    assert two.is_at(Displacement(9, x_m=0.3))
-    assert not two.is_at(Displacement(9, y_m=1.5))
-    assert not two.is_at(None)
     two.stood(9)
     assert two.arrived(1, view(0.86)).why == ""
 
@@ -95,14 +56,12 @@ def test_who_stood_at_the_very_spot_and_did_not_see_the_goal_excludes_it(two):
 def test_the_one_place_that_there_is_gets_another_try():
     """It resembles the goal too little to be plain."""
     places = places_of(by_node(match(1, 0.0, 0.0, 60), match(2, 1.0, 0.0, 40)))
-    assert not places.plain
     assert places.stood(1).failure == ""
     assert set(places.open_targets(TARGETS)) == {1, 2}
     assert places.stood(1).failure == "goal_not_in_map"
 
 
 def test_a_look_alike_is_visited_before_arrival_is_claimed(two):
-    assert not two.plain
     assert set(two.open_targets(TARGETS)) == {1, 2, 9, 10}
     assert "not excluded" in two.arrived(2, view(0.88)).why
     assert set(two.open_targets(TARGETS)) == {9, 10}
@@ -275,7 +234,6 @@ def test_a_place_where_the_picture_is_lost_twice_is_excluded(two):
 
 def test_the_thesis_knows_no_rivals():
     places = places_of(FIRST | SECOND, THESIS)
-    assert places.plain
     assert set(places.open_targets(TARGETS)) == set(TARGETS)
 
 

@@ -1,0 +1,83 @@
+"""The places where a picture can have been taken, and where a robot is relative to them."""
+
+import pytest
+
+from services.planner.goals.candidates import Candidates
+from services.planner.profiles import DEFAULT, THESIS
+from shared.mapgraph.local.displacement import Displacement
+from shared.mapgraph.routing import GOAL
+from tests.unit.services.planner.travel.seen import Maps, by_node, match
+from tests.unit.shared.mapgraph.local.grid import grid
+
+GRAPH = grid(20, 2)
+FIRST = by_node(match(1, 0.0, 0.0, 150), match(2, 1.0, 0.0, 80))
+SECOND = by_node(match(9, 0.0, 0.0, 140), match(10, 1.0, 0.0, 80))
+FAR = next(n for n in GRAPH.nodes if n not in GRAPH.nearest(1, 8))
+
+
+def candidates_of(found, profile=DEFAULT):
+    return Candidates(Maps(GRAPH), found, profile)
+
+
+@pytest.mark.parametrize(
+    ("found", "profile", "plain", "names"),
+    [
+        (FIRST, DEFAULT, True, "1"),
+        (FIRST | SECOND, DEFAULT, False, "1, 9"),
+        (by_node(match(1, 0.0, 0.0, 60), match(2, 1.0, 0.0, 40)), DEFAULT, False, "1"),
+        (FIRST | SECOND, THESIS, True, ""),
+    ],
+    ids=["one", "two", "one that resembles it too little", "thesis"],
+)
+def test_it_is_plain_where_one_place_alone_resembles_the_picture(found, profile, plain, names):
+    candidates = candidates_of(found, profile)
+    assert (candidates.plain, candidates.names) == (plain, names)
+
+
+def test_a_node_belongs_to_the_place_fewest_edges_off_where_that_is_in_doubt():
+    places = candidates_of(FIRST | SECOND)
+    assert [places.nearest(node).nodes[0] for node in (1, 3, 10, 12)] == [1, 1, 9, 9]
+    assert places.nearest(None) is None
+    assert candidates_of(FIRST).nearest(1) is None
+
+
+def test_who_is_within_reach_of_the_node_most_like_the_picture_stands_there():
+    places = candidates_of(FIRST | SECOND)
+    assert places.is_at(Displacement(9, x_m=0.3))
+    assert not places.is_at(Displacement(9, y_m=1.5))
+    assert not places.is_at(None)
+
+
+def test_a_goal_in_sight_is_headed_for_beside_its_place_only():
+    places = candidates_of(FIRST)
+    assert [places.is_near(node) for node in (1, 3, 12, None)] == [True, True, False, True]
+
+
+@pytest.mark.parametrize(("seen_m", "may"), [(4.8, True), (1.0, False)])
+def test_a_goal_seen_where_its_place_is_not_is_not_headed_for(seen_m, may):
+    """The next of equal desks, a period nearer."""
+    places, goal = candidates_of(FIRST), match(GOAL, -seen_m, 0.0)
+    assert places.may_be_seen(goal, Displacement(FAR)) == may
+    assert places.may_be_seen(goal, None)
+
+
+def test_a_view_of_a_look_alike_is_no_arrival():
+    places = candidates_of(FIRST)
+    another = places.shows_another(SECOND, Displacement(9))
+    assert another is not None
+    assert another.nodes[0] == 9
+    assert places.shows_another(FIRST, Displacement(1)) is None
+
+
+@pytest.mark.parametrize(("node", "another"), [(2, False), (10, True)])
+def test_a_view_that_may_be_of_either_is_believed_beside_the_place(node, another):
+    rival = by_node(match(9, 0.0, 0.0, 160), match(10, 1.0, 0.0, 80))
+    found = candidates_of(FIRST).shows_another(FIRST | rival, Displacement(node))
+    assert (found is not None) == another
+
+
+def test_a_view_like_the_place_from_further_off_than_its_matches_allow_is_of_another():
+    """As at the next of equal desks: the nodes between the two are seen from both."""
+    places = candidates_of(FIRST)
+    assert places.shows_another(FIRST, None) is None
+    assert places.shows_another(FIRST, Displacement(FAR)) is not None
