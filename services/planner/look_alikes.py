@@ -4,6 +4,20 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass, field
 
+EQUAL_BEFORE, TOLD_BEFORE = 1, 12
+"""Rooms furnished alike that nothing tells apart, and those that something does, as if they had been visited
+before: of 1,364 pairs of rooms in 45 hostels and hotels of development 102 have the same small things, as one
+in 13. It weighs no more than one room that is equal."""
+TOLD_LEVELS = 10.0
+"""Least difference of a place that is told from the right one, while few were. From 1 to 5 cm beside the spot
+396 other rooms of three hostels and three hotels of development differ by 8.4 and more, 31 at the median; the
+right ones by 5.1 at the median."""
+SETTLED_FACTOR = 2.0
+"""A place that differs so many times less than all that were told from right ones differs as one of those
+does: two looks at rooms that nothing tells apart are 1.9 times apart at most."""
+MANY = 10
+"""Of so many the least says how little others differ; chosen."""
+
 
 @dataclass
 class LookAlikes:
@@ -27,15 +41,22 @@ class LookAlikes:
         """This and what the mission under way has found out."""
         return LookAlikes([*self.told, *told], self.equal + equal)
 
-    def risk(self, unseen: int) -> float:
-        """Chance that a goal is at one of some places that nobody saw, though another one fits it.
+    def risk(self, unseen: int, *, fits: bool = True) -> float:
+        """Chance that a goal is at one of some places that nobody saw, though another one looks like it.
 
         It is there only if that place looks like the other one in everything, and then as likely as not. How
-        many of a building's places do is what the visits say (Laplace's rule of succession).
-        """
-        return unseen / 2 * (self.equal + 1) / (len(self.told) + self.equal + 2)
+        many of a building's places do is what the visits say (Laplace's rule of succession). What those of
+        other buildings say is of places that fit.
 
-    @property
-    def least_told(self) -> float:
-        """The least that any place differed that was told from the right one; 0 where that is unknown."""
-        return min(filter(math.isfinite, self.told), default=0.0)
+        Args:
+            unseen: how many there are.
+            fits: whether the other one does, see `fits`.
+        """
+        equal = self.equal + EQUAL_BEFORE
+        told = len(self.told) + (TOLD_BEFORE if fits else 1)
+        return unseen / 2 * equal / (told + equal)
+
+    def fits(self, differs: float) -> bool:
+        """Whether a place differs from the goal as little as a right one does, in levels."""
+        known = list(filter(math.isfinite, self.told))
+        return SETTLED_FACTOR * differs <= min(known if len(known) >= MANY else [*known, TOLD_LEVELS])

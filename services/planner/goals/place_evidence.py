@@ -18,9 +18,6 @@ TOLD_FACTOR = 3.0
 of rooms that a few small things tell apart, each seen from 1 to 6 cm aside, it excludes all, also where
 somebody stands in the goal picture, and 33 where the right one is seen from 10 cm. 12 that nothing tells
 apart come to 1.6 at most (from 1 to 10 cm); with somebody in the picture one of them to 3.4, others to 2."""
-SETTLED_FACTOR = 2.0
-"""A place that differs so many times less than all that were told from right ones differs as one of those
-does: two looks at rooms that nothing tells apart are 1.9 times apart at most."""
 LARGEST_SHARE = 0.01
 """Share of the view that differs most and counts; chosen: a picture on a wall."""
 COMMON_SHARE = 0.12
@@ -100,10 +97,18 @@ class PlaceEvidence:
         told, most = self.visits.keys() - {self.best(), *rivals}, self._most(differs)
         return [differs.get(p, 0.0) if differs.get(p, 0.0) >= most else math.inf for p in told], len(rivals)
 
-    def settled(self, known: LookAlikes, unseen: int, most: float) -> bool:
-        """Whether a place visited is the goal's, whatever nobody saw looks like.
+    def risk(self, known: LookAlikes, unseen: int) -> float:
+        """Chance that the goal is at one of some places that nobody saw and not at the best one, if any.
 
-        It differs as little as a right place does: SETTLED_FACTOR times less than any that was told from one.
+        Args:
+            known: of this map, by earlier missions.
+            unseen: how many places there are that nobody saw.
+        """
+        seen, best = known.with_more(*self.seen()), self.best()
+        return seen.risk(unseen, fits=best is None or self._fits(best, seen))
+
+    def settled(self, known: LookAlikes, unseen: int, most: float) -> bool:
+        """Whether a place visited is the goal's, whatever nobody saw looks like: it fits, and no other does.
 
         Args:
             known: of this map, by earlier missions.
@@ -111,10 +116,12 @@ class PlaceEvidence:
             most: accepted chance that one of them is as much like the goal.
         """
         best, (told, equal) = self.best(), self.seen()
-        seen = known.with_more(told, equal)
-        if best is None or equal or seen.risk(unseen) > most:
+        if best is None or equal or not self._fits(best, known.with_more(told, equal)):
             return False
-        return SETTLED_FACTOR * self._differ().get(best, math.inf) <= seen.least_told
+        return self.risk(known, unseen) <= most
+
+    def _fits(self, place: Hypothesis, known: LookAlikes) -> bool:
+        return known.fits(self._differ().get(place, math.inf))
 
     def told(self) -> str:
         """How much the goal differs at each place where that is known, for people, to end a sentence with."""

@@ -77,7 +77,7 @@ class GoalPlaces:
         if not self._candidates.places:
             return dict(targets)
         places = self._open()
-        later_m = LATER_M if self._risk(len(places) - 1) <= EQUAL_RISK else 0.0
+        later_m = LATER_M if self._evidence.risk(self._known, len(places) - 1) <= EQUAL_RISK else 0.0
         more_m = {node: later_m if place != places[0] else 0.0 for place in places for node in place.nodes}
         return {node: cost + more_m[node] for node, cost in targets.items() if node in more_m}
 
@@ -188,9 +188,6 @@ class GoalPlaces:
         fits = best is not None and self._evidence.visits[best].likeness >= SPOT_SHARE
         return [] if fits and self._evidence.settled(self._known, unseen, EQUAL_RISK) else left
 
-    def _risk(self, unseen: int) -> float:
-        return self._known.with_more(*self._evidence.seen()).risk(unseen)
-
     def _is_known(self, place: Hypothesis) -> bool:
         return place in self._evidence.visits and place != self._again
 
@@ -204,9 +201,9 @@ class GoalPlaces:
             told = self._evidence.told()
             return Ruling(f"{alike}{len(left)} places that look alike are not excluded{told}")
         most = visits[best].likeness if best is not None else 0.0
-        if self._shut and (most < SPOT_SHARE or self._risk(len(self._shut)) > EQUAL_RISK):
-            shut = ", ".join(str(place.nodes[0]) for place in self._candidates.places if place in self._shut)
-            why = f"of the places of nodes {names} that of {shut} could not be reached"
+        shut = [str(place.nodes[0]) for place in self._candidates.places if place in self._shut]
+        if shut and not (most >= SPOT_SHARE and self._evidence.risk(self._known, len(shut)) <= EQUAL_RISK):
+            why = f"of the places of nodes {names} that of {', '.join(shut)} could not be reached"
             return Ruling(why, "ambiguous" if most >= SPOT_SHARE else "blocked")
         if most < SPOT_SHARE:
             why = f"the goal resembles nodes {names}, but is at none of them, {most:.0%} alike at most"
