@@ -9,7 +9,7 @@ import numpy as np
 from services.drive.bases import ackermann, differential
 from services.drive.bases.course import Course, Manoeuvre, Twist
 from services.drive.limits import DriveLimits, SpeedLimits
-from services.drive.passing import Passing, Steering, obstacle_heading, steer_away, steer_past
+from services.drive.passing import Passing, Steering, Wish, obstacle_heading, steer_away, steer_past
 from shared.geometry.clearance import Obstacles
 from shared.messages.drive import Heading, Velocity
 from shared.messages.sensors import Ranges
@@ -174,5 +174,5 @@ def _steer(
     if limits.avoidance == "momentary":
         near_rad = obstacle_heading(ranges.angles_rad, ranges.distances_m, limits.obstacle_range_m)
         return steer_away(aim.bearing_rad, near_rad, rng), memory
-    fraction, passing = heading.speed_fraction, limits.passing
-    return steer_past(aim.bearing_rad, obstacles, memory, fraction, passing, aim.distance_m)
+    wish = Wish(aim.bearing_rad, heading.speed_fraction, aim.distance_m)
+    return steer_past(wish, obstacles, memory, limits.passing)

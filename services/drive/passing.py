@@ -51,6 +51,20 @@ SPOT_M_PER_RAD = 0.1
 tightest circle that it curves on."""
 
 
+class Wish(NamedTuple):
+    """Where the planner wants to go.
+
+    Attributes:
+        heading_rad: robot frame.
+        speed_fraction: the share of full speed at most; a slow robot near its goal looks less far ahead.
+        distance_m: how far it is; inf where that is not known.
+    """
+
+    heading_rad: float
+    speed_fraction: float = 1.0
+    distance_m: float = math.inf
+
+
 class PassingLimits(BaseModel):
     """Sizes of the robot and patience of the rule; chosen so that it drives through its own doors untouched.
 
@@ -77,10 +91,10 @@ class PassingLimits(BaseModel):
         """Radius of the disc that must fit at a share of full speed."""
         return self.radius_slow_m + (self.radius_m - self.radius_slow_m) * speed_fraction
 
-    def needed_m(self, speed_fraction: float, distance_m: float) -> float:
-        """Free way that a direction needs at a share of full speed, so far from where the robot is going."""
-        ahead_m = self.lookahead_min_m + (self.lookahead_m - self.lookahead_min_m) * speed_fraction
-        return min(ahead_m, max(distance_m, LAST_M))
+    def needed_m(self, wish: Wish) -> float:
+        """Free way that a direction needs: less for a slow robot, and close to where it is going."""
+        ahead_m = self.lookahead_min_m + (self.lookahead_m - self.lookahead_min_m) * wish.speed_fraction
+        return min(ahead_m, max(wish.distance_m, LAST_M))
 
 
 class Steering(NamedTuple):
@@ -153,66 +167,50 @@ class Passing:
 
 
 def steer_past(
-    wished_rad: float,
-    obstacles: Obstacles,
-    memory: Passing,
-    speed_fraction: float,
-    limits: PassingLimits,
-    distance_m: float = math.inf,
+    wish: Wish, obstacles: Obstacles, memory: Passing, limits: PassingLimits
 ) -> tuple[Steering, Passing]:
     """Choose the direction nearest to the wished one that keeps the border on the chosen side.
 
     Args:
-        wished_rad: where the planner wants to go, robot frame.
+        wish: where the planner wants to go.
         obstacles: what the distance sensors see.
         memory: result of the previous step.
-        speed_fraction: the planner's limit; a slow robot near its goal looks less far ahead.
         limits: sizes and patience.
-        distance_m: of where the planner wants to go; inf where it is not known.
     """
-    memory = memory.towards(wished_rad, distance_m)
-    straight = _straight_on(wished_rad, obstacles, memory, speed_fraction, limits, distance_m)
+    memory = memory.towards(wish.heading_rad, wish.distance_m)
+    straight = _straight_on(wish, obstacles, memory, limits)
     if straight is not None:
         return straight, memory.rested(limits)
     if not memory.tries:
-        steering, after = _follow_border(wished_rad, obstacles, memory, speed_fraction, limits, distance_m)
+        steering, after = _follow_border(wish, obstacles, memory, limits)
         if not steering.blocked and after.deflection_rad <= ASIDE_RAD:
             return steering, after
         memory = replace(memory, tries=1)
-    share = min(SLOWLY, speed_fraction) if memory.tries <= SLOW_TRIES else speed_fraction
-    return _follow_border(wished_rad, obstacles, memory, share, limits, distance_m)
+    if memory.tries <= SLOW_TRIES:
+        wish = wish._replace(speed_fraction=min(SLOWLY, wish.speed_fraction))
+    return _follow_border(wish, obstacles, memory, limits)
 
 
-def _straight_on(
-    wished_rad: float,
-    obstacles: Obstacles,
-    memory: Passing,
-    speed_fraction: float,
-    limits: PassingLimits,
-    distance_m: float,
-) -> Steering | None:
+def _straight_on(wish: Wish, obstacles: Obstacles, memory: Passing, limits: PassingLimits) -> Steering | None:
     """The wished direction, where no border is followed and nothing is in the way at this share of speed."""
     if memory.deflection_rad:
         return None
-    clearance_m = float(obstacles.clearance_m(np.array([wished_rad]), limits.disc_m(speed_fraction))[0])
-    if clearance_m < limits.needed_m(speed_fraction, distance_m):
+    ahead_rad = np.array([wish.heading_rad])
+    clearance_m = float(obstacles.clearance_m(ahead_rad, limits.disc_m(wish.speed_fraction))[0])
+    if clearance_m < limits.needed_m(wish):
         return None
-    return Steering(wished_rad, False, "free", clearance_m, speed_fraction=speed_fraction)
+    return Steering(wish.heading_rad, False, "free", clearance_m, speed_fraction=wish.speed_fraction)
 
 
 def _follow_border(
-    wished_rad: float,
-    obstacles: Obstacles,
-    memory: Passing,
-    speed_fraction: float,
-    limits: PassingLimits,
-    distance_m: float,
+    wish: Wish, obstacles: Obstacles, memory: Passing, limits: PassingLimits
 ) -> tuple[Steering, Passing]:
     """The same at this share of full speed, where something is in the way."""
-    lookahead_m, radius_m = limits.needed_m(speed_fraction, distance_m), limits.disc_m(speed_fraction)
+    wished_rad = wish.heading_rad
+    lookahead_m, radius_m = limits.needed_m(wish), limits.disc_m(wish.speed_fraction)
     if memory.steps > limits.patience_steps * limits.patience_growth**memory.tries:
         memory = Passing(side=-memory.side, tries=memory.tries + 1, wished_rad=wished_rad)
-    straight = _straight_on(wished_rad, obstacles, memory, speed_fraction, limits, distance_m)
+    straight = _straight_on(wish, obstacles, memory, limits)
     if straight is not None:
         return straight, memory.rested(limits)
     side = memory.side
@@ -232,7 +230,7 @@ def _follow_border(
     name = "left" if side > 0 else "right"
     why = f"passing on the {name}, {math.degrees(deflection_rad):.0f} deg off"
     heading_rad, clearance_m = _wrap(float(headings_rad[chosen])), float(clearances_m[chosen])
-    steering = Steering(heading_rad, True, why, clearance_m, speed_fraction=speed_fraction)
+    steering = Steering(heading_rad, True, why, clearance_m, speed_fraction=wish.speed_fraction)
     return steering, replace(
         memory, side=side, deflection_rad=deflection_rad, steps=memory.steps + 1, idle_steps=0
     )

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from services.drive.passing import Passing, PassingLimits, obstacle_heading, steer_away, steer_past
+from services.drive.passing import Passing, PassingLimits, Wish, obstacle_heading, steer_away, steer_past
 from shared.geometry.clearance import Obstacles
 
 LIMITS = PassingLimits()
@@ -27,7 +27,7 @@ def drive(walls, start, goal, steps):
             break
         near = points - position
         seen = Obstacles(near[np.hypot(near[:, 0], near[:, 1]) < 4.0])
-        steering, memory = steer_past(math.atan2(to_goal[1], to_goal[0]), seen, memory, 1.0, LIMITS)
+        steering, memory = steer_past(Wish(math.atan2(to_goal[1], to_goal[0])), seen, memory, LIMITS)
         if not steering.blocked:
             position = position + 0.1 * np.array(
                 [math.cos(steering.heading_rad), math.sin(steering.heading_rad)]
@@ -38,7 +38,7 @@ def drive(walls, start, goal, steps):
 
 
 def test_nothing_in_the_way_keeps_the_wished_heading():
-    steering, _ = steer_past(0.7, Obstacles(np.zeros((0, 2))), Passing(), 1.0, LIMITS)
+    steering, _ = steer_past(Wish(0.7), Obstacles(np.zeros((0, 2))), Passing(), LIMITS)
     assert steering.heading_rad == 0.7
     assert not steering.avoiding
 
@@ -60,7 +60,7 @@ def test_a_remembered_side_yields_to_a_far_easier_one():
     along = np.arange(-2.0, 0.5, 0.05)
     corner = [wall(0.5, -0.1, 0.5), np.stack([along, np.full(len(along), 0.45)], axis=-1)]
     seen = Obstacles(np.concatenate(corner))
-    _, memory = steer_past(0.0, seen, Passing(side=1), 1.0, LIMITS)
+    _, memory = steer_past(Wish(0.0), seen, Passing(side=1), LIMITS)
     assert memory.side == -1
 
 
@@ -90,7 +90,7 @@ def across(gap_m, width_m, left_m):
 
 def stepped(points, at, memory, aim_rad, fraction, told_m=math.inf):
     """Where a robot is one step later, that sees the points by its twelve sensors."""
-    steering, memory = steer_past(aim_rad, beams(points - at), memory, fraction, LIMITS, told_m)
+    steering, memory = steer_past(Wish(aim_rad, fraction, told_m), beams(points - at), memory, LIMITS)
     step_m = 0.12 * min(fraction, steering.speed_fraction)
     at = at + step_m * np.array([math.cos(steering.heading_rad), math.sin(steering.heading_rad)])
     assert np.hypot(*(points - at).T).min() > 0.26, "touched something"
@@ -155,7 +155,7 @@ def test_round_a_long_wall_it_is_slow_only_at_first():
 
 
 def test_what_leads_past_nearly_straight_on_is_passed_at_the_speed_asked_for():
-    steering, _ = steer_past(0.0, Obstacles(wall(0.7, -0.5, 0.1)), Passing(), 1.0, LIMITS)
+    steering, _ = steer_past(Wish(0.0), Obstacles(wall(0.7, -0.5, 0.1)), Passing(), LIMITS)
     assert (steering.avoiding, steering.speed_fraction) == (True, 1.0)
 
 
@@ -164,7 +164,7 @@ def test_the_side_is_kept_while_the_border_lasts():
     sides = set()
     for y in np.arange(0.0, 0.5, 0.05):
         seen = Obstacles(wall(0.6, -1.2 - y, 1.0 - y))
-        _, memory = steer_past(0.0, seen, memory, 1.0, LIMITS)
+        _, memory = steer_past(Wish(0.0), seen, memory, LIMITS)
         sides.add(memory.side)
     assert sides == {1}
 
@@ -174,7 +174,7 @@ def test_a_side_that_does_not_lead_past_is_given_up_for_the_other():
     memory, changes = Passing(), []
     for step in range(100):
         before = memory.side
-        _, memory = steer_past(0.0, seen, memory, 1.0, LIMITS)
+        _, memory = steer_past(Wish(0.0), seen, memory, LIMITS)
         if before and memory.side != before:
             changes.append(step)
     assert len(changes) == 2
@@ -184,7 +184,7 @@ def test_a_side_that_does_not_lead_past_is_given_up_for_the_other():
 def test_enclosed_robot_stands_still():
     around = np.arange(-math.pi, math.pi, 0.05)
     ring = Obstacles(0.32 * np.stack([np.cos(around), np.sin(around)], axis=-1))
-    steering, _ = steer_past(0.0, ring, Passing(), 1.0, LIMITS)
+    steering, _ = steer_past(Wish(0.0), ring, Passing(), LIMITS)
     assert steering.blocked
 
 
