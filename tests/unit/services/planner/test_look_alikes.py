@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from services.planner.look_alikes import MANY, TOLD_LEVELS, LookAlikes
+from services.planner.look_alikes import FITS_LEVELS, MANY, LookAlikes
 
 
 def test_the_risk_grows_with_places_that_nobody_saw_and_with_equal_ones_and_shrinks_with_those_told_apart():
@@ -25,10 +25,10 @@ def test_what_other_buildings_say_counts_where_the_place_fits_only():
     assert new.risk(1) < 0.05
 
 
-def test_a_place_fits_that_differs_by_half_of_the_least_told_of_other_buildings_until_many_were_told():
+def test_a_place_fits_as_those_of_other_buildings_do_until_many_were_told_apart_here():
     few = LookAlikes([27.0, math.inf] + [31.0] * (MANY - 2))
-    assert few.fits(TOLD_LEVELS / 2)
-    assert not few.fits(TOLD_LEVELS / 2 + 0.1)
+    assert few.fits(FITS_LEVELS)
+    assert not few.fits(FITS_LEVELS + 0.1)
     few.learn([25.0], 0)
     assert few.fits(12.5)
     few.learn([7.0], 0)

@@ -169,7 +169,7 @@ def test_it_is_where_it_was_not_lost_or_differs_little_or_was_not_seen_from_near
         look(two, 9, differs)
     if lost:
         two.lost(9)
-    look(two, 1, 6.0)
+    look(two, 1, 9.0)
     assert "1 places that look alike are not excluded" in two.arrived(1, view(0.90)).why
 
 
@@ -250,15 +250,13 @@ def test_where_many_were_told_apart_before_the_first_that_fits_as_well_as_a_righ
     assert stand(places, 1, 6.0).why == ""
 
 
-@pytest.mark.parametrize(
-    "known", [LookAlikes([27.0] * 3), LookAlikes([27.0] * 14, equal=4), LookAlikes([27.0] * 14 + [11.0])]
-)
-def test_with_few_told_apart_or_equal_ones_or_too_large_a_difference_each_is_visited(known):
+@pytest.mark.parametrize("known", [LookAlikes([27.0] * 14, equal=4), LookAlikes([27.0] * 14 + [11.0])])
+def test_with_equal_ones_or_too_large_a_difference_each_is_visited(known):
     places = places_of(FIRST | SECOND | THIRD, known=known)
     assert stand(places, 1, 6.0).why.startswith("88% alike; 2 places")
 
 
-@pytest.mark.parametrize(("differs", "settled"), [(4.5, True), (6.0, False)])
+@pytest.mark.parametrize(("differs", "settled"), [(6.0, True), (8.0, False)])
 def test_of_a_few_places_the_first_that_fits_closely_is_it_in_a_new_building_too(differs, settled):
     ruling = stand(places_of(FIRST | SECOND | THIRD), 1, differs)
     assert (ruling.why == "") == settled
