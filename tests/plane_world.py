@@ -258,6 +258,10 @@ class PlaneMatcher:
         """As the feature service answers for a goal picture."""
         return self._compare(_pose_of(features), node_ids, best_k)
 
+    def look(self, features: Features, node_ids: Sequence[int]) -> dict[int, NodeMatch]:
+        """The same of given nodes: there are no pictures."""
+        return self._compare(_pose_of(features), node_ids, 0)
+
     def _compare(self, pose: Pose, node_ids: Sequence[int], best_k: int) -> dict[int, NodeMatch]:
         poses = self._maps.poses
         near = sorted(poses, key=lambda n: math.dist(pose[:2], self._image(pose, poses[n])[:2]))[:best_k]

@@ -19,6 +19,7 @@ from services.features.matching.requests import (
     FrameNotKeptError,
     NotReadyError,
     RequestError,
+    look_at_nodes,
     match_candidates,
     verify_candidates,
 )
@@ -137,6 +138,9 @@ class FeatureService:
         matched_s = time.perf_counter()
         answered = robot.answered.of(current, known, request.with_matches)
         results = verify_candidates(self._pipeline, request, raw, answered)
+        if request.with_differences:
+            pictures = partial(self._maps.pictures, request.map)
+            results = look_at_nodes(results, request.node_ids, current.thumbnail, pictures)
         return MatchReply(
             seq=current.seq,
             stamp_ns=current.stamp_ns,

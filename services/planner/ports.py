@@ -58,6 +58,9 @@ class Matcher(Protocol):
     def locate(self, features: Features, best_k: int, node_ids: Sequence[int] = ()) -> Matches:
         """Matches of any picture with given nodes, and with the most similar ones of the map."""
 
+    def look(self, features: Features, node_ids: Sequence[int]) -> Matches:
+        """Matches of any picture with given nodes, and by how much those differ as pictures that are near."""
+
 
 class Inspector(Protocol):
     """Looks at a place for what changed there."""

@@ -23,6 +23,7 @@ class MatchRequest(Message):
         best_k: also the k most similar nodes of the whole map, each verified.
         targets: pictures outside the map (a goal); reported with node_id -1, -2, ... in order.
         with_matches: send the matched bearings, not only their count.
+        with_differences: look at the pictures of the nodes in `node_ids` too, of those that are near.
         map_revision: the answer must know the map at least as of this revision.
     """
 
@@ -36,6 +37,7 @@ class MatchRequest(Message):
     best_k: int = Field(default=0, ge=0, le=4096)
     targets: tuple[Features, ...] = Field(default=(), max_length=16, fail_fast=True)
     with_matches: bool = True
+    with_differences: bool = False
 
 
 class NodeMatch(Part):
@@ -51,9 +53,9 @@ class NodeMatch(Part):
         noise_rad: spread of the inliers about the motion: what only looks alike stands a little differently.
         moved: inliers whose bearing changed by more than 2 degrees beside the camera's turn: the others are
             far away and look alike from many places.
-        differences: of a target near by, how much of it differs that no way explains, in levels of the Lab
-            colour space: rows from 45 degrees up to 45 down, columns as in its picture; None without a
-            thumbnail.
+        differences: of a target near by, or of such a node where asked for, how much of it differs that no
+            way explains, in levels of the Lab colour space: rows from 45 degrees up to 45 down, columns as in
+            its picture; None without a thumbnail.
         matches_rad: (M, 4) lon, lat in the frame, then lon, lat in the node, all matches.
         inlier_mask: (M,) 1 where the match is an inlier.
         right: (M,) probability that each match is right, by its descriptors; of a photo only.

@@ -254,6 +254,7 @@ def seen() -> tuple[Message, ...]:
             best_k=3,
             targets=(features(),),
             with_matches=False,
+            with_differences=True,
         ),
         matching.MatchReply(
             **AT,

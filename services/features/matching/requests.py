@@ -1,7 +1,7 @@
 """One MATCH question, answered in two steps so that each can be timed: match, then verify. Pure."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from services.features.map_features.map_features import MapFeatures
@@ -17,6 +17,8 @@ from shared.messages.matching import MatchRequest, NodeMatch
 BESIDE_RAD = math.radians(6.0)
 """Disparity up to which two pictures are compared as pictures; chosen: some 0.7 m indoors, from where a view
 is still much the same."""
+ABOUT_RAD = math.radians(12.0)
+"""The same for nodes, between which a picture was taken: that of its own room then differs least of all."""
 
 
 class RequestError(ValueError):
@@ -37,6 +39,8 @@ class NotReadyError(RequestError):
     code = "busy"
 
 
+Pictures = Callable[[Sequence[int]], Mapping[int, bytes]]
+"""The JPEG of each node asked for, b"" where it has none."""
 Detailed = Callable[[Sequence[int]], MapFeatures]
 """Nodes with more keypoints, as far as there are; NotReadyError where that takes a while."""
 
@@ -119,7 +123,12 @@ def verify_candidates(
             return of_nodes[node_id]
         match = verify(raw.query, candidate, pairs, raw.seq, pipeline.verification, request.with_matches)
         if node_id < 0:
-            return _looked_at(match, raw.thumbnail, request.targets[-1 - node_id])
+            is_beside = _is_within(BESIDE_RAD, match)
+            return (
+                _looked_at(match, raw.thumbnail, request.targets[-1 - node_id].thumbnail)
+                if is_beside
+                else match
+            )
         of_nodes[node_id] = match
         return match
 
@@ -135,11 +144,29 @@ def verify_candidates(
     return answer(results, asked, best, request.best_k)
 
 
-def _looked_at(match: NodeMatch, thumbnail: bytes, target: Features) -> NodeMatch:
+def look_at_nodes(
+    found: Sequence[NodeMatch], node_ids: Collection[int], thumbnail: bytes, pictures: Pictures
+) -> tuple[NodeMatch, ...]:
+    """The same with how much some nodes differ from a frame as pictures, where it was taken about there.
+
+    Args:
+        found: the frame against nodes.
+        node_ids: those to look at.
+        thumbnail: of the frame.
+        pictures: of nodes.
+    """
+    near = [m.node_id for m in found if m.node_id in node_ids and _is_within(ABOUT_RAD, m)]
+    shown = pictures(near) if near else {}
+    return tuple(_looked_at(m, thumbnail, shown[m.node_id]) if m.node_id in shown else m for m in found)
+
+
+def _is_within(far_rad: float, match: NodeMatch) -> bool:
+    return match.yaw_rad is not None and match.disparity_rad is not None and match.disparity_rad <= far_rad
+
+
+def _looked_at(match: NodeMatch, thumbnail: bytes, picture: bytes) -> NodeMatch:
     """The match of a picture that was taken nearby, with how much the two differ as pictures."""
-    if match.yaw_rad is None or match.disparity_rad is None or match.disparity_rad > BESIDE_RAD:
-        return match
-    differ = differences(thumbnail, target.thumbnail, match.yaw_rad)
+    differ = differences(thumbnail, picture, match.yaw_rad or 0.0)
     return match.model_copy(update={"differences": differ})
 
 

@@ -95,9 +95,11 @@ class GoalDestination:
         else:
             self._node = None
             found = self._matcher.locate(goal, COMPARED_NODES)
-        self._candidates = Candidates(maps, found, profile)
-        self.places = GoalPlaces(self._candidates, self._at.look_alikes)
-        plain, strict = self._candidates.plain, profile.sensing.similarity == "raw"
+        self.candidates = Candidates(maps, found, profile)
+        if not self.candidates.plain:
+            self.candidates.look(self._matcher.look(goal, self.candidates.to_look_at()))
+        self.places = GoalPlaces(self.candidates, self._at.look_alikes)
+        plain, strict = self.candidates.plain, profile.sensing.similarity == "raw"
         self.aliased = not plain or (self._node is not None and not strict)  # its look-alikes are not known
         self.arrival_rad = profile.arrival.arrival_rad * (1.0 if plain else CLOSER_SHARE)
         self._lies = dict(self._seen_from(found))
@@ -109,7 +111,7 @@ class GoalDestination:
         where = f"goal resembles nodes {sorted(self.targets())}"
         if self._node is not None:
             where = f"goal is node {self._node}"
-        doubt = "" if self._candidates.plain else f"; places of nodes {self._candidates.names} look alike"
+        doubt = "" if self.candidates.plain else f"; places of nodes {self.candidates.names} look alike"
         return Note("goal_located", where + doubt)
 
     def targets(self) -> dict[int, float]:
@@ -134,7 +136,7 @@ class GoalDestination:
 
         After it was lost on such a way it goes a part of it by the map first.
         """
-        return not self._setbacks.any_on_a_straight_way and self._candidates.may_be_seen(goal, here)
+        return not self._setbacks.any_on_a_straight_way and self.candidates.may_be_seen(goal, here)
 
     def sees(self, goal: NodeMatch, here: Displacement | None) -> None:
         """What tells places apart is looked for in every frame."""
@@ -185,7 +187,7 @@ class GoalDestination:
             return Ruling("judged on arrival")
         if setback.event is Event.WAYPOINT_LOST:
             return self.places.lost(node)
-        return self.places.stood(node) if self._candidates.is_at(setback.here) else self.places.blocked(node)
+        return self.places.stood(node) if self.candidates.is_at(setback.here) else self.places.blocked(node)
 
     def refutes_arrival(self, end: int, similarity: int, tracker: Tracker) -> str:  # noqa: ARG002
         """Whether another node resembles the view more than the goal does; the thesis does not ask."""
@@ -199,15 +201,15 @@ class GoalDestination:
         s_map = max((similarity_of(match, self._profile) for match in view.values()), default=0)
         if similarity < GOAL_SHARE * s_map:
             self.aliased = True
-            if self._candidates.plain:
+            if self.candidates.plain:
                 self._rule_out(view, tracker.here)
             else:
                 self._settle(self.places.refuted(tracker.here))
             return f"aliased: a node of the map resembles this view more than the goal does, S {s_map}"
-        if another := self._candidates.shows_another(view, tracker.here):
+        if another := self.candidates.shows_another(view, tracker.here):
             self.aliased = True
             tracker.shown({node: view[node] for node in another.nodes})
-            return f"aliased: this is about node {another.nodes[0]}, its place about {self._candidates.names}"
+            return f"aliased: this is about node {another.nodes[0]}, its place about {self.candidates.names}"
         why = self._settle(self.places.arrived(node, Visit(similarity, tracker.likeness(similarity))))
         self._at.guessed = self._at.guessed and bool(why)
         return why

@@ -4,8 +4,7 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
+from services.planner.goals.picture_levels import largest, levels
 from services.planner.look_alikes import LookAlikes
 from shared.mapgraph.local.hypotheses import Hypothesis
 from shared.messages.arrays import Array
@@ -18,12 +17,6 @@ TOLD_FACTOR = 3.0
 of rooms that a few small things tell apart, each seen from 1 to 6 cm aside, it excludes all, also where
 somebody stands in the goal picture, and 33 where the right one is seen from 10 cm. 12 that nothing tells
 apart come to 1.6 at most (from 1 to 10 cm); with somebody in the picture one of them to 3.4, others to 2."""
-LARGEST_SHARE = 0.01
-"""Share of the view that differs most and counts; chosen: a picture on a wall."""
-COMMON_SHARE = 0.12
-"""Share of the view that differs most at all places, and tells none apart: who stands in the goal picture. Of
-36 pairs with somebody in the picture 14 were told apart without it, 35 with 8 %, all with 12 %: by factors of
-6.7 and more. Without anybody it costs nothing: 8.9 and more."""
 
 
 @dataclass(frozen=True, order=True)
@@ -62,7 +55,7 @@ class PlaceEvidence:
             place: where it was taken.
             differences: `NodeMatch.differences` of the frame and the goal.
         """
-        if place not in self._looks or _largest(differences) < _largest(self._looks[place]):
+        if place not in self._looks or largest(differences) < largest(self._looks[place]):
             self._looks[place], self._differs = differences, None
 
     def best(self) -> Hypothesis | None:
@@ -149,25 +142,5 @@ class PlaceEvidence:
     def _differ(self) -> dict[Hypothesis, float]:
         """By how much the goal differs from each place, but for what differs at all of them."""
         if self._differs is None:
-            self._differs = self._compared()
+            self._differs = levels(self._looks)
         return self._differs
-
-    def _compared(self) -> dict[Hypothesis, float]:
-        if len(self._looks) < 2:
-            return {place: _largest(look) for place, look in self._looks.items()}
-        common = _spread(np.min(list(self._looks.values()), axis=0))
-        telling = np.argsort(common, axis=None)[: -round(COMMON_SHARE * common.size)]
-        return {place: _largest(look.ravel()[telling]) for place, look in self._looks.items()}
-
-
-def _largest(differences: Array) -> float:
-    """Root mean square of what differs most."""
-    count = round(LARGEST_SHARE * differences.size)
-    return float(np.sqrt(np.mean(np.sort(differences, axis=None)[-count:] ** 2)))
-
-
-def _spread(cells: Array) -> Array:
-    """The largest of each cell and those around it: from another spot a thing is seen a cell further."""
-    beyond_the_seam = np.pad(cells, ((0, 0), (1, 1)), mode="wrap")
-    padded = np.pad(beyond_the_seam, ((1, 1), (0, 0)), mode="edge")
-    return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, (3, 3)).max(axis=(2, 3)))

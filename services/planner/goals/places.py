@@ -7,7 +7,7 @@ rooms were told apart often enough before, the first one that fits is it.
 """
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from services.planner.goals.candidates import Candidates
@@ -77,8 +77,11 @@ class GoalPlaces:
         if not self._candidates.places:
             return dict(targets)
         places = self._open()
-        later_m = LATER_M if self._evidence.risk(self._known, len(places) - 1) <= EQUAL_RISK else 0.0
-        more_m = {node: later_m if place != places[0] else 0.0 for place in places for node in place.nodes}
+        comes_first = self._evidence.risk(self._known, self._unseen(places[1:])) <= EQUAL_RISK
+        later = {place: int(place in self._candidates.unlikely) for place in places}
+        if comes_first:
+            later |= {place: later[place] + 1 for place in places[1:]}
+        more_m = {node: LATER_M * later[place] for place in places for node in place.nodes}
         return {node: cost + more_m[node] for node, cost in targets.items() if node in more_m}
 
     def without(self, targets: Mapping[int, float]) -> list[int]:
@@ -184,9 +187,13 @@ class GoalPlaces:
         """
         done = self._evidence.visits.keys() | self._shut | self._evidence.told_apart((+self._losses).keys())
         left = [place for place in self._candidates.places if place not in done]
-        unseen, best = len(left) + len(self._shut), self._evidence.best()
+        unseen, best = self._unseen([*left, *self._shut]), self._evidence.best()
         fits = best is not None and self._evidence.visits[best].likeness >= SPOT_SHARE
         return [] if fits and self._evidence.settled(self._known, unseen, EQUAL_RISK) else left
+
+    def _unseen(self, places: Sequence[Hypothesis]) -> int:
+        """Of places that nobody saw those that may look like another one in everything."""
+        return sum(place not in self._candidates.unlikely for place in places)
 
     def _is_known(self, place: Hypothesis) -> bool:
         return place in self._evidence.visits and place != self._again

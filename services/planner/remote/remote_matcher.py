@@ -72,6 +72,18 @@ class RemoteMatcher:
         )
         return self._ask(request, PHOTO_S if of_photo else 0.0)
 
+    def look(self, features: Features, node_ids: Sequence[int]) -> Matches:
+        """Matches of any picture with given nodes, and by how much those differ as pictures that are near."""
+        request = MatchRequest(
+            map=self._maps.name,
+            map_revision=self._maps.revision,
+            features=features,
+            node_ids=tuple(node_ids),
+            with_matches=False,
+            with_differences=True,
+        )
+        return self._ask(request)
+
     def _ask(self, request: MatchRequest, least_s: float = 0.0) -> Matches:
         timeout_s = max(self._timeout_s, least_s)
         reply = self.ask_features(MATCH, request, timeout_s, robot=self.robot)

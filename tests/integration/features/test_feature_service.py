@@ -196,6 +196,20 @@ def test_a_photo_is_compared_with_the_pictures_of_places_each_looked_at_once(
 
 
 @pytest.mark.usefixtures("service")
+def test_how_nodes_differ_as_pictures_is_told_of_those_asked_for_where_it_is_asked(bus: Bus, store) -> None:
+    for node_id, place in enumerate(PLACES_M[:2]):
+        store.add(node_id, extract(bus, frame_at(*place)))
+    here = extract(bus, frame_at(*PLACES_M[0]))
+    plain = match(bus, map_revision=store.revision, features=here, node_ids=(0, 1))
+    assert [m.differences for m in plain.results] == [None, None]
+    assert not store.pictured
+    told = match(bus, features=here, node_ids=(0,), best_k=2, with_differences=True).results
+    assert [m.node_id for m in told if m.differences is not None] == [0]
+    assert told[0].differences.max() < 5.0
+    assert store.pictured == [0]
+
+
+@pytest.mark.usefixtures("service")
 def test_a_frame_asks_for_no_pictures(bus: Bus, store) -> None:
     store.add(0, extract(bus, frame_at(*PLACES_M[0])))
     match(bus, map_revision=1, features=extract(bus, frame_at(0.0, 0.0)), best_k=1)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from services.features.map_features.map_features import MapFeatures
-from services.features.matching.requests import match_candidates, verify_candidates
+from services.features.matching.requests import look_at_nodes, match_candidates, verify_candidates
 from services.features.pipeline.named_pipelines import find_profile
 from services.features.pipeline.pipeline import Pipeline
 from shared.messages.matching import MatchRequest
@@ -23,14 +23,16 @@ def panorama(seed):
     return blobs(WIDTH_PX, 32, seed)
 
 
+def features_of(pipeline, picture):
+    data = picture.tobytes()
+    return pipeline.features_of(
+        Frame(robot="r1", encoding="bgr8", width_px=WIDTH_PX, height_px=HEIGHT_PX, data=data)
+    )
+
+
 def answer(pipeline, picture, target):
     """The match of a frame with a goal picture."""
-    frame, goal = (
-        pipeline.features_of(
-            Frame(robot="r1", encoding="bgr8", width_px=WIDTH_PX, height_px=HEIGHT_PX, data=each.tobytes())
-        )
-        for each in (picture, target)
-    )
+    frame, goal = features_of(pipeline, picture), features_of(pipeline, target)
     request = MatchRequest(map="flat", targets=(goal,))
     raw = match_candidates(pipeline, request, frame, MapFeatures.of(pipeline))
     (match,) = verify_candidates(pipeline, request, raw)
@@ -54,3 +56,26 @@ def test_a_picture_of_another_place_is_not_compared(pipeline):
     match = answer(pipeline, panorama(1), panorama(2))
     assert match.yaw_rad is None
     assert match.differences is None
+
+
+def test_of_nodes_asked_for_the_pictures_of_those_near_by_are_looked_at(pipeline):
+    """Nodes 0 and 1 show the place, 1 changed and 2 without a picture; 3 shows another place."""
+    changed = panorama(1)
+    changed[300:420, 400:560] = changed[300:420, 400:560, ::-1]
+    views = [features_of(pipeline, each) for each in (panorama(1), changed, panorama(1), panorama(2))]
+    pictures = dict(enumerate((views[0].thumbnail, views[1].thumbnail, b"", views[3].thumbnail)))
+    nodes, asked = MapFeatures.of(pipeline), []
+    for node_id, view in enumerate(views):
+        nodes.put(node_id, view)
+    request = MatchRequest(map="flat", node_ids=(0, 1, 2, 3))
+    raw = match_candidates(pipeline, request, views[0], nodes)
+
+    def shown(node_ids):
+        asked.extend(node_ids)
+        return {node_id: pictures[node_id] for node_id in node_ids}
+
+    results = verify_candidates(pipeline, request, raw)
+    found = {m.node_id: m.differences for m in look_at_nodes(results, {1, 2, 3}, views[0].thumbnail, shown)}
+    assert sorted(asked) == [1, 2]
+    assert [node_id for node_id, differ in found.items() if differ is not None] == [1]
+    assert found[1].max() > 20.0

@@ -1,16 +1,19 @@
 """The places where a picture can have been taken, and where a robot is relative to them."""
 
+import numpy as np
 import pytest
 
 from services.planner.goals.candidates import Candidates
 from services.planner.profiles import DEFAULT, THESIS
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.routing import GOAL
+from shared.messages.matching import DIFFERENCES_SHAPE
 from tests.unit.services.planner.travel.seen import Maps, by_node, match
 from tests.unit.shared.mapgraph.local.grid import grid
 
 GRAPH = grid(20, 2)
 FIRST = by_node(match(1, 0.0, 0.0, 150), match(2, 1.0, 0.0, 80))
+THIRD = by_node(match(17, 0.0, 0.0, 130), match(18, 1.0, 0.0, 80))
 SECOND = by_node(match(9, 0.0, 0.0, 140), match(10, 1.0, 0.0, 80))
 FAR = next(n for n in GRAPH.nodes if n not in GRAPH.nearest(1, 8))
 
@@ -39,6 +42,33 @@ def test_a_node_belongs_to_the_place_fewest_edges_off_where_that_is_in_doubt():
     assert [places.nearest(node).nodes[0] for node in (1, 3, 10, 12)] == [1, 1, 9, 9]
     assert places.nearest(None) is None
     assert candidates_of(FIRST).nearest(1) is None
+
+
+def looked_at(differs):
+    """The picture against nodes that differ from it by so many levels."""
+    cells = {n: np.full(DIFFERENCES_SHAPE, levels, np.float32) for n, levels in differs.items()}
+    return {n: match(n, 0.1, 0.0).model_copy(update={"differences": each}) for n, each in cells.items()}
+
+
+def test_the_likeliest_place_is_that_whose_nodes_differ_least_as_pictures():
+    """By the one that differs less of its nodes; what was not looked at comes last."""
+    places = candidates_of(FIRST | SECOND | THIRD)
+    assert places.to_look_at() == [1, 2, 9, 10, 17, 18]
+    places.look(looked_at({9: 40.0, 10: 16.0, 17: 30.0}))
+    assert places.names == "9, 17, 1"
+    assert not places.unlikely
+
+
+def test_a_place_whose_nodes_look_other_than_those_of_the_likeliest_is_unlikely():
+    places = candidates_of(FIRST | SECOND | THIRD)
+    places.look(looked_at({1: 20.0, 2: 90.0, 9: 59.0, 17: 61.0, 18: 80.0}))
+    assert [place.nodes[0] for place in places.unlikely] == [17]
+
+
+def test_where_no_node_was_near_enough_to_be_looked_at_the_places_stay_as_they_are():
+    places = candidates_of(FIRST | SECOND)
+    places.look(FIRST | SECOND)
+    assert (places.names, places.unlikely) == ("1, 9", frozenset())
 
 
 def test_who_is_within_reach_of_the_node_most_like_the_picture_stands_there():

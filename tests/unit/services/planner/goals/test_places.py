@@ -267,6 +267,24 @@ def test_a_place_that_hardly_resembles_the_goal_is_not_it_however_many_were_told
     assert stand(places, 1, 6.0, likeness=0.5).why.startswith("50% alike; 2 places")
 
 
+def four_places(unlikely):
+    """Where one of three places that nobody saw may be equal, but for those whose nodes look other."""
+    candidates = Candidates(Maps(GRAPH), FIRST | SECOND | THIRD | FOURTH, DEFAULT)
+    candidates.unlikely = frozenset(candidates.places[4 - unlikely :])
+    return GoalPlaces(candidates, LookAlikes(equal=1))
+
+
+def test_a_place_whose_nodes_look_other_than_those_of_the_likeliest_comes_last():
+    costs = four_places(unlikely=2).open_targets(TARGETS | {1: 90.0, 9: 90.0, 25: 0.1})
+    assert max(costs[1], costs[9]) < min(costs[17], costs[25])
+
+
+@pytest.mark.parametrize(("unlikely", "left"), [(2, 0), (0, 3)])
+def test_it_leaves_no_doubt_where_another_place_fits(unlikely, left):
+    ruling = stand(four_places(unlikely), 1, 6.0)
+    assert ruling.why.startswith(f"88% alike; {left} places") == bool(left)
+
+
 def test_what_a_mission_finds_out_of_look_alikes_the_next_one_knows():
     known = LookAlikes()
     places = places_of(FIRST | SECOND | THIRD, known=known)

@@ -82,7 +82,7 @@ def test_an_arrival_that_was_refuted_excludes_no_place_that_the_way_led_by(explo
         GoalDestination(DEFAULT, maps, matcher, picture(pose), experience, Whereabouts())
         for pose in maps.poses.values()
     )
-    goal = next(place for place in places if not place.places.plain)
+    goal = next(place for place in places if place.aliased)
     before = set(goal.targets())
     for node in before:
         for _ in range(3):
@@ -94,7 +94,7 @@ def doubtful_nodes(maps, matcher):
     experience = EdgeExperience(DEFAULT, maps)
     for node, pose in maps.poses.items():
         found = GoalDestination(DEFAULT, maps, matcher, picture(pose), experience, Whereabouts())
-        if not found.places.plain:
+        if found.aliased:
             yield node
 
 
@@ -140,7 +140,7 @@ def test_another_look_at_a_place_in_doubt_is_from_nearer_by(explored):
     experience = EdgeExperience(DEFAULT, maps)
     goal = GoalDestination(DEFAULT, maps, matcher, picture(maps.poses[node]), experience, where)
     before_rad = goal.arrival_rad
-    for differs, place in enumerate(map(int, goal.places.names.split(", ")), start=20):
+    for differs, place in enumerate(map(int, goal.candidates.names.split(", ")), start=20):
         assert goal.arrival_rad == before_rad
         tracker = SimpleNamespace(here=Displacement(place), likeness=lambda _: 0.9)
         goal.sees(
@@ -164,7 +164,7 @@ def test_a_look_alike_that_no_way_leads_to_is_given_up_for_the_others(explored):
     node = next(doubtful_nodes(maps, matcher))
     experience = EdgeExperience(DEFAULT, maps)
     goal = GoalDestination(DEFAULT, maps, matcher, picture(maps.poses[node]), experience, Whereabouts())
-    first, *others = map(int, goal.places.names.split(", "))
+    first, *others = map(int, goal.candidates.names.split(", "))
     assert first in goal.targets()
 
     def stuck(waypoint):
