@@ -7,7 +7,7 @@ rooms were told apart often enough before, the first one that fits is it.
 """
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 from services.planner.goals.candidates import Candidates
@@ -191,7 +191,7 @@ class GoalPlaces:
         fits = best is not None and self._evidence.visits[best].likeness >= SPOT_SHARE
         return [] if fits and self._evidence.settled(self._known, unseen, EQUAL_RISK) else left
 
-    def _unseen(self, places: Sequence[Hypothesis]) -> int:
+    def _unseen(self, places: Collection[Hypothesis]) -> int:
         """Of places that nobody saw those that may look like another one in everything."""
         return sum(place not in self._candidates.unlikely for place in places)
 
@@ -208,8 +208,9 @@ class GoalPlaces:
             told = self._evidence.told()
             return Ruling(f"{alike}{len(left)} places that look alike are not excluded{told}")
         most = visits[best].likeness if best is not None else 0.0
-        shut = [str(place.nodes[0]) for place in self._candidates.places if place in self._shut]
-        if shut and not (most >= SPOT_SHARE and self._evidence.risk(self._known, len(shut)) <= EQUAL_RISK):
+        risk = self._evidence.risk(self._known, self._unseen(self._shut))
+        if self._shut and (most < SPOT_SHARE or risk > EQUAL_RISK):
+            shut = [str(place.nodes[0]) for place in self._candidates.places if place in self._shut]
             why = f"of the places of nodes {names} that of {', '.join(shut)} could not be reached"
             return Ruling(why, "ambiguous" if most >= SPOT_SHARE else "blocked")
         if most < SPOT_SHARE:
