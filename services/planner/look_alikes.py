@@ -9,14 +9,11 @@ EQUAL_BEFORE, TOLD_BEFORE = 1, 12
 before: of 1,364 pairs of rooms in 45 hostels and hotels of development 102 have the same small things, as one
 in 13. It weighs no more than one room that is equal."""
 FITS_LEVELS = 7.0
-"""Difference of a place that fits, until many others were told from right ones. From 1 to 5 cm beside a spot
-five of six right rooms of three hostels and three hotels of development differ by less, 396 other rooms by
-8.4 and more, 30 at the median."""
+"""Most that a place differs that fits. From 1 to 5 cm beside a spot five of six right rooms of three hostels
+and three hotels of development differ by less, 396 other rooms by 8.4 and more, 30 at the median."""
 SETTLED_FACTOR = 2.0
-"""A place that differs so many times less than all that were told from right ones differs as one of those
-does: two looks at rooms that nothing tells apart are 1.9 times apart at most."""
-MANY = 10
-"""Of so many the least says how little others differ; chosen."""
+"""Where others differ by little it fits by so many times less than all that were told from right ones: two
+looks at rooms that nothing tells apart are 1.9 times apart at most."""
 
 
 @dataclass
@@ -58,5 +55,4 @@ class LookAlikes:
 
     def fits(self, differs: float) -> bool:
         """Whether a place differs from the goal as little as a right one does, in levels."""
-        known = list(filter(math.isfinite, self.told))
-        return differs <= (min(known) / SETTLED_FACTOR if len(known) >= MANY else FITS_LEVELS)
+        return differs <= FITS_LEVELS and SETTLED_FACTOR * differs <= min(self.told, default=math.inf)

@@ -98,7 +98,7 @@ class PlaceEvidence:
             unseen: how many places there are that nobody saw.
         """
         seen, best = known.with_more(*self.seen()), self.best()
-        return seen.risk(unseen, fits=best is None or self._fits(best, seen))
+        return seen.risk(unseen, fits=best is None or self.fits(best, seen))
 
     def settled(self, known: LookAlikes, unseen: int, most: float) -> bool:
         """Whether a place visited is the goal's, whatever nobody saw looks like: it fits, and no other does.
@@ -109,11 +109,12 @@ class PlaceEvidence:
             most: accepted chance that one of them is as much like the goal.
         """
         best, (told, equal) = self.best(), self.seen()
-        if best is None or equal or not self._fits(best, known.with_more(told, equal)):
+        if best is None or equal or not self.fits(best, known.with_more(told, equal)):
             return False
         return self.risk(known, unseen) <= most
 
-    def _fits(self, place: Hypothesis, known: LookAlikes) -> bool:
+    def fits(self, place: Hypothesis, known: LookAlikes) -> bool:
+        """Whether the goal differs from a place as little as from the right one."""
         return known.fits(self._differ().get(place, math.inf))
 
     def told(self) -> str:

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from services.planner.look_alikes import FITS_LEVELS, MANY, LookAlikes
+from services.planner.look_alikes import FITS_LEVELS, LookAlikes
 
 
 def test_the_risk_grows_with_places_that_nobody_saw_and_with_equal_ones_and_shrinks_with_those_told_apart():
@@ -25,14 +25,13 @@ def test_what_other_buildings_say_counts_where_the_place_fits_only():
     assert new.risk(1) < 0.05
 
 
-def test_a_place_fits_as_those_of_other_buildings_do_until_many_were_told_apart_here():
-    few = LookAlikes([27.0, math.inf] + [31.0] * (MANY - 2))
-    assert few.fits(FITS_LEVELS)
-    assert not few.fits(FITS_LEVELS + 0.1)
-    few.learn([25.0], 0)
-    assert few.fits(12.5)
-    few.learn([7.0], 0)
-    assert not few.fits(4.0)
+@pytest.mark.parametrize(
+    ("told", "most"), [([], FITS_LEVELS), ([27.0, math.inf, 31.0], FITS_LEVELS), ([27.0, 9.0], 4.5)]
+)
+def test_a_place_fits_that_differs_as_little_as_right_ones_and_half_as_much_as_any_other(told, most):
+    known = LookAlikes(told)
+    assert known.fits(most)
+    assert not known.fits(most + 0.1)
 
 
 def test_what_the_mission_under_way_found_out_is_learnt_at_its_end_only():

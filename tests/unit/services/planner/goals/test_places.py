@@ -225,6 +225,12 @@ def test_a_goal_at_none_of_the_places_is_not_in_the_map(two):
     assert two.arrived(9, view(0.40)).failure == "goal_not_in_map"
 
 
+def test_in_a_bare_corridor_it_is_at_the_one_place_that_fits_as_a_picture():
+    places = places_of(by_node(match(1, 0.0, 0.0, 60), match(2, 1.0, 0.0, 40)))
+    assert stand(places, 1, 12.0, likeness=0.46).failure == "goal_not_in_map"
+    assert stand(places, 1, 6.5, likeness=0.46).why == ""
+
+
 def test_a_place_where_the_picture_is_lost_twice_is_excluded(two):
     assert two.arrived(2, view(0.88)).why
     assert two.lost(9).failure == ""
