@@ -23,7 +23,7 @@ def furnished_like(
         plan: where the doorways of both are.
         rng: draws what differs.
     """
-    turned = _door_is_south(model, plan) != _door_is_south(room, plan)
+    turned = door_is_south(model, plan) != door_is_south(room, plan)
     (x0, y0), (x1, y1) = model.rect.centre_m, room.rect.centre_m
     sign, turn_deg = (-1.0, 180.0) if turned else (1.0, 0.0)
     found = []
@@ -37,6 +37,7 @@ def furnished_like(
     return found
 
 
-def _door_is_south(room: RoomPlan, plan: Plan) -> bool:
+def door_is_south(room: RoomPlan, plan: Plan) -> bool:
+    """On which of two sides of a corridor a room lies: those opposite are furnished the other way round."""
     door = next(door for door in plan.doors if door.gap_m(room.rect) <= WALL_M / 2)
     return door.centre_m[1] < room.rect.centre_m[1]
