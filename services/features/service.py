@@ -139,7 +139,7 @@ class FeatureService:
         answered = robot.answered.of(current, known, request.with_matches)
         results = verify_candidates(self._pipeline, request, raw, answered)
         if request.with_differences:
-            pictures = partial(self._maps.pictures, request.map)
+            pictures = partial(self._pictures, request.map)
             results = look_at_nodes(results, request.node_ids, current.thumbnail, pictures)
         return MatchReply(
             seq=current.seq,
@@ -152,6 +152,14 @@ class FeatureService:
             match_ms=(matched_s - start_s) * 1e3,
             verify_ms=(time.perf_counter() - matched_s) * 1e3,
         )
+
+    def _pictures(self, name: str, node_ids: Sequence[int]) -> dict[int, bytes]:
+        """Pictures of nodes; none where the store does not answer: what matches say is of use without them."""
+        try:
+            return self._maps.pictures(name, node_ids)
+        except RequestError as error:
+            log.info("nodes %s are not compared as pictures: %s", list(node_ids), error)
+            return {}
 
     def _looked_at(self, name: str, known: CachedMap, node_ids: Sequence[int]) -> MapFeatures:
         """Nodes as photos are compared with them; frames have their turn while that takes long."""

@@ -9,7 +9,8 @@ import pytest
 
 from experiments.phone_photos.taking import Shot, taken
 from services.features import early_questions, service
-from services.features.map_features.map_reader import PIECE
+from services.features.map_features.map_reader import PIECE, MapReader
+from services.features.matching.requests import RequestError
 from shared.bus import Bus, wait_until
 from shared.geometry.photo.plane import USUAL_RAD
 from shared.messages.features import ExtractPhotoRequest, ExtractRequest, Features
@@ -207,6 +208,21 @@ def test_how_nodes_differ_as_pictures_is_told_of_those_asked_for_where_it_is_ask
     assert [m.node_id for m in told if m.differences is not None] == [0]
     assert told[0].differences.max() < 5.0
     assert store.pictured == [0]
+
+
+@pytest.mark.usefixtures("service")
+def test_without_a_store_that_shows_pictures_nodes_are_matched_all_the_same(
+    bus: Bus, store, monkeypatch
+) -> None:
+    def silent(*_: object) -> None:
+        raise RequestError("map store does not answer")
+
+    store.add(0, extract(bus, frame_at(*PLACES_M[0])))
+    here = extract(bus, frame_at(*PLACES_M[0]))
+    assert match(bus, map_revision=store.revision, features=here, node_ids=(0,)).results
+    monkeypatch.setattr(MapReader, "pictures", silent)
+    (found,) = match(bus, features=here, node_ids=(0,), with_differences=True).results
+    assert (found.status, found.differences) == ("no_baseline", None)
 
 
 @pytest.mark.usefixtures("service")
