@@ -154,7 +154,7 @@ class FeatureService:
         )
 
     def _pictures(self, name: str, node_ids: Sequence[int]) -> dict[int, bytes]:
-        """Pictures of nodes; none where the store does not answer: what matches say is of use without them."""
+        """Pictures of nodes; none where the store does not answer: matches are of use without them."""
         try:
             return self._maps.pictures(name, node_ids)
         except RequestError as error:
