@@ -254,13 +254,16 @@ class PlaneMatcher:
             found[-number] = self._pair(-number, self._world.pose, _pose_of(target))
         return found
 
-    def locate(self, features: Features, best_k: int, node_ids: Sequence[int] = ()) -> dict[int, NodeMatch]:
+    def locate(
+        self,
+        features: Features,
+        best_k: int,
+        node_ids: Sequence[int] = (),
+        *,
+        with_differences: bool = False,  # noqa: ARG002 - there are no pictures
+    ) -> dict[int, NodeMatch]:
         """As the feature service answers for a goal picture."""
         return self._compare(_pose_of(features), node_ids, best_k)
-
-    def look(self, features: Features, node_ids: Sequence[int]) -> dict[int, NodeMatch]:
-        """The same of given nodes: there are no pictures."""
-        return self._compare(_pose_of(features), node_ids, 0)
 
     def _compare(self, pose: Pose, node_ids: Sequence[int], best_k: int) -> dict[int, NodeMatch]:
         poses = self._maps.poses

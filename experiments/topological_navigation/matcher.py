@@ -31,13 +31,16 @@ class LocalMatcher:
             self.current, MatchRequest(map=NAME, node_ids=ids, best_k=best_k, targets=tuple(targets))
         )
 
-    def locate(self, features: Features, best_k: int, node_ids: Sequence[int] = ()) -> dict[int, NodeMatch]:
+    def locate(
+        self,
+        features: Features,
+        best_k: int,
+        node_ids: Sequence[int] = (),
+        *,
+        with_differences: bool = False,  # noqa: ARG002 - the thesis's rules look at no pictures
+    ) -> dict[int, NodeMatch]:
         """Matches of any picture with given nodes, and with the most similar ones of the map."""
         return self._ask(features, MatchRequest(map=NAME, best_k=best_k, node_ids=tuple(node_ids)))
-
-    def look(self, features: Features, node_ids: Sequence[int]) -> dict[int, NodeMatch]:
-        """Matches of any picture with given nodes; the thesis's rules look at no pictures."""
-        return self.locate(features, 0, node_ids)
 
     def _ask(self, features: Features, request: MatchRequest) -> dict[int, NodeMatch]:
         for node_id, found in self._maps.features.items():

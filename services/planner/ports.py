@@ -55,11 +55,13 @@ class Matcher(Protocol):
     def match(self, node_ids: Sequence[int], best_k: int = 0, targets: Sequence[Features] = ()) -> Matches:
         """Matches of the current frame by node id, most similar first."""
 
-    def locate(self, features: Features, best_k: int, node_ids: Sequence[int] = ()) -> Matches:
-        """Matches of any picture with given nodes, and with the most similar ones of the map."""
+    def locate(
+        self, features: Features, best_k: int, node_ids: Sequence[int] = (), *, with_differences: bool = False
+    ) -> Matches:
+        """Matches of any picture with given nodes, and with the most similar ones of the map.
 
-    def look(self, features: Features, node_ids: Sequence[int]) -> Matches:
-        """Matches of any picture with given nodes, and by how much those differ as pictures that are near."""
+        With differences it also says by how much given nodes differ as pictures that are near.
+        """
 
 
 class Inspector(Protocol):

@@ -122,14 +122,10 @@ def verify_candidates(
             )
             return of_nodes[node_id]
         match = verify(raw.query, candidate, pairs, raw.seq, pipeline.verification, request.with_matches)
-        if node_id < 0:
-            is_beside = _is_within(BESIDE_RAD, match)
-            return (
-                _looked_at(match, raw.thumbnail, request.targets[-1 - node_id].thumbnail)
-                if is_beside
-                else match
-            )
-        of_nodes[node_id] = match
+        if node_id >= 0:
+            of_nodes[node_id] = match
+        elif _is_within(BESIDE_RAD, match):
+            match = _looked_at(match, raw.thumbnail, request.targets[-1 - node_id].thumbnail)
         return match
 
     asked = sorted({*request.node_ids, *(n for n in raw.candidates if n < 0)})

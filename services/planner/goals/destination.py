@@ -96,8 +96,9 @@ class GoalDestination:
             self._node = None
             found = self._matcher.locate(goal, COMPARED_NODES)
         self.candidates = Candidates(maps, found, profile)
-        if not self.candidates.plain:
-            self.candidates.look(self._matcher.look(goal, self.candidates.to_look_at()))
+        if len(self.candidates.places) > 1:
+            to_look_at = self.candidates.to_look_at()
+            self.candidates.look(self._matcher.locate(goal, 0, to_look_at, with_differences=True))
         self.places = GoalPlaces(self.candidates, self._at.look_alikes)
         plain, strict = self.candidates.plain, profile.sensing.similarity == "raw"
         self.aliased = not plain or (self._node is not None and not strict)  # its look-alikes are not known

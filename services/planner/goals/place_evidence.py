@@ -109,9 +109,8 @@ class PlaceEvidence:
             most: accepted chance that one of them is as much like the goal.
         """
         best, (told, equal) = self.best(), self.seen()
-        if best is None or equal or not self.fits(best, known.with_more(told, equal)):
-            return False
-        return self.risk(known, unseen) <= most
+        seen = known.with_more(told, equal)
+        return best is not None and not equal and self.fits(best, seen) and seen.risk(unseen) <= most
 
     def fits(self, place: Hypothesis, known: LookAlikes) -> bool:
         """Whether the goal differs from a place as little as from the right one."""

@@ -2,8 +2,8 @@
 
 Rooms furnished alike resemble a picture of one of them equally. Only at the very spot does the right one
 resemble it more: so each is visited, and arrival is claimed where the others are excluded. Where that does
-not tell, the robot goes back to the place that differs least, for a look from nearer by. In a building whose
-rooms were told apart often enough before, the first one that fits is it.
+not tell, the robot goes back to the place that differs least, for a look from nearer by. Of a few, or in a
+building whose rooms were told apart often enough before, the first one that fits is it.
 """
 
 from collections import Counter
@@ -73,7 +73,8 @@ class GoalPlaces:
     def open_targets(self, targets: Mapping[int, float]) -> dict[int, float]:
         """Of the nodes that the goal resembles those of places that may still be it.
 
-        Where the first that fits will do, the likeliest comes first, and others while no way leads there.
+        Where the first that fits will do, the likeliest comes first, and others while no way leads there;
+        unlikely ones come last.
         """
         if not self._candidates.places:
             return dict(targets)
@@ -189,8 +190,8 @@ class GoalPlaces:
         done = self._evidence.visits.keys() | self._shut | self._evidence.told_apart((+self._losses).keys())
         left = [place for place in self._candidates.places if place not in done]
         unseen, best = self._unseen([*left, *self._shut]), self._evidence.best()
-        fits = best is not None and self._evidence.visits[best].likeness >= SPOT_SHARE
-        return [] if fits and self._evidence.settled(self._known, unseen, EQUAL_RISK) else left
+        resembles = best is not None and self._evidence.visits[best].likeness >= SPOT_SHARE
+        return [] if resembles and self._evidence.settled(self._known, unseen, EQUAL_RISK) else left
 
     def _unseen(self, places: Collection[Hypothesis]) -> int:
         """Of places that nobody saw those that may look like another one in everything."""

@@ -59,7 +59,9 @@ class RemoteMatcher:
             )
         )
 
-    def locate(self, features: Features, best_k: int, node_ids: Sequence[int] = ()) -> Matches:
+    def locate(
+        self, features: Features, best_k: int, node_ids: Sequence[int] = (), *, with_differences: bool = False
+    ) -> Matches:
         """Matches of any picture with given nodes, and with the most similar ones."""
         of_photo = features.photo is not None
         request = MatchRequest(
@@ -69,20 +71,9 @@ class RemoteMatcher:
             node_ids=tuple(node_ids),
             best_k=best_k,
             with_matches=of_photo,
+            with_differences=with_differences,
         )
         return self._ask(request, PHOTO_S if of_photo else 0.0)
-
-    def look(self, features: Features, node_ids: Sequence[int]) -> Matches:
-        """Matches of any picture with given nodes, and by how much those differ as pictures that are near."""
-        request = MatchRequest(
-            map=self._maps.name,
-            map_revision=self._maps.revision,
-            features=features,
-            node_ids=tuple(node_ids),
-            with_matches=False,
-            with_differences=True,
-        )
-        return self._ask(request)
 
     def _ask(self, request: MatchRequest, least_s: float = 0.0) -> Matches:
         timeout_s = max(self._timeout_s, least_s)

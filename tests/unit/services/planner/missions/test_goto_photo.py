@@ -37,9 +37,9 @@ class PhotoMatcher(PlaneMatcher):
         super().__init__(world, maps)
         self._nodes, self._shot, self._share = maps.poses, shot, share
 
-    def locate(self, features, best_k, node_ids=()):
+    def locate(self, features, best_k, node_ids=(), *, with_differences=False):
         if features.photo is None:
-            return super().locate(features, best_k, node_ids)
+            return super().locate(features, best_k, node_ids, with_differences=with_differences)
         rng = np.random.default_rng(5)
         around = rng.uniform(-4.0, 4.0, (900, 3)) * [1.0, 1.0, 0.35]
         points = around + np.array([*self._shot.position_m[:2], 0.0])
