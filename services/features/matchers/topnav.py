@@ -8,7 +8,7 @@ import torch
 from services.features.matchers.mutual_ratio import MutualRatio
 from services.features.networks.attention import CONTEXT, Attention, Keypoints, context_of
 from services.features.networks.own_weights import own_weights
-from services.features.networks.runtime import device_named
+from services.features.networks.runtime import device_named, quick_products
 from services.features.pipeline.interfaces import (
     Distance,
     FeatureSet,
@@ -62,12 +62,12 @@ class AttentionMatcher:
     def _matched(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[Matched]:
         """All at once: one picture is prepared once, and a large product takes less time than small ones."""
         found = [Matched.alike(np.zeros((0, 2), dtype=np.intp))] * len(others)
-        with torch.inference_mode():
+        with torch.inference_mode(), quick_products(self._device):
             numbers, answer = self._network.last(self._keypoints([query]), self._keypoints(others), HOPELESS)
         if answer is not None:
-            right = answer.log_right.exp().cpu().numpy()
+            log_right = answer.log_right.cpu().numpy()
             for row, number in enumerate(numbers):
-                found[number] = _mutual(right[row, :, : len(others[number])])
+                found[number] = _mutual(log_right[row, :, : len(others[number])])
         return found
 
     def _keypoints(self, frames: Sequence[FeatureSet]) -> Keypoints:
@@ -91,11 +91,11 @@ def _parts(features: FeatureSet) -> tuple[Float32Array, Float32Array, Float32Arr
     return lonlat, vectors, context_of(features)
 
 
-def _mutual(right: Float32Array) -> Matched:
+def _mutual(log_right: Float32Array) -> Matched:
     """Those that are each other's most likely partner."""
-    nearest = right.argmax(axis=1)
-    rows = np.arange(len(right))
-    mutual = right.argmax(axis=0)[nearest] == rows
-    likely = right[rows, nearest].astype(np.float64)
+    nearest = log_right.argmax(axis=1)
+    rows = np.arange(len(log_right))
+    mutual = log_right.argmax(axis=0)[nearest] == rows
+    likely = np.exp(log_right[rows, nearest].astype(np.float64))
     kept: IndexArray = np.flatnonzero(mutual & (likely >= LEAST_RIGHT))
     return Matched(np.stack([kept, nearest[kept]], axis=1), likely[kept], likely[kept] < COUNTED)

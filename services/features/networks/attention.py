@@ -237,12 +237,9 @@ class Answer(nn.Module):  # type: ignore[misc]
         if present_other is not None:
             likeness = likeness.masked_fill(~present_other[:, None, :], -1e4)
         first, second = self.matchable(one)[..., 0].float(), self.matchable(other)[..., 0].float()
-        log_right = (
-            torch.log_softmax(likeness, 2)
-            + torch.log_softmax(likeness, 1)
-            + functional.logsigmoid(first)[:, :, None]
-            + functional.logsigmoid(second)[:, None, :]
-        )
+        rows = functional.logsigmoid(first)[:, :, None] - likeness.logsumexp(2, keepdim=True)
+        columns = functional.logsigmoid(second)[:, None, :] - likeness.logsumexp(1, keepdim=True)
+        log_right = (2.0 * likeness).add_(rows).add_(columns)  # in place: it is large
         return Assignment(log_right, (first, second), self.of_pair(one, other, present, present_other))
 
     def of_pair(

@@ -38,6 +38,12 @@ def device_named(name: str) -> torch.device:
     return torch.device(name)
 
 
+def quick_products(device: torch.device) -> torch.autocast:
+    """Matrices are multiplied in bfloat16 where a CPU has units for that (AMX), and as they are elsewhere."""
+    has_units = device.type == "cpu" and torch.cpu.get_capabilities().get("amx_bf16", False)
+    return torch.autocast(device.type, torch.bfloat16, enabled=has_units)
+
+
 @contextmanager
 def loading(what: str, *, trained: bool = True) -> Iterator[None]:
     """Turn whatever a library raises while it loads weights into one line that says what to do.
