@@ -18,7 +18,7 @@ from services.features.pipeline.pipeline import Pipeline
 from shared.messages.matching import MatchRequest, NodeMatch
 
 TRACKED = 4
-"""Nodes compared on a way: those ahead and around (services/planner/travel/lookahead.py)."""
+"""Nodes compared on a way: those ahead and around (services/planner/travel/following/lookahead.py)."""
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from services.planner.similarity import trusted
 from services.planner.surroundings import is_clear, is_clear_from
 from services.planner.travel.destination import Setback, Verdict
 from services.planner.travel.edge_experience import EdgeExperience
-from services.planner.travel.last_leg import reckoned
+from services.planner.travel.following.last_leg import reckoned
 from services.planner.travel.localisation import reachable_nodes
 from services.planner.travel.states import Event
 from services.planner.travel.tracking import Tracker

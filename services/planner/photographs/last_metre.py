@@ -7,8 +7,8 @@ from services.planner.mapping.reach import claims
 from services.planner.ports import Decision, MapAccess, Matcher, Observation
 from services.planner.profiles import Profile
 from services.planner.surroundings import free_way_m
-from services.planner.travel.last_leg import REACHED_M, reckoned_rad
-from services.planner.travel.waypoints import SLOWEST
+from services.planner.travel.following.last_leg import REACHED_M, reckoned_rad
+from services.planner.travel.following.waypoints import SLOWEST
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.hypotheses import NEAR_NODES
 from shared.mapgraph.local.resection import resected

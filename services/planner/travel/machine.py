@@ -12,6 +12,7 @@ from services.planner.profiles import Profile
 from services.planner.similarity import ranked, similarity
 from services.planner.travel.destination import Destination, Setback
 from services.planner.travel.edge_experience import EdgeExperience
+from services.planner.travel.following.path_follower import PathFollower
 from services.planner.travel.localisation import (
     allowed_starts,
     allowed_targets,
@@ -19,7 +20,6 @@ from services.planner.travel.localisation import (
     in_sight,
     starts_in_sight,
 )
-from services.planner.travel.path_follower import PathFollower
 from services.planner.travel.search import Search, search_back
 from services.planner.travel.states import TRANSITIONS, Event, State
 from services.planner.travel.tracking import Tracker
@@ -143,7 +143,7 @@ class Travel:
         """Leave a path that a rule is against, which may have come or begun to hold on the way."""
         if self.state is not State.FOLLOWING or self._follower is None:
             return
-        ahead = self._follower.path[max(0, self._follower.index - 1) :]
+        ahead = self._follower.position.remaining
         limits = self._maps.limits()
         rule = limits.forbidden.get(ahead[-1], "") or limits.against_path(ahead)
         if rule:
@@ -180,18 +180,18 @@ class Travel:
         self._progress = follower.progress
         if event is None:
             self.last_heading_rad = decision.heading_rad
-            share = self._maps.limits().speed_share(*follower.leg())
+            share = self._maps.limits().speed_share(*follower.position.leg)
             return replace(decision, speed_fraction=share * decision.speed_fraction)
         self._notes += decision.notes
         why = decision.why
         if event is Event.WAY_UNCLEAR:
-            self._unclear.add(follower.next_edge())
+            self._unclear.add(follower.position.next_edge)
         if self._makes_room:  # go on from the refuge, or from where the way there does not let it get on
             self._change(Event.MADE_ROOM if event is Event.REACHED else event)
             return Decision("hold", why=why)
         if event is Event.REACHED:
             refuted = self._destination.refutes_arrival(
-                follower.path[-1], self._progress.similarity, self.tracker
+                follower.position.path[-1], self._progress.similarity, self.tracker
             )
             if not refuted:
                 self._change(event)
@@ -199,10 +199,12 @@ class Travel:
             event, why = Event.ALIASED, f"{why}, {refuted}"
         self._change(event)
         if event is Event.WAY_UNCLEAR:
-            self._notes.append(Note("leg_doubted", f"edge {follower.next_edge()}: {why}"))
+            self._notes.append(Note("leg_doubted", f"edge {follower.position.next_edge}: {why}"))
             return Decision("hold", why=f"planning again: {why}")
         here = self.tracker.here
-        return self._recover(Setback(event, *follower.failed_edge(), tuple(follower.path), why, here))
+        return self._recover(
+            Setback(event, *follower.failed_edge(), tuple(follower.position.path), why, here)
+        )
 
     def _give_way(self, follower: PathFollower) -> Decision | None:
         """Ask for the nodes ahead; a decision where the robot waits for others, or makes room for them."""
@@ -212,7 +214,7 @@ class Travel:
             self._set_off(list(way.room), Event.MAKES_ROOM)
             return Decision("hold", why="making room for others")
         follower.may_go(way.free)
-        return Decision("hold", why=f"waits: {way.why}") if follower.waits else None
+        return Decision("hold", why=f"waits: {way.why}") if follower.position.waits else None
 
     def _recover(self, setback: Setback) -> Decision:
         """Learn from what ended the path, and plan again from what the next frame shows."""

@@ -14,7 +14,7 @@ from services.planner.mapping.reach import claims, distances, in_reach, nodes_ne
 from services.planner.ports import MapAccess, Matcher, Matches, Observation
 from services.planner.profiles import Profile
 from services.planner.similarity import similarity, tells_place
-from services.planner.travel.waypoints import is_at
+from services.planner.travel.following.waypoints import is_at
 from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.local.claims import Claim
 from shared.mapgraph.local.displacement import Displacement

@@ -162,7 +162,7 @@ def test_a_rule_set_while_the_robot_drives_stops_it_before_the_area(free):
     goal, path = here.maps.poses[here.furthest()], []
     mission = Goto(DEFAULT, here.maps, here.matcher, picture(goal))
     run(here.world, mission, DriveLimits(), 10, path)
-    ahead = mission._travel._follower.path
+    ahead = mission._travel._follower.position.path
     kept = KeepOut(name="spill", nodes=tuple(n for n in ahead[-3:] if n >= 0))
     here.maps.commit([PutRule(rule=kept)])
     decision, _ = run(here.world, mission, DriveLimits(), 1500, path)
@@ -183,7 +183,7 @@ def speeds(here, goal):
             decision = mission.decide(observation)
             follower = mission._travel._follower
             if decision.action == "go" and follower is not None:
-                found.setdefault(follower.leg(), set()).add(round(decision.speed_fraction, 3))
+                found.setdefault(follower.position.leg, set()).add(round(decision.speed_fraction, 3))
             return decision
 
     decision, _ = run(here.world, Watched(), DriveLimits(), 1500)
@@ -279,11 +279,11 @@ def test_one_way_edges_are_not_driven_against(free):
     goal = here.maps.poses[9]
     mission = Goto(DEFAULT, here.maps, here.matcher, picture(goal))
     run(here.world, mission, DriveLimits(), 2)
-    path = [n for n in mission._travel._follower.path if n >= 0]
+    path = [n for n in mission._travel._follower.position.path if n >= 0]
     against = tuple((b, a) for a, b in pairwise(path))
     here.maps.commit([PutRule(rule=OneWay(name="lane", edges=against))])
     decision, _ = run(here.world, mission, DriveLimits(), 1)
-    after = [n for n in mission._travel._follower.path if n >= 0]
+    after = [n for n in mission._travel._follower.position.path if n >= 0]
     assert set(pairwise(after)).isdisjoint(pairwise(path))
     assert all(edge in graph.edges for edge in ((min(e), max(e)) for e in pairwise(after)))
     assert decision.outcome == ""

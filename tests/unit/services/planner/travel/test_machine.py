@@ -11,7 +11,7 @@ from services.planner.missions.explore import FrontierExploration
 from services.planner.missions.goto import Goto
 from services.planner.profiles import DEFAULT
 from services.planner.travel.destination import Verdict
-from services.planner.travel.patience import Patience
+from services.planner.travel.following.patience import Patience
 from services.planner.travel.states import TRANSITIONS, Event, State
 from services.planner.travel.whereabouts import Whereabouts
 from tests.plane_world import PlaneMap, PlaneMatcher, PlaneWorld, picture, run

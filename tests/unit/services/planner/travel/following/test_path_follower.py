@@ -8,8 +8,8 @@ import pytest
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT
 from services.planner.travel.edge_experience import EdgeExperience
-from services.planner.travel.path_follower import PathFollower
-from services.planner.travel.patience import NEAREST_STEPS, STUCK_STEPS
+from services.planner.travel.following.path_follower import PathFollower
+from services.planner.travel.following.patience import NEAREST_STEPS, STUCK_STEPS
 from services.planner.travel.states import Event
 from services.planner.travel.tracking import Tracker
 from shared.mapgraph.graph import MapGraph
@@ -41,7 +41,7 @@ def event_before(free_m, **leg):
     experience = EdgeExperience(DEFAULT, maps)
     follower = PathFollower(DEFAULT, maps, [0, 1], to_a_node, set(), experience, tracker)
     ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(free_m + 0.3,) * SECTORS, max_range_m=4.0)
-    return follower.step(Observation(features(), ranges), Seen())[0], follower.index
+    return follower.step(Observation(features(), ranges), Seen())[0], follower.position.index
 
 
 def test_past_a_waypoint_where_something_stands_it_goes_to_the_next_one_on_the_second_try():
@@ -53,11 +53,11 @@ def test_past_a_waypoint_where_something_stands_it_goes_to_the_next_one_on_the_s
     to_a_node = SimpleNamespace(picture=features(), arrival_rad=0.0, aliased=False, cuts_corners=True)
     experience = EdgeExperience(DEFAULT, maps)
     follower = PathFollower(DEFAULT, maps, [0, 1, 2], to_a_node, set(), experience, tracker)
-    follower.index = 1
+    follower.position.index = 1
     ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(0.4,) * SECTORS, max_range_m=4.0)
     seen = SimpleNamespace(match=lambda *_, **__: by_node(match(1, 0.5, 0.0, 100)))
     _, decision = follower.step(Observation(features(), ranges), seen)
-    assert (follower.index, decision.action, decision.method) == (2, "go", "reckoned")
+    assert (follower.position.index, decision.action, decision.method) == (2, "go", "reckoned")
 
 
 def test_a_waypoint_that_something_stands_on_is_given_up_where_the_map_alone_does_not_lead_on():
@@ -68,7 +68,7 @@ def test_a_waypoint_that_something_stands_on_is_given_up_where_the_map_alone_doe
     to_a_node = SimpleNamespace(picture=None, arrival_rad=0.0, aliased=False, cuts_corners=True)
     experience = EdgeExperience(DEFAULT, maps)
     follower = PathFollower(DEFAULT, maps, [0, 1, 2], to_a_node, set(), experience, tracker)
-    follower.index = 1
+    follower.position.index = 1
     ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(0.4,) * SECTORS, max_range_m=4.0)
     seen = SimpleNamespace(match=lambda *_, **__: by_node(match(1, 0.5, 0.0, 100)))
     events = [follower.step(Observation(features(), ranges), seen)[0] for _ in range(STUCK_STEPS + 2)]
@@ -172,7 +172,7 @@ def test_a_node_that_does_not_show_from_the_one_before_is_headed_for_by_the_map(
     event, follower, found = blind_steps([0], [0, 1, 2])
     assert event is None
     assert [one.method for one in found].count("reckoned") > 2
-    assert follower.index == 1
+    assert follower.position.index == 1
     assert found[-1].heading_rad == pytest.approx(0.0, abs=0.1)
 
 
@@ -192,7 +192,7 @@ def test_where_no_other_way_is_left_it_goes_round_what_shuts_the_one_there_is():
 def test_past_where_the_map_has_it_the_next_one_is_headed_for_and_at_last_the_path_is_lost():
     """Forty frames in all."""
     _, follower, found = blind_steps([0], [0, 1, 2], steps=24)
-    assert follower.index == 2
+    assert follower.position.index == 2
     event, follower, found = blind_steps([0], [0, 1, 2], steps=200)
     assert event is Event.WAYPOINT_LOST
     assert len(found) < 70

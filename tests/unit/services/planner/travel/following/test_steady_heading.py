@@ -2,7 +2,7 @@
 
 import math
 
-from services.planner.travel.steady_heading import PATIENCE, SteadyHeading
+from services.planner.travel.following.steady_heading import PATIENCE, SteadyHeading
 
 
 def test_single_flips_are_ignored():

@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import pytest
 
 from services.planner.profiles import DEFAULT
-from services.planner.travel.lookahead import Lookahead
+from services.planner.travel.following.lookahead import Lookahead
+from services.planner.travel.following.waypoints import is_at
 from services.planner.travel.tracking import Tracker
-from services.planner.travel.waypoints import is_at
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.view_range import openness

@@ -6,8 +6,8 @@ from services.planner.ports import MapAccess, Matcher, Matches
 from services.planner.profiles import Profile
 from services.planner.surroundings import is_half_clear
 from services.planner.travel.destination import Destination
+from services.planner.travel.following.waypoints import is_at, is_strict, may_advance
 from services.planner.travel.tracking import Tracker
-from services.planner.travel.waypoints import is_at, is_strict, may_advance
 from shared.mapgraph.graph import EdgeKey, edge_key
 from shared.mapgraph.local.keep_clear import clear_nodes, is_near_forbidden
 from shared.mapgraph.routing import GOAL

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from services.planner.travel.last_leg import along_edges, reckoned_rad
+from services.planner.travel.following.last_leg import along_edges, reckoned_rad
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
 from tests.unit.shared.mapgraph.local.grid import grid
