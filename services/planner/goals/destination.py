@@ -162,6 +162,16 @@ class GoalDestination:
                     notes += [] if note is None else [note]
         return tuple(notes)
 
+    def mistaken(self) -> tuple[Note, ...]:
+        """The places that it visited were others: it begins anew with the goal's."""
+        assert self.picture is not None
+        self._setbacks.mistaken()
+        self._look(self.picture)
+        return (
+            Note("mistaken", "not where it believed to be: places are visited anew"),
+            self.located(),
+        )
+
     def no_path(self) -> Verdict:
         """Lift all bans once; then, or when nothing is banned for long, give up."""
         return self._setbacks.no_path()

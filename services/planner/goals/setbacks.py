@@ -19,6 +19,9 @@ STUCK_MAX = 8
 REFUTED_MAX = 16
 """Arrivals that may turn out to be none; chosen: two at each of as many places as are ever named."""
 
+MISTAKEN_MAX = 4
+"""Times a robot may find that it was elsewhere than it believed before setbacks count on; chosen."""
+
 AVOID_M = 3.0
 """Added to the cost of starting at a waypoint that failed; chosen: another node as near comes first."""
 
@@ -35,7 +38,7 @@ class Setbacks:
         self._profile, self._maps, self._experience = profile, maps, experience
         self.avoided: dict[int, float] = {}
         self.strayed = False
-        self._lost = self._stuck = self._refuted = 0
+        self._lost = self._stuck = self._refuted = self._mistaken = 0
         self._suspect: tuple[EdgeKey, str] | None = None
         self._relocated: set[EdgeKey] = set()
         self._stayed_near = False
@@ -80,6 +83,15 @@ class Setbacks:
         """The mission leads elsewhere now: what failed on the way to a place given up does not count."""
         self._lost = self._stuck = 0
         self._stayed_near = False
+
+    def mistaken(self) -> None:
+        """The robot was elsewhere than it believed: what failed were other edges and waypoints."""
+        self._mistaken += 1
+        if self._mistaken <= MISTAKEN_MAX:
+            self.begin_anew()
+            self.avoided.clear()
+            self._suspect = None
+            self._experience.forget()
 
     def judge_suspect(self, seen: Matches) -> tuple[Note, ...]:
         """A robot that finds itself far from the edge it lost was carried: that says nothing about the edge.

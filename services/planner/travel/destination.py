@@ -82,6 +82,9 @@ class Destination(Protocol):
     def localised(self, seen: Matches, ranges: Ranges) -> tuple[Note, ...]:
         """Learn from a frame that was compared with the whole map."""
 
+    def mistaken(self) -> tuple[Note, ...]:
+        """The robot was not where it believed to be: what it learnt of places and edges was of others."""
+
     def goes_straight(self, goal: NodeMatch, here: Displacement | None) -> bool:
         """Whether the picture, which is in sight, may be headed for without a path.
 
@@ -143,6 +146,10 @@ class NodeDestination:
 
     def localised(self, _seen: Matches, _ranges: Ranges) -> tuple[Note, ...]:
         """Nothing is learnt: edges are judged by standing at nodes and by driving."""
+        return ()
+
+    def mistaken(self) -> tuple[Note, ...]:
+        """Who goes to nodes is sure of where it is, or lost."""
         return ()
 
     def sees(self, _goal: NodeMatch, _here: Displacement | None) -> None:

@@ -36,6 +36,7 @@ class EdgeExperience:
     def __init__(self, profile: Profile, maps: MapAccess) -> None:
         self._profile, self._maps = profile, maps
         self._stuck_at: dict[int, int] = {}
+        self._before: dict[EdgeKey, Edge] = {}
         self.tried_again = False
         self.banned: set[EdgeKey] = set()
         self.unreachable: set[int] = set()
@@ -65,11 +66,21 @@ class EdgeExperience:
         self._stuck_at.clear()
         return True
 
+    def forget(self) -> None:
+        """What failed were other edges: those blamed are as they were before this mission."""
+        graph = self._maps.graph
+        blamed = [edge for ends, edge in self._before.items() if graph.edge(*ends) is not None]
+        if blamed:
+            self._maps.commit([PutEdge(edge=edge) for edge in blamed])
+        for learnt in (self._before, self._stuck_at, self.banned, self.unreachable):
+            learnt.clear()
+
     def failed(self, ends: EdgeKey, why: str, *, cut_off: bool = False) -> Note:
         """An edge was driven in vain: it decays; the second time, or with little left, it is suspended."""
         edge = self._maps.graph.edge(*ends)
         if edge is None:
             return Note("edge_gone", f"edge {ends} is no longer in the map")
+        self._before.setdefault(ends, edge)
         if self._profile.travel.delete_edges:
             self._maps.commit([DeleteEdge(a=edge.a, b=edge.b)])
             return Note("edge_deleted", f"edge {ends}: {why}")

@@ -103,8 +103,10 @@ class Travel:
         pictures = () if destination.picture is None else (destination.picture,)
         seen = self._matcher.match(self.tracker.nearby(), destination.compared, pictures)
         goal = seen.pop(GOAL, None)
-        seen = self.tracker.possible(seen)
+        seen = self.tracker.possible(seen, of_map=True)
         self.tracker.confirm(seen)
+        if self.tracker.mistaken:
+            self._notes += destination.mistaken()
         self._notes += destination.localised(seen, observation.ranges)
         if goal is not None:
             destination.sees(goal, self.tracker.here)
@@ -178,6 +180,10 @@ class Travel:
             return waiting
         event, decision = follower.step(observation, self._matcher)
         self._progress = follower.progress
+        if self.tracker.mistaken:
+            self._notes += (*decision.notes, *self._destination.mistaken())
+            self._change(Event.MISTAKEN)
+            return Decision("hold", why="planning again: this is another place")
         if event is None:
             self.last_heading_rad = decision.heading_rad
             share = self._maps.limits().speed_share(*follower.position.leg)

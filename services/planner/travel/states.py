@@ -39,6 +39,7 @@ class Event(StrEnum):
     NO_PROGRESS = "no_progress"
     WAY_UNCLEAR = "way_unclear"
     ALIASED = "aliased"
+    MISTAKEN = "mistaken"
     REACHED = "reached"
     RULED_OUT = "ruled_out"
     MAKES_ROOM = "makes_room"
@@ -66,6 +67,7 @@ _REASONS = {
     Event.NO_PROGRESS: "the waypoint comes no nearer, or what comes after it does not show",
     Event.WAY_UNCLEAR: "no free ground is seen beyond the waypoint: another path is asked for, once",
     Event.ALIASED: "the view resembles the destination, but other nodes resemble it more",
+    Event.MISTAKEN: "several views show other places than that where the robot believed to be",
     Event.REACHED: "the view agrees with that of the destination",
     Event.RULED_OUT: "a rule of the map is against going on along the path",
     Event.MAKES_ROOM: "other robots cannot get by: it goes out of their way first",
@@ -88,6 +90,7 @@ def _rows() -> list[Transition]:
         (Event.NO_PROGRESS, State.LOCALISING),
         (Event.WAY_UNCLEAR, State.LOCALISING),
         (Event.ALIASED, State.LOCALISING),
+        (Event.MISTAKEN, State.LOCALISING),
         (Event.RULED_OUT, State.LOCALISING),
         (Event.MAKES_ROOM, State.FOLLOWING),
         (Event.MADE_ROOM, State.LOCALISING),

@@ -2,7 +2,8 @@
 
 A robot does not jump. What a frame claims of nodes that lie elsewhere is perceptual aliasing, however alike
 they look. Only a robot that was carried is elsewhere: then this frame does not resemble the one before it, or
-the robot has looked in vain for long.
+the robot has looked in vain for long. Or it never was where it believed to be: then views from here and there
+show other places (`doubts`).
 """
 
 import logging
@@ -14,6 +15,7 @@ from services.planner.mapping.reach import claims, distances, in_reach, nodes_ne
 from services.planner.ports import MapAccess, Matcher, Matches, Observation
 from services.planner.profiles import Profile
 from services.planner.similarity import similarity, tells_place
+from services.planner.travel.doubts import Doubts
 from services.planner.travel.following.waypoints import is_at
 from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.local.claims import Claim
@@ -44,7 +46,7 @@ ABOUT_M = 0.5
 chosen: nodes lie so far apart at the least, and a robot goes a third of a metre between two frames."""
 
 COMPARED = 8
-"""Nodes around the robot that are compared with its view; chosen: as many as a goto compares."""
+"""Nodes around the robot, or of the map, that are compared with its view; chosen: as goto does."""
 
 log = logging.getLogger(__name__)
 
@@ -59,6 +61,9 @@ class Tracker:
         certain: only a place without rivals counts where nobody knows where the robot is, and only a spot
             around which the same things stand: one that maps would join two places for good.
         whereabouts: as the mission before left them; this tracker changes them.
+
+    Attributes:
+        mistaken: by this frame the robot was not where it believed to be, nobody knows since when.
     """
 
     def __init__(
@@ -76,6 +81,8 @@ class Tracker:
         self._resumes = self._at.here is not None
         self._strict = profile.sensing.similarity == "raw"
         self._lost_frames = 0
+        self._doubts = Doubts()
+        self.mistaken = False
         self._ranges: Ranges | None = None
 
     @property
@@ -90,7 +97,8 @@ class Tracker:
     def observe(self, observation: Observation) -> None:
         """A new frame, and how far the robot went since the one before."""
         self._at.observe(observation.features, observation.moved)
-        self._ranges = observation.ranges
+        self._ranges, self.mistaken = observation.ranges, False
+        self._doubts.went(observation.moved.way_m)
         if self.here is not None:
             self.here = self.here.moved(observation.moved)
 
@@ -98,9 +106,15 @@ class Tracker:
         """Nodes around where the robot is."""
         return nodes_nearby(self._maps.graph, self.here, self._profile, COMPARED)
 
+    @property
+    def compared(self) -> int:
+        """Nodes of the whole map to be compared with a frame on the way: none, but for now and then."""
+        return COMPARED if self._doubts.are_due and not (self._strict or self._certain) else 0
+
     def stand_at(self, here: Displacement | None) -> None:
         """It is known where the robot is, or not any more."""
         self.here, self._lost_frames = here, 0
+        self._doubts.settle()
 
     def shown(self, place: Matches) -> None:
         """A frame is of one place: who should not see it from where it believes to be knows no more.
@@ -111,8 +125,13 @@ class Tracker:
         if self.here is not None and not in_reach(self._maps.graph, place, self.here, self._profile):
             self.stand_at(None)
 
-    def possible(self, matches: Matches) -> Matches:
-        """The matches that can be what they claim: those within reach, or of the likeliest place."""
+    def possible(self, matches: Matches, *, of_map: bool = False) -> Matches:
+        """The matches that can be what they claim: those within reach, or of the likeliest place.
+
+        Args:
+            matches: of the frame.
+            of_map: the nodes of the whole map that are most like it are among them.
+        """
         graph = self._maps.graph
         if self._strict:
             return matches
@@ -122,6 +141,8 @@ class Tracker:
             self._resume()
         if self.here is not None and self.here.node_id in graph.nodes:
             within = in_reach(graph, matches, self.here, self._profile)
+            if of_map and self._is_refuted(matches, within):
+                return self._likeliest(matches)
             if self._shows_any(within):
                 self._lost_frames = 0
                 return self._agreeing(within)
@@ -222,6 +243,24 @@ class Tracker:
         why = "the view changed at once" if carried else f"nothing seen for {self._lost_frames} frames"
         log.info("%s: no longer about node %d", why, self.here.node_id if self.here is not None else -1)
         self.stand_at(None)
+        return True
+
+    def _is_refuted(self, matches: Matches, within: Matches) -> bool:
+        """Whether this and earlier views show other places than that where the robot believes to be."""
+        if self._certain:  # who maps sees what is in no map yet
+            return False
+        sights = self._sights(matches)
+        shown = likely(self._maps.graph, sights, hypotheses(self._maps.graph, sights))
+        if not shown:
+            return False
+        if any(node in within for place in shown for node in place.nodes):
+            self._doubts.settle()
+            return False
+        if not self._doubts.refute():
+            return False
+        log.info("not about node %d: several views show other places", self.here.node_id if self.here else -1)
+        self.stand_at(None)
+        self.mistaken = True
         return True
 
     def _agreeing(self, within: Matches) -> Matches:

@@ -42,9 +42,10 @@ class Lookahead:
         ahead = [node for node in dict.fromkeys(waypoints[:WINDOW]) if node != GOAL]
         picture = self._destination.picture
         nodes = [*ahead, *(node for node in self._tracker.nearby()[:BESIDE] if node not in ahead)]
-        seen = matcher.match(nodes, targets=() if picture is None else (picture,))
+        of_map = self._tracker.compared
+        seen = matcher.match(nodes, of_map, () if picture is None else (picture,))
         goal = {GOAL: seen.pop(GOAL)} if GOAL in seen else {}
-        possible = self._tracker.possible(seen)
+        possible = self._tracker.possible(seen, of_map=of_map > 0)
         self._tracker.confirm(possible)
         if goal:
             self._destination.sees(goal[GOAL], self._tracker.here)

@@ -206,7 +206,7 @@ def test_the_nodes_around_are_compared_beside_those_ahead():
     to_a_node = SimpleNamespace(picture=None, arrival_rad=0.0, aliased=False, cuts_corners=True)
     experience, path = EdgeExperience(DEFAULT, maps), [6, 7, 8, 9]
     follower = PathFollower(DEFAULT, maps, path, to_a_node, set(), experience, tracker)
-    seen = SimpleNamespace(match=lambda nodes, **_: asked.extend(nodes) or {})
+    seen = SimpleNamespace(match=lambda nodes, *_: asked.extend(nodes) or {})
     ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(3.0,) * SECTORS, max_range_m=4.0)
     follower.step(Observation(features(), ranges), seen)
     assert asked == [6, 7, 8, 9, 2, 3, 1]
