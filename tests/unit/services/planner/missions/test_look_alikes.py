@@ -175,3 +175,26 @@ def test_a_look_alike_that_no_way_leads_to_is_given_up_for_the_others(explored):
     assert [note.kind for note in verdicts[3].notes] == ["replan", "place_shut"]
     assert first not in goal.targets()
     assert not goal.targets().keys().isdisjoint(others)
+
+
+def test_who_believes_to_be_at_a_look_alike_notices_it_on_the_way(explored, monkeypatch):
+    """The true places show better: the map's next period is where the robot never was."""
+    monkeypatch.setattr("tests.plane_world.ALIKE", 0.4)
+    world, maps, matcher, _ = explored
+    twins = [(a, b) for a, p in maps.poses.items() for b, q in maps.poses.items()
+             if math.dist((p[0] + PERIOD_M, p[1]), q[:2]) < 0.25]  # fmt: skip
+    node, believed = twins[0]
+    world.pose = maps.poses[node]
+    seen = world.observe().features
+    where = Whereabouts("office", Displacement(believed, spread_m=0.1), now=seen, before=seen)
+    goal = max(maps.poses.values(), key=lambda pose: math.dist(pose[:2], world.pose[:2]))
+    mission = Goto(DEFAULT, maps, matcher, picture(goal), where)
+    kinds = set()
+    for _ in range(STEPS):
+        decision, _ = run(world, mission, DriveLimits(), 1)
+        kinds |= {note.kind for note in decision.notes}
+        if decision.outcome:
+            break
+    assert "mistaken" in kinds
+    assert decision.outcome == "succeeded", decision.why
+    assert math.dist(world.pose[:2], goal[:2]) < 0.5

@@ -8,6 +8,7 @@ import pytest
 
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT, THESIS
+from services.planner.travel.doubts import DOUBTS, LOOK_AROUND_M
 from services.planner.travel.tracking import PATIENCE_FRAMES, Tracker
 from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.local.displacement import Displacement
@@ -55,6 +56,48 @@ def test_while_only_look_alikes_show_it_waits_for_what_is_near(tracker):
         drive(tracker, seq=seq)
         assert tracker.possible(ELSEWHERE) == {}
     assert set(tracker.possible(HERE | ELSEWHERE)) == {0, 1}
+
+
+def after_views(tracker, seen, *, of_map=True):
+    """What counts of a view, the last of some that far apart; the robot goes to and fro."""
+    for seq in range(DOUBTS):
+        drive(tracker, (LOOK_AROUND_M / 2, 0.0), seq)
+        drive(tracker, (-LOOK_AROUND_M / 2, 0.0), seq)
+        found = tracker.possible(seen, of_map=of_map)
+    return set(found)
+
+
+WEAK_HERE = by_node(match(0, 0.0, 0.0, 30), match(1, 1.0, 0.0, 25))
+
+
+def test_who_sees_other_places_from_here_and_there_is_not_where_it_believes_to_be(tracker):
+    assert after_views(tracker, WEAK_HERE | ELSEWHERE) == {9, 10}
+    assert tracker.mistaken
+    drive(tracker)
+    assert not tracker.mistaken, "it was said"
+
+
+@pytest.mark.parametrize("seen", [HERE | TWIN, HERE | by_node(match(9, 0.0, 0.0, 80))])
+def test_a_place_that_is_among_the_likely_ones_is_where_the_robot_is(tracker, seen):
+    assert after_views(tracker, seen) <= {0, 1}
+    assert not tracker.mistaken
+
+
+def test_nodes_on_the_way_alone_refute_nothing(tracker):
+    assert after_views(tracker, WEAK_HERE | ELSEWHERE, of_map=False) == {0, 1}
+
+
+def test_one_that_maps_believes_what_it_did(matcher):
+    mapping = tracker_of(matcher, certain=True)
+    mapping.stand_at(Displacement(0, spread_m=0.1))
+    assert after_views(mapping, WEAK_HERE | ELSEWHERE) == {0, 1}
+    assert mapping.compared == 0
+
+
+def test_after_some_way_the_next_view_is_compared_with_the_map(tracker):
+    assert tracker.compared == 0
+    drive(tracker, (LOOK_AROUND_M, 0.0))
+    assert tracker.compared > 0
 
 
 def test_a_match_unsure_of_its_direction_is_none_to_follow(tracker):
