@@ -7,7 +7,7 @@ import pytest
 from services.planner.profiles import DEFAULT, THESIS
 from services.planner.travel.edge_experience import EdgeExperience
 from shared.mapgraph.graph import MapGraph
-from shared.messages.maps import Edge, Node
+from shared.messages.maps import DeleteEdge, Edge, Node
 from shared.messages.matching import NodeMatch
 
 ENDS = (0, 1)
@@ -97,3 +97,25 @@ def test_the_thesis_deletes_at_once(maps):
     assert note.kind == "edge_deleted"
     assert maps.graph.edge(*ENDS) is None
     assert EdgeExperience(THESIS, maps).failed(ENDS, "lost").kind == "edge_gone"
+
+
+def test_what_failed_elsewhere_is_forgotten(maps):
+    """The robot was not where it believed to be: those edges were never driven."""
+    before = dict(maps.graph.edges)
+    experience = EdgeExperience(DEFAULT, maps)
+    experience.stuck(ENDS, 1)
+    experience.stuck(ENDS, 1)
+    experience.failed((2, 3), "lost")
+    assert maps.graph.edge(*ENDS).suspended
+    experience.forget()
+    assert dict(maps.graph.edges) == before
+    assert (experience.banned, experience.unreachable) == (set(), set())
+    assert experience.failed(ENDS, "lost").kind == "edge_failed"
+
+
+def test_an_edge_that_is_gone_meanwhile_stays_gone(maps):
+    experience = EdgeExperience(DEFAULT, maps)
+    experience.failed(ENDS, "lost")
+    maps.commit([DeleteEdge(a=0, b=1)])
+    experience.forget()
+    assert maps.graph.edge(*ENDS) is None
