@@ -7,8 +7,9 @@ hostel whose two sides mirror each other one drove 110 m of a mission turned rou
 LOOK_AROUND_M = 1.5
 """Way between two views that are compared with the whole map; chosen: two nodes further on."""
 DOUBTS = 3
-"""So many of them in a row that show other places refute a belief. Of 141 views on ways through a hostel and
-a hotel of development, a third of the furniture moved, none showed other places than the right one alone."""
+"""So many of them in a row that show other places refute a belief. Of 184 views on ways through a hotel and a
+hostel of development, a third of the furniture moved, none showed other places than the right one alone
+(tests/benchmarks/test_views_on_the_way.py)."""
 
 
 class Doubts:
