@@ -98,7 +98,7 @@ class Tracker:
         """A new frame, and how far the robot went since the one before."""
         self._at.observe(observation.features, observation.moved)
         self._ranges, self.mistaken = observation.ranges, False
-        self._doubts.went(observation.moved.way_m)
+        self._doubts.went(observation.moved)
         if self.here is not None:
             self.here = self.here.moved(observation.moved)
 

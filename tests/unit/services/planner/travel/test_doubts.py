@@ -1,38 +1,47 @@
-"""Views in a row, each from further on, that show other places refute where a robot believes to be."""
+"""Views of other places from here and there refute where a robot believes to be."""
+
+import itertools
 
 import pytest
 
 from services.planner.travel.doubts import DOUBTS, LOOK_AROUND_M, Doubts
+from shared.motion.motion import Motion
+
+ON, BACK = Motion(LOOK_AROUND_M, 0.0), Motion(-LOOK_AROUND_M, 0.0)
 
 
-def refuted(doubts, views, way_m=LOOK_AROUND_M):
-    """Whether each of so many views, that far apart, is one too many."""
+def refuted(doubts, ways):
+    """Whether the belief is refuted by a view of another place after each of these ways."""
     found = []
-    for _ in range(views):
-        doubts.went(way_m)
+    for moved in ways:
+        doubts.went(moved)
         found.append(doubts.refute())
     return found
 
 
-def test_so_many_views_in_a_row_refute_a_belief():
-    assert refuted(Doubts(), DOUBTS) == [False] * (DOUBTS - 1) + [True]
+def test_so_many_spots_refute_a_belief():
+    assert refuted(Doubts(), [ON] * DOUBTS) == [False] * (DOUBTS - 1) + [True]
 
 
 def test_views_from_beside_one_another_are_one():
-    assert not any(refuted(Doubts(), 10, way_m=0.1))
+    assert not any(refuted(Doubts(), [Motion(0.1, 0.0)] * 10))
+
+
+def test_to_and_fro_there_are_but_two_spots():
+    assert not any(refuted(Doubts(), itertools.islice(itertools.cycle([ON, BACK]), 20)))
 
 
 def test_a_view_that_agrees_takes_away_all_doubts():
     doubts = Doubts()
-    refuted(doubts, DOUBTS - 1)
+    refuted(doubts, [ON] * (DOUBTS - 1))
     doubts.settle()
-    assert refuted(doubts, DOUBTS) == [False] * (DOUBTS - 1) + [True]
+    assert refuted(doubts, [ON] * DOUBTS) == [False] * (DOUBTS - 1) + [True]
 
 
-@pytest.mark.parametrize(("way_m", "due"), [(0.9 * LOOK_AROUND_M, False), (LOOK_AROUND_M, True)])
-def test_a_view_of_the_whole_map_is_due_after_some_way(way_m, due):
+@pytest.mark.parametrize(("share", "due"), [(0.9, False), (1.0, True)])
+def test_a_view_of_the_whole_map_is_due_after_some_way(share, due):
     doubts = Doubts()
-    doubts.went(way_m)
+    doubts.went(Motion(share * LOOK_AROUND_M, 0.0))
     assert doubts.are_due == due
     doubts.settle()
     assert not doubts.are_due

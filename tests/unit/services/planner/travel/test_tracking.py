@@ -58,39 +58,49 @@ def test_while_only_look_alikes_show_it_waits_for_what_is_near(tracker):
     assert set(tracker.possible(HERE | ELSEWHERE)) == {0, 1}
 
 
-def after_views(tracker, seen, *, of_map=True):
-    """What counts of a view, the last of some that far apart; the robot goes to and fro."""
-    for seq in range(DOUBTS):
-        drive(tracker, (LOOK_AROUND_M / 2, 0.0), seq)
-        drive(tracker, (-LOOK_AROUND_M / 2, 0.0), seq)
-        found = tracker.possible(seen, of_map=of_map)
-    return set(found)
+AWAY = 9
+"""So many nodes further on it looks alike."""
 
 
-WEAK_HERE = by_node(match(0, 0.0, 0.0, 30), match(1, 1.0, 0.0, 25))
+def seen_from(x_m, here, elsewhere):
+    """The two nodes around a spot so far beyond node 0, and the two that look like them, by their matches."""
+    first = int(x_m)
+    sights = ((node, node - x_m, s) for node, s in zip((first, first + 1), here, strict=True))
+    alike = ((first + k + AWAY, first + k - x_m, s) for k, s in enumerate(elsewhere))
+    return by_node(*(match(node, ahead_m, 0.0, s) for node, ahead_m, s in (*sights, *alike)))
+
+
+def after_views(tracker, here, elsewhere, *, of_map=True, way_m=LOOK_AROUND_M):
+    """Whether what counts of the last of some views, so far apart, is elsewhere."""
+    for number in range(1, DOUBTS + 1):
+        drive(tracker, (way_m, 0.0), number)
+        found = tracker.possible(seen_from(number * way_m, here, elsewhere), of_map=of_map)
+    return {node >= AWAY for node in found}
 
 
 def test_who_sees_other_places_from_here_and_there_is_not_where_it_believes_to_be(tracker):
-    assert after_views(tracker, WEAK_HERE | ELSEWHERE) == {9, 10}
+    assert after_views(tracker, (30, 25), (180, 120)) == {True}
     assert tracker.mistaken
     drive(tracker)
     assert not tracker.mistaken, "it was said"
 
 
-@pytest.mark.parametrize("seen", [HERE | TWIN, HERE | by_node(match(9, 0.0, 0.0, 80))])
-def test_a_place_that_is_among_the_likely_ones_is_where_the_robot_is(tracker, seen):
-    assert after_views(tracker, seen) <= {0, 1}
+@pytest.mark.parametrize("elsewhere", [(60, 40), (80, 60)])
+def test_a_place_that_is_among_the_likely_ones_is_where_the_robot_is(tracker, elsewhere):
+    assert after_views(tracker, (60, 50), elsewhere) == {False}
     assert not tracker.mistaken
 
 
-def test_nodes_on_the_way_alone_refute_nothing(tracker):
-    assert after_views(tracker, WEAK_HERE | ELSEWHERE, of_map=False) == {0, 1}
+@pytest.mark.parametrize("kinds", [{"of_map": False}, {"way_m": 0.3}])
+def test_nodes_on_the_way_alone_refute_nothing_nor_does_one_spot(tracker, kinds):
+    assert after_views(tracker, (30, 25), (180, 120), **kinds) == {False}
+    assert not tracker.mistaken
 
 
 def test_one_that_maps_believes_what_it_did(matcher):
     mapping = tracker_of(matcher, certain=True)
     mapping.stand_at(Displacement(0, spread_m=0.1))
-    assert after_views(mapping, WEAK_HERE | ELSEWHERE) == {0, 1}
+    assert after_views(mapping, (30, 25), (180, 120)) == {False}
     assert mapping.compared == 0
 
 
