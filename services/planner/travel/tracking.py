@@ -20,7 +20,7 @@ from services.planner.travel.following.waypoints import is_at
 from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.local.claims import Claim
 from shared.mapgraph.local.displacement import Displacement
-from shared.mapgraph.local.hypotheses import NEAR_NODES, hypotheses
+from shared.mapgraph.local.hypotheses import NEAR_NODES, Hypothesis, hypotheses
 from shared.mapgraph.local.likely_places import likely
 from shared.mapgraph.local.resection import resected
 from shared.mapgraph.local.view_range import openness
@@ -249,8 +249,7 @@ class Tracker:
         """Whether this and earlier views show other places than that where the robot believes to be."""
         if self._certain:  # who maps sees what is in no map yet
             return False
-        sights = self._sights(matches)
-        shown = likely(self._maps.graph, sights, hypotheses(self._maps.graph, sights))
+        shown = self._places(matches)
         if not shown:
             return False
         if any(node in within for place in shown for node in place.nodes):
@@ -271,13 +270,17 @@ class Tracker:
 
     def _likeliest(self, matches: Matches) -> Matches:
         """Of several places that look alike the one that resembles the view most."""
-        graph, sights = self._maps.graph, self._sights(matches)
-        found = likely(graph, sights, hypotheses(graph, sights))
+        found = self._places(matches)
         if not found or (self._certain and len(found) > 1):
             return {}
         self._at.guessed = len(found) > 1
         log.info("about node %d, by what is seen", found[0].nodes[0])
         return {node: matches[node] for node in found[0].nodes}
+
+    def _places(self, matches: Matches) -> list[Hypothesis]:
+        """Where the frame can have been taken, the likeliest first."""
+        graph, sights = self._maps.graph, self._sights(matches)
+        return likely(graph, sights, hypotheses(graph, sights))
 
     def _sights(self, matches: Matches) -> dict[int, Claim]:
         """What the frame claims for sure of nodes of the map."""
