@@ -212,14 +212,15 @@ class GoalDestination:
         s_map = max((similarity_of(match, self._profile) for match in view.values()), default=0)
         if similarity < GOAL_SHARE * s_map:
             self.aliased = True
-            if self.candidates.plain:
+            tracker.shown(view)
+            if self.candidates.plain and not tracker.mistaken:
                 self._rule_out(view, tracker.here)
-            else:
+            elif not tracker.mistaken:
                 self._settle(self.places.refuted(tracker.here))
             return f"aliased: a node of the map resembles this view more than the goal does, S {s_map}"
         if another := self.candidates.shows_another(view, tracker.here):
             self.aliased = True
-            tracker.shown({node: view[node] for node in another.nodes})
+            tracker.shown(view)
             return f"aliased: this is about node {another.nodes[0]}, its place about {self.candidates.names}"
         why = self._settle(self.places.arrived(node, Visit(similarity, tracker.likeness(similarity))))
         self._at.guessed = self._at.guessed and bool(why)

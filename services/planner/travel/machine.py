@@ -229,6 +229,8 @@ class Travel:
         self._notes += verdict.notes
         if verdict.failure:
             return self._give_up(verdict.failure, setback.why)
+        if self.tracker.mistaken:
+            self._notes += self._destination.mistaken()
         return Decision("hold", why=f"planning again: {setback.why}")
 
     def _wait(self) -> Decision:

@@ -116,14 +116,18 @@ class Tracker:
         self.here, self._lost_frames = here, 0
         self._doubts.settle()
 
-    def shown(self, place: Matches) -> None:
-        """A frame is of one place: who should not see it from where it believes to be knows no more.
+    def shown(self, view: Matches) -> None:
+        """A frame surely shows where it was taken: who sees only what lies elsewhere was mistaken.
 
         Args:
-            place: the frame against the nodes of that place.
+            view: the frame against the nodes of the whole map that are most like it.
         """
-        if self.here is not None and not in_reach(self._maps.graph, place, self.here, self._profile):
-            self.stand_at(None)
+        if self.here is None:
+            return
+        within = in_reach(self._maps.graph, view, self.here, self._profile)
+        shown = self._places(view)
+        if shown and not any(node in within for place in shown for node in place.nodes):
+            self._forget("what stands here is of another place")
 
     def possible(self, matches: Matches, *, of_map: bool = False) -> Matches:
         """The matches that can be what they claim: those within reach, or of the likeliest place.
@@ -257,10 +261,14 @@ class Tracker:
             return False
         if not self._doubts.refute():
             return False
-        log.info("not about node %d: several views show other places", self.here.node_id if self.here else -1)
+        self._forget("several views show other places")
+        return True
+
+    def _forget(self, why: str) -> None:
+        """The robot never was where it believed to be."""
+        log.info("not about node %d: %s", self.here.node_id if self.here else -1, why)
         self.stand_at(None)
         self.mistaken = True
-        return True
 
     def _agreeing(self, within: Matches) -> Matches:
         """Without those that put the robot elsewhere than most of them do, though they are in reach."""
