@@ -8,21 +8,17 @@ show other places (`doubts`).
 
 import logging
 import math
-from collections.abc import Mapping
 
 from services.planner.echoes import is_elsewhere
-from services.planner.mapping.reach import claims, distances, in_reach, nodes_nearby
+from services.planner.mapping.reach import distances, in_reach, nodes_nearby
 from services.planner.ports import MapAccess, Matcher, Matches, Observation
 from services.planner.profiles import Profile
-from services.planner.similarity import similarity, tells_place
+from services.planner.similarity import similarity
 from services.planner.travel.doubts import Doubts
 from services.planner.travel.following.waypoints import is_at
+from services.planner.travel.sights import Sights
 from services.planner.travel.whereabouts import Whereabouts
-from shared.mapgraph.local.claims import Claim
 from shared.mapgraph.local.displacement import Displacement
-from shared.mapgraph.local.hypotheses import NEAR_NODES, Hypothesis, hypotheses
-from shared.mapgraph.local.likely_places import likely
-from shared.mapgraph.local.resection import resected
 from shared.mapgraph.local.view_range import openness
 from shared.mapgraph.routing import GOAL
 from shared.messages.features import Features
@@ -76,7 +72,7 @@ class Tracker:
         whereabouts: Whereabouts | None = None,
     ) -> None:
         self._profile, self._maps, self._matcher = profile, maps, matcher
-        self._certain = certain
+        self._certain, self._sights = certain, Sights(profile, maps)
         self._at = whereabouts or Whereabouts()
         self._resumes = self._at.here is not None
         self._strict = profile.sensing.similarity == "raw"
@@ -125,7 +121,7 @@ class Tracker:
         if self.here is None:
             return
         within = in_reach(self._maps.graph, view, self.here, self._profile)
-        shown = self._places(view)
+        shown = self._sights.places(view)
         if shown and not any(node in within for place in shown for node in place.nodes):
             self._forget("what stands here is of another place")
 
@@ -147,9 +143,9 @@ class Tracker:
             within = in_reach(graph, matches, self.here, self._profile)
             if of_map and self._is_refuted(matches, within):
                 return self._likeliest(matches)
-            if self._shows_any(within):
+            if self._sights.any_sure(within):
                 self._lost_frames = 0
-                return self._agreeing(within)
+                return self._sights.agreeing(within)
             self._lost_frames += 1
             if not self._is_away():
                 return within
@@ -161,14 +157,10 @@ class Tracker:
         Args:
             matches: those that are possible.
         """
-        graph, sights = self._maps.graph, self._sights(matches)
-        if not sights:
-            return
-        nearest = min(sights, key=lambda node: (sights[node].length_m, node))
-        best = self._resected(sights, nearest)
+        nodes, best = self._maps.graph.nodes, self._sights.resected(matches)
         if best is None:
             return
-        if self.here is None or best.spread_m <= self.here.spread_m or self.here.node_id not in graph.nodes:
+        if self.here is None or best.spread_m <= self.here.spread_m or self.here.node_id not in nodes:
             self.here = best
         elif self.here.node_id in matches and (yaw := matches[self.here.node_id].yaw_rad) is not None:
             self.here = self.here.facing(-yaw)
@@ -180,7 +172,7 @@ class Tracker:
             node_id: the node.
             matches: of the frame, with the nodes around.
         """
-        found = self._resected(self._sights(self.possible(matches)), node_id, self.here)
+        found = self._sights.resected(self.possible(matches), node_id, self.here)
         if found is not None:
             return found
         match = matches.get(node_id)
@@ -198,7 +190,7 @@ class Tracker:
     def came_to(self, node_id: int, match: NodeMatch) -> bool:
         """Whether the robot is at a node by all that it saw and did, and sees no baseline to it."""
         graph, here = self._maps.graph, self.here
-        if here is None or match.status != "no_baseline" or not self._resembles(match):
+        if here is None or match.status != "no_baseline" or not self._sights.resembles(match):
             return False
         if here.spread_m > ABOUT_M * openness(graph, node_id):
             return False
@@ -207,7 +199,7 @@ class Tracker:
     def was_carried(self) -> bool:
         """Whether this frame shows another place than the one before it."""
         match = self._against(self._at.before)
-        return self._at.before is not None and (match is None or not self._resembles(match))
+        return self._at.before is not None and (match is None or not self._sights.resembles(match))
 
     def likeness(self, s_goal: int) -> float:
         """Similarity of this frame to a picture, as a share of its similarity to a frame from beside it."""
@@ -223,7 +215,7 @@ class Tracker:
             return
         seen = self._matcher.match([here.node_id], 0, (before,))
         stands = is_at(seen.get(GOAL), self._maps.graph, self._profile)
-        if not stands or here.node_id not in seen or not self._is_sure(seen[here.node_id]):
+        if not stands or here.node_id not in seen or not self._sights.is_sure(seen[here.node_id]):
             log.info("not about node %d any more: where the robot is has to be seen", here.node_id)
             self.stand_at(None)
 
@@ -253,7 +245,7 @@ class Tracker:
         """Whether this and earlier views show other places than that where the robot believes to be."""
         if self._certain:  # who maps sees what is in no map yet
             return False
-        shown = self._places(matches)
+        shown = self._sights.places(matches)
         if not shown:
             return False
         if any(node in within for place in shown for node in place.nodes):
@@ -270,43 +262,11 @@ class Tracker:
         self.stand_at(None)
         self.mistaken = True
 
-    def _agreeing(self, within: Matches) -> Matches:
-        """Without those that put the robot elsewhere than most of them do, though they are in reach."""
-        places = hypotheses(self._maps.graph, self._sights(within))
-        away = {node for place in places[1:] for node in place.nodes}
-        return {node: match for node, match in within.items() if node not in away}
-
     def _likeliest(self, matches: Matches) -> Matches:
         """Of several places that look alike the one that resembles the view most."""
-        found = self._places(matches)
+        found = self._sights.places(matches)
         if not found or (self._certain and len(found) > 1):
             return {}
         self._at.guessed = len(found) > 1
         log.info("about node %d, by what is seen", found[0].nodes[0])
         return {node: matches[node] for node in found[0].nodes}
-
-    def _places(self, matches: Matches) -> list[Hypothesis]:
-        """Where the frame can have been taken, the likeliest first."""
-        graph, sights = self._maps.graph, self._sights(matches)
-        return likely(graph, sights, hypotheses(graph, sights))
-
-    def _sights(self, matches: Matches) -> dict[int, Claim]:
-        """What the frame claims for sure of nodes of the map."""
-        nodes = self._maps.graph.nodes
-        sure = {node: match for node, match in matches.items() if node in nodes and self._is_sure(match)}
-        return claims(self._maps.graph, sure, self._profile)
-
-    def _resected(
-        self, sights: Mapping[int, Claim], node_id: int, reckoned: Displacement | None = None
-    ) -> Displacement | None:
-        return resected(self._maps.graph, sights, node_id, NEAR_NODES, reckoned)
-
-    def _shows_any(self, matches: Matches) -> bool:
-        return any(self._is_sure(match) for match in matches.values())
-
-    def _is_sure(self, match: NodeMatch) -> bool:
-        return self._resembles(match) and tells_place(match, self._maps.graph, self._profile)
-
-    def _resembles(self, match: NodeMatch) -> bool:
-        """Whether enough agrees; of views 4 cm apart that tells no direction well."""
-        return similarity(match, self._profile) > self._profile.travel.s_via_min
