@@ -28,7 +28,6 @@ class FrameMotion:
         self._ranges: deque[Ranges] = deque(maxlen=KEPT)
         self._came_s = 0.0
         self._stamp_ns: int | None = None
-        self._moved = NO_MOTION
 
     def told(self, velocity: Velocity) -> None:
         """The robot moves like this now; in lockstep until the next frame, however long its ttl."""
@@ -50,16 +49,16 @@ class FrameMotion:
     def observe(self, features: Features, now_s: float) -> Observation:
         """A frame with the distances of its moment and the motion since the frame before, and since it.
 
-        The same frame asked for again gives the same motion since the one before.
+        A frame asked for again, as a question about it was not answered in time, tells of no motion: that was
+        reckoned with already.
         """
         stamp_ns, newest = features.stamp_ns, self._ranges[-1]
-        if stamp_ns != self._stamp_ns:
-            before_ns, self._stamp_ns = self._stamp_ns, stamp_ns
-            self._moved = NO_MOTION if before_ns is None else self._reckoning.between(before_ns, stamp_ns)
+        before_ns, self._stamp_ns = self._stamp_ns, stamp_ns
+        moved = NO_MOTION if before_ns is None else self._reckoning.between(before_ns, stamp_ns)
         if abs(newest.stamp_ns - stamp_ns) > OLDEST_NS:
-            return Observation(features, newest, self._moved)
+            return Observation(features, newest, moved)
         beside = min(self._ranges, key=lambda ranges: abs(ranges.stamp_ns - stamp_ns))
-        return Observation(features, beside, self._moved, self._since(stamp_ns, newest, now_s))
+        return Observation(features, beside, moved, self._since(stamp_ns, newest, now_s))
 
     def _since(self, stamp_ns: int, newest: Ranges, now_s: float) -> Motion:
         waited_s = 0.0 if newest.lockstep else now_s - self._came_s

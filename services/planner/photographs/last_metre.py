@@ -45,9 +45,10 @@ class LastMetre:
 
     def _locate(self, observation: Observation) -> None:
         """Where the robot is relative to the place's node: by what it sees around, else by how it moved."""
+        self._here = self._here.moved(observation.moved)
         graph, node = self._maps.graph, self._place.node
         seen = claims(graph, self._matcher.match(graph.nearest(node, COMPARED)), self._profile)
-        self._here = resected(graph, seen, node, NEAR_NODES) or self._here.moved(observation.moved)
+        self._here = resected(graph, seen, node, NEAR_NODES) or self._here
 
     def _go_on(self, observation: Observation) -> Decision | None:
         """The next step to the spot; None where it is reached, or nothing free leads on."""

@@ -40,7 +40,9 @@ class Whereabouts:
     _since: Motion = field(default=NO_MOTION, init=False)
 
     def observe(self, features: Features, moved: Motion) -> None:
-        """A new frame, and how the robot moved since the one before."""
+        """A frame, and how the robot moved since the one before; none is the one before itself."""
+        if self.now is not None and (self.now.seq, self.now.stamp_ns) == (features.seq, features.stamp_ns):
+            return
         self.before, self.now = self.now, features
         self._since = self._since.then(moved)
         if self._left is None or self._since.way_m >= APART_M:

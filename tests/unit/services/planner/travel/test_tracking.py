@@ -1,5 +1,6 @@
 """A robot does not jump: what looks alike elsewhere is not where it is."""
 
+import itertools
 import math
 from types import SimpleNamespace
 
@@ -10,11 +11,11 @@ from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT, THESIS
 from services.planner.travel.doubts import DOUBTS, LOOK_AROUND_M
 from services.planner.travel.tracking import PATIENCE_FRAMES, Tracker
-from services.planner.travel.whereabouts import Whereabouts
+from services.planner.travel.whereabouts import APART_M, Whereabouts
 from shared.mapgraph.local.displacement import Displacement
 from shared.messages.maps import UpdateNode
 from shared.messages.sensors import Ranges
-from shared.motion.motion import Motion
+from shared.motion.motion import NO_MOTION, Motion
 from tests.unit.services.planner.travel.seen import Maps, Matcher, by_node, features, match
 from tests.unit.shared.mapgraph.local.grid import grid
 
@@ -23,6 +24,7 @@ RANGES = Ranges(robot="r1", angles_rad=(0.0,) * 12, distances_m=(4.0,) * 12, max
 HERE = by_node(match(0, 0.0, 0.0, 60), match(1, 1.0, 0.0, 50))
 ELSEWHERE = by_node(match(9, 0.0, 0.0, 180), match(10, 1.0, 0.0, 120))
 
+FRAMES = itertools.count()
 TWIN = by_node(match(9, 0.0, 0.0, 80), match(10, 1.0, 0.0, 60))
 
 
@@ -43,8 +45,8 @@ def tracker(matcher):
     return standing
 
 
-def drive(tracker, moved_m=(0.12, 0.0), seq=0):
-    tracker.observe(Observation(features(seq), RANGES, Motion(*moved_m)))
+def drive(tracker, moved_m=(0.12, 0.0)):
+    tracker.observe(Observation(features(next(FRAMES)), RANGES, Motion(*moved_m)))
 
 
 def test_a_look_alike_elsewhere_is_not_where_the_robot_is(tracker):
@@ -52,8 +54,8 @@ def test_a_look_alike_elsewhere_is_not_where_the_robot_is(tracker):
 
 
 def test_while_only_look_alikes_show_it_waits_for_what_is_near(tracker):
-    for seq in range(5):
-        drive(tracker, seq=seq)
+    for _ in range(5):
+        drive(tracker)
         assert tracker.possible(ELSEWHERE) == {}
     assert set(tracker.possible(HERE | ELSEWHERE)) == {0, 1}
 
@@ -73,7 +75,7 @@ def seen_from(x_m, here, elsewhere):
 def after_views(tracker, here, elsewhere, *, of_map=True, way_m=LOOK_AROUND_M):
     """Whether what counts of the last of some views, so far apart, is elsewhere."""
     for number in range(1, DOUBTS + 1):
-        drive(tracker, (way_m, 0.0), number)
+        drive(tracker, (way_m, 0.0))
         found = tracker.possible(seen_from(number * way_m, here, elsewhere), of_map=of_map)
     return {node >= AWAY for node in found}
 
@@ -128,8 +130,8 @@ def test_two_views_that_tell_no_direction_well_are_still_of_one_place(tracker, m
 
 
 def test_one_that_was_carried_smoothly_is_found_after_a_while(tracker):
-    for seq in range(PATIENCE_FRAMES):
-        drive(tracker, (0.0, 0.0), seq)
+    for _ in range(PATIENCE_FRAMES):
+        drive(tracker, (0.0, 0.0))
         seen = tracker.possible(ELSEWHERE)
     assert set(seen) == {9, 10}
 
@@ -196,9 +198,9 @@ def test_the_thesis_takes_every_match(matcher):
 
 def test_likeness_is_a_share_of_what_two_frames_in_a_row_have_in_common(matcher):
     tracker = tracker_of(matcher)
-    drive(tracker, seq=1)
+    drive(tracker)
     assert tracker.likeness(100) == 1.0
-    drive(tracker, seq=2)
+    drive(tracker)
     assert tracker.likeness(100) == 0.5
 
 
@@ -207,7 +209,7 @@ def test_likeness_is_a_share_of_what_a_frame_from_beside_it_has_in_common_while_
     asked = []
     tracker = tracker_of(SimpleNamespace(match=lambda _, __, targets: asked.append(targets) or {}))
     for seq, moved_m in enumerate([0.0, 0.04, 0.04, 0.0, 0.0, 0.01]):
-        drive(tracker, (moved_m, 0.0), seq)
+        tracker.observe(Observation(features(seq), RANGES, Motion(moved_m)))
     tracker.likeness(100)
     ((apart,),) = asked
     assert apart.seq == 0, "9 cm back; all later ones are nearer than a hand's breadth"
@@ -256,7 +258,7 @@ def test_the_next_mission_begins_where_the_last_one_ended_if_the_view_agrees(mat
     drive(last)
     new = Tracker(DEFAULT, Maps(GRAPH), matcher, certain=False, whereabouts=at.of("flat"))
     matcher.inliers, matcher.near = alike, near
-    drive(new, (0.0, 0.0), seq=1)
+    drive(new, (0.0, 0.0))
     assert set(new.possible(HERE | ELSEWHERE)) == shown
 
 
@@ -267,6 +269,14 @@ def test_who_finds_itself_at_one_of_several_look_alikes_knows_that_it_guessed(ma
     drive(tracker)
     assert set(tracker.possible(seen)) == {9, 10}
     assert at.guessed == guessed
+
+
+def test_a_frame_that_is_asked_for_again_is_not_the_one_before_itself():
+    at, (before, now, again) = Whereabouts(), map(features, (1, 2, 2))
+    for frame, moved in ((before, NO_MOTION), (now, Motion(APART_M, 0.0)), (again, NO_MOTION)):
+        at.observe(frame, moved)
+    assert at.before is before
+    assert at.apart is before
 
 
 def test_another_map_tells_nothing_of_where_the_robot_is():
