@@ -99,18 +99,20 @@ class Candidates:
             return self.plain
         return any(node == best or node in graph.neighbours(best) for best in self.places[0].nodes[:NEAREST])
 
-    def may_be_seen(self, goal: NodeMatch, here: Displacement | None) -> bool:
-        """Whether the picture in sight can be at its place, by where the robot is; True where nobody knows.
+    def is_elsewhere(self, goal: NodeMatch, here: Displacement | None) -> bool:
+        """Whether the map has the picture elsewhere than it seems to be in sight; False where nobody knows.
+
+        Doors along a corridor repeat: a period before its place a picture seems to have been taken here.
 
         Args:
             goal: the frame against the picture.
             here: where the frame was taken.
         """
         if not (self.plain and self.places) or here is None or self.is_near(here.node_id):
-            return self.plain
+            return False
         nearest = self.places[0].nodes[0]
         seen = goal.model_copy(update={"yaw_rad": (goal.yaw_rad or 0.0) + self._yaw_rad[nearest]})
-        return not elsewhere(self._maps.graph, {nearest: seen}, here, self._profile)
+        return bool(elsewhere(self._maps.graph, {nearest: seen}, here, self._profile))
 
     def shows_another(self, view: Matches, here: Displacement | None) -> Hypothesis | None:
         """The place that a view is of, where the goal's is one alone and it is not that: a look-alike.

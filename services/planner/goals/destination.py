@@ -137,11 +137,13 @@ class GoalDestination:
 
         After it was lost on such a way it goes a part of it by the map first.
         """
-        return not self._setbacks.any_on_a_straight_way and self.candidates.may_be_seen(goal, here)
+        free = self.candidates.plain and not self._setbacks.any_on_a_straight_way
+        return free and not self.candidates.is_elsewhere(goal, here)
 
-    def sees(self, goal: NodeMatch, here: Displacement | None) -> None:
-        """What tells places apart is looked for in every frame."""
+    def sees(self, goal: NodeMatch, here: Displacement | None) -> bool:
+        """What tells places apart is looked for in every frame; a look-alike is not gone by."""
         self.places.sees(goal, here)
+        return not self.candidates.is_elsewhere(goal, here)
 
     def lies(self, node_id: int) -> Displacement | None:
         """Where the picture was taken, relative to a node that it resembles."""

@@ -93,8 +93,8 @@ class Destination(Protocol):
             here: where the robot is; None where nobody knows.
         """
 
-    def sees(self, goal: NodeMatch, here: Displacement | None) -> None:
-        """A frame was compared with the picture.
+    def sees(self, goal: NodeMatch, here: Displacement | None) -> bool:
+        """A frame was compared with the picture: whether it can be that, where the robot is.
 
         Args:
             goal: the frame against the picture.
@@ -152,8 +152,9 @@ class NodeDestination:
         """Who goes to nodes is sure of where it is, or lost."""
         return ()
 
-    def sees(self, _goal: NodeMatch, _here: Displacement | None) -> None:
+    def sees(self, _goal: NodeMatch, _here: Displacement | None) -> bool:
         """There is no picture."""
+        return False
 
     def lies(self, _node_id: int) -> Displacement | None:
         """There is no picture."""

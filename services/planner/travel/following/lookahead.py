@@ -47,8 +47,8 @@ class Lookahead:
         goal = {GOAL: seen.pop(GOAL)} if GOAL in seen else {}
         possible = self._tracker.possible(seen, of_map=of_map > 0)
         self._tracker.confirm(possible)
-        if goal:
-            self._destination.sees(goal[GOAL], self._tracker.here)
+        if goal and not self._destination.sees(goal[GOAL], self._tracker.here):
+            goal = {}
         return {**possible, **goal}
 
     def is_at(self, waypoint: int, match: NodeMatch | None) -> bool:

@@ -83,12 +83,12 @@ def test_a_goal_in_sight_is_headed_for_beside_its_place_only():
     assert [places.is_near(node) for node in (1, 3, 12, None)] == [True, True, False, True]
 
 
-@pytest.mark.parametrize(("seen_m", "may"), [(4.8, True), (1.0, False)])
-def test_a_goal_seen_where_its_place_is_not_is_not_headed_for(seen_m, may):
+@pytest.mark.parametrize(("seen_m", "elsewhere"), [(4.8, False), (1.0, True)])
+def test_a_goal_seen_where_its_place_is_not_is_not_headed_for(seen_m, elsewhere):
     """The next of equal desks, a period nearer."""
     places, goal = candidates_of(FIRST), match(GOAL, -seen_m, 0.0)
-    assert places.may_be_seen(goal, Displacement(FAR)) == may
-    assert places.may_be_seen(goal, None)
+    assert places.is_elsewhere(goal, Displacement(FAR)) == elsewhere
+    assert not places.is_elsewhere(goal, None)
 
 
 def test_a_view_of_a_look_alike_is_no_arrival():
