@@ -1,4 +1,4 @@
-"""Whether a robot stands at a waypoint."""
+"""What is seen of waypoints ahead, and whether a robot stands at one."""
 
 from types import SimpleNamespace
 
@@ -11,8 +11,9 @@ from services.planner.travel.tracking import Tracker
 from shared.mapgraph.graph import MapGraph
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.view_range import openness
+from shared.mapgraph.routing import GOAL
 from shared.messages.matching import NodeMatch
-from tests.unit.services.planner.travel.seen import Maps, Matcher
+from tests.unit.services.planner.travel.seen import Maps, Matcher, features
 from tests.unit.shared.mapgraph.local.places import row
 
 NODE = 10
@@ -49,3 +50,14 @@ def test_who_came_to_a_node_and_sees_no_baseline_is_there_though_the_sun_took_ha
 )
 def test_without_that_it_is_not(here, seen):
     assert not stands(here, **seen)
+
+
+@pytest.mark.parametrize("may_be_it", [True, False])
+def test_a_goal_in_sight_that_cannot_be_it_is_not_seen(may_be_it):
+    maps = Maps(STREET)
+    tracker = Tracker(DEFAULT, maps, Matcher(), certain=False)
+    destination = SimpleNamespace(picture=features(), sees=lambda _goal, _here: may_be_it)
+    goal = NodeMatch(node_id=GOAL, status="ok", raw_matches=80, inliers=60, heading_rad=0.0, yaw_rad=0.0)
+    matcher = SimpleNamespace(match=lambda _nodes, _best_k, _pictures: {GOAL: goal})
+    seen = Lookahead(DEFAULT, maps, destination, set(), tracker).compare([NODE, GOAL], matcher)
+    assert (GOAL in seen) == may_be_it
