@@ -57,8 +57,9 @@ def drive(mission, steps):
     angles = tuple(k * math.tau / 12 for k in range(12))
     ranges = Ranges(robot="r1", seq=1, angles_rad=angles, distances_m=(4.0,) * 12, max_range_m=4.0)
     notes = []
-    for _ in range(steps):
-        notes += [note.kind for note in mission.decide(Observation(picture((0, 0, 0)), ranges)).notes]
+    for seq in range(steps):
+        frame = picture((0, 0, 0), seq)
+        notes += [note.kind for note in mission.decide(Observation(frame, ranges)).notes]
     return notes
 
 

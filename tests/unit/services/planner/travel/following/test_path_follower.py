@@ -84,7 +84,7 @@ def last_event(views):
         arrival_rad=DEFAULT.arrival.arrival_rad,
         aliased=False,
         cuts_corners=True,
-        sees=lambda *_: None,
+        sees=lambda *_: True,
     )
     follower = PathFollower(DEFAULT, maps, [GOAL], goal, set(), EdgeExperience(DEFAULT, maps), tracker)
     ranges = Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=(3.0,) * SECTORS, max_range_m=4.0)
@@ -128,7 +128,7 @@ def test_a_goal_that_does_not_show_from_the_last_node_is_headed_for_by_the_map()
     tracker = Tracker(DEFAULT, maps, Seen(), certain=False)
     tracker.stand_at(Displacement(0, spread_m=0.1))
     goal = SimpleNamespace(
-        picture=features(), arrival_rad=0.01, aliased=False, cuts_corners=True, sees=lambda *_: None,
+        picture=features(), arrival_rad=0.01, aliased=False, cuts_corners=True, sees=lambda *_: True,
         lies=lambda _: Displacement(0, y_m=2.0),
     )  # fmt: skip
     experience, unclear = EdgeExperience(DEFAULT, maps), {(GOAL, 0)}
@@ -150,7 +150,7 @@ def blind_steps(shows, path, free_m=3.0, steps=16, *, tried_again=False):
     tracker = Tracker(DEFAULT, maps, Matcher(), certain=False)
     tracker.stand_at(Displacement(0, spread_m=0.1))
     goal = SimpleNamespace(
-        picture=features(), arrival_rad=0.01, aliased=False, cuts_corners=True, sees=lambda *_: None,
+        picture=features(), arrival_rad=0.01, aliased=False, cuts_corners=True, sees=lambda *_: True,
         lies=lambda _: Displacement(3, x_m=1.0),
     )  # fmt: skip
     follower = PathFollower(DEFAULT, maps, [*path, GOAL], goal, set(), experience, tracker)
