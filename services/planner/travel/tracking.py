@@ -123,7 +123,7 @@ class Tracker:
         within = in_reach(self._maps.graph, view, self.here, self._profile)
         shown = self._sights.places(view)
         if shown and not any(node in within for place in shown for node in place.nodes):
-            self._forget("what stands here is of another place")
+            self._forget("the view at an arrival shows other places")
 
     def possible(self, matches: Matches, *, of_map: bool = False) -> Matches:
         """The matches that can be what they claim: those within reach, or of the likeliest place.
