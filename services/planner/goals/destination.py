@@ -132,13 +132,12 @@ class GoalDestination:
         closed, avoided = self._experience.unreachable, self._setbacks.avoided
         return {node: c + avoided.get(node, 0.0) for node, c in visible.items() if node not in closed}
 
-    def goes_straight(self, goal: NodeMatch, here: Displacement | None) -> bool:
+    def goes_straight(self) -> bool:
         """Not once it got stuck, for what shut the way is still there, nor once it went to a look-alike.
 
         After it was lost on such a way it goes a part of it by the map first.
         """
-        free = self.candidates.plain and not self._setbacks.any_on_a_straight_way
-        return free and not self.candidates.is_elsewhere(goal, here)
+        return self.candidates.plain and not self._setbacks.any_on_a_straight_way
 
     def sees(self, goal: NodeMatch, here: Displacement | None) -> bool:
         """What tells places apart is looked for in every frame; a look-alike is not gone by."""

@@ -85,13 +85,8 @@ class Destination(Protocol):
     def mistaken(self) -> tuple[Note, ...]:
         """The robot was not where it believed to be: what it learnt of places and edges was of others."""
 
-    def goes_straight(self, goal: NodeMatch, here: Displacement | None) -> bool:
-        """Whether the picture, which is in sight, may be headed for without a path.
-
-        Args:
-            goal: the frame against the picture.
-            here: where the robot is; None where nobody knows.
-        """
+    def goes_straight(self) -> bool:
+        """Whether the picture, which is in sight where it can be, may be headed for without a path."""
 
     def sees(self, goal: NodeMatch, here: Displacement | None) -> bool:
         """A frame was compared with the picture: whether it can be that, where the robot is.
@@ -140,7 +135,7 @@ class NodeDestination:
     def __init__(self, matcher: Matcher) -> None:
         self._matcher = matcher
 
-    def goes_straight(self, _goal: NodeMatch, _here: Displacement | None) -> bool:
+    def goes_straight(self) -> bool:
         """There is no picture to head for."""
         return False
 

@@ -108,11 +108,10 @@ class Travel:
         if self.tracker.mistaken:
             self._notes += destination.mistaken()
         self._notes += destination.localised(seen, observation.ranges)
-        if goal is not None:
-            destination.sees(goal, self.tracker.here)
+        if goal is not None and destination.sees(goal, self.tracker.here):
             in_view = in_sight(goal, graph, observation.ranges, profile)
             free = in_view and not is_near_forbidden(graph, self.tracker.here, limits.forbidden)
-            if free and destination.goes_straight(goal, self.tracker.here):
+            if free and destination.goes_straight():
                 self._set_off([GOAL], Event.GOAL_IN_SIGHT)
                 return None
         wanted = destination.targets()

@@ -46,6 +46,11 @@ class Sights:
         graph, sure = self._maps.graph, self.claims(matches)
         return likely(graph, sure, hypotheses(graph, sure))
 
+    def is_within(self, reach: Matches, view: Matches) -> bool | None:
+        """Whether a view is likely of a place with nodes within reach; None where it shows no place."""
+        places = self.places(view)
+        return any(node in reach for place in places for node in place.nodes) if places else None
+
     def agreeing(self, within: Matches) -> Matches:
         """Without those that put the robot elsewhere than most of them do, though they are in reach."""
         places = hypotheses(self._maps.graph, self.claims(within))

@@ -121,8 +121,7 @@ class Tracker:
         if self.here is None:
             return
         within = in_reach(self._maps.graph, view, self.here, self._profile)
-        shown = self._sights.places(view)
-        if shown and not any(node in within for place in shown for node in place.nodes):
+        if self._sights.is_within(within, view) is False:
             self._forget("the view at an arrival shows other places")
 
     def possible(self, matches: Matches, *, of_map: bool = False) -> Matches:
@@ -245,13 +244,10 @@ class Tracker:
         """Whether this and earlier views show other places than that where the robot believes to be."""
         if self._certain:  # who maps sees what is in no map yet
             return False
-        shown = self._sights.places(matches)
-        if not shown:
-            return False
-        if any(node in within for place in shown for node in place.nodes):
+        is_here = self._sights.is_within(within, matches)
+        if is_here:
             self._doubts.settle()
-            return False
-        if not self._doubts.refute():
+        if is_here is not False or not self._doubts.refute():
             return False
         self._forget("several views show other places")
         return True

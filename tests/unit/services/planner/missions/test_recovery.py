@@ -148,11 +148,12 @@ def test_after_a_loss_the_goal_in_sight_is_headed_for_again_from_a_way_by_the_ma
     experience = EdgeExperience(DEFAULT, maps)
     goal = GoalDestination(DEFAULT, maps, matcher, picture(HALL), experience, Whereabouts())
     sight = NodeMatch(node_id=GOAL, raw_matches=60, inliers=35, status="ok", yaw_rad=0.0)
-    assert goal.goes_straight(sight, None)
+    assert goal.sees(sight, None)
+    assert goal.goes_straight()
     goal.setback(Setback(Event.WAYPOINT_LOST, None, GOAL, (GOAL,), "the goal not seen, S 35"))
-    assert not goal.goes_straight(sight, None)
+    assert not goal.goes_straight()
     goal.set_out()
-    assert goal.goes_straight(sight, None)
+    assert goal.goes_straight()
 
 
 def test_people_who_walk_about_are_passed_without_touching_them(explored):
