@@ -9,6 +9,7 @@ from services.features.matchers.mutual_ratio import MutualRatio
 from services.features.networks.attention import CONTEXT, Attention, Keypoints, context_of
 from services.features.networks.own_weights import own_weights
 from services.features.networks.runtime import device_named, quick_products
+from services.features.networks.side_by_side import SideBySide
 from services.features.pipeline.interfaces import (
     Distance,
     FeatureSet,
@@ -47,6 +48,7 @@ class AttentionMatcher:
         else:
             network = Attention(UNTRAINED_WIDTH)
         self._network = network.to(self._device).eval()
+        self._side_by_side = SideBySide(self._device)
 
     def match(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[Matched]:
         """Matches with each other frame; beyond LOOKED_AT frames those of nearest neighbours."""
@@ -54,13 +56,14 @@ class AttentionMatcher:
         ranked = sorted(range(len(others)), key=lambda k: (-len(quick[k]), k))[:LOOKED_AT]
         looked_at = [number for number in ranked if len(others[number])]
         if len(query) and looked_at:
-            found = self._matched(query, [others[number] for number in looked_at])
+            chosen = [others[number] for number in looked_at]
+            found = self._side_by_side.map(lambda part: self._matched(query, part), chosen)
             for number, matched in zip(looked_at, found, strict=True):
                 quick[number] = matched
         return quick
 
     def _matched(self, query: FeatureSet, others: Sequence[FeatureSet]) -> list[Matched]:
-        """All at once: one picture is prepared once, and a large product takes less time than small ones."""
+        """Of pictures looked at at once: a large product takes less time than small ones."""
         found = [Matched.alike(np.zeros((0, 2), dtype=np.intp))] * len(others)
         with torch.inference_mode(), quick_products(self._device):
             numbers, answer = self._network.last(self._keypoints([query]), self._keypoints(others), HOPELESS)
