@@ -27,7 +27,7 @@ import { locked } from "./page/session.js";
 import { TEXT } from "./page/text.js";
 import { Views } from "./page/views.js";
 
-const SERVICES = ["simulator", "features", "map_store", "planner", "drive", "dispatch", "gateway"];
+const SERVICES = ["simulator", "features", "map_store", "planner", "drive", "gateway"]; // no robot drives without
 const REAL = ["ros", "camera"]; // in whose place no simulator is missed
 const BODY = ["odometry", "imu", "battery", "camera"];
 const DEFAULT_ROBOT = "r1";
@@ -40,6 +40,7 @@ let turnedAway = false;
 let shownMap = "";
 let saying = 0;
 
+const met = new Set(); // other services, which are missed once they were there
 const where = () => ({ robot, map: maps.name });
 const panorama = new Panorama();
 const polar = new Polar();
@@ -151,7 +152,8 @@ function showServices(counts) {
   const told = Object.keys(counts || {});
   const real = REAL.some((name) => told.includes(name)) && !counts.simulator;
   const expected = SERVICES.filter((name) => name !== "simulator" || !real);
-  const names = [...expected, ...told.filter((name) => !SERVICES.includes(name))];
+  for (const name of told) if (!SERVICES.includes(name)) met.add(name);
+  const names = [...expected, ...met];
   $("services").replaceChildren(...names.map((name) => {
     const count = counts?.[name] || 0;
     const state = counts === null ? "unknown" : count ? "alive" : "missing";

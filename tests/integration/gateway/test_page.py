@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from shared.bus import Bus, wait_until
+from shared.bus import Bus, open_bus, wait_until
 from shared.messages.body import Battery, Imu, Odometry
 from shared.messages.camera import CameraState
 from shared.messages.missions import Event, MissionStatus
@@ -264,6 +264,15 @@ def test_what_a_robot_says_of_its_body_is_shown(page: "Page", robot_bus: Bus) ->
         return all(part in page.inner_text("#body-facts") for part in expected)
 
     assert wait_until(shown, WAIT_S), page.inner_text("#body-facts")
+
+
+def test_a_service_that_not_everybody_runs_is_missed_once_it_was_there(page: "Page", endpoint: str) -> None:
+    page.wait_for_selector("#services li.missing:has-text('simulator')", timeout=WAIT_MS)
+    assert page.locator("#services li:has-text('dispatch')").count() == 0
+    with open_bus(endpoint) as bus:
+        bus.announce("dispatch")
+        page.wait_for_selector("#services li.alive:has-text('dispatch')", timeout=WAIT_MS)
+    page.wait_for_selector("#services li.missing:has-text('dispatch')", timeout=WAIT_MS)
 
 
 def test_no_simulator_is_missed_where_a_real_robot_is(page: "Page", robot_bus: Bus) -> None:
