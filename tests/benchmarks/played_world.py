@@ -26,8 +26,8 @@ class PlayedWorld:
         for node, each in features.items():
             self._nodes.put(node, each)
 
-    def found(self, goal, node_ids=(), best_k=0):
-        request = MatchRequest(map="map", node_ids=tuple(node_ids), best_k=best_k)
+    def found(self, goal, node_ids=(), best_k=0, targets=()):
+        request = MatchRequest(map="map", node_ids=tuple(node_ids), best_k=best_k, targets=tuple(targets))
         raw = match_candidates(self._pipeline, request, goal, self._nodes)
         results = verify_candidates(self._pipeline, request, raw)
         looked = look_at_nodes(
