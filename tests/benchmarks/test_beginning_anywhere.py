@@ -71,9 +71,8 @@ def drive(played, pipeline, camera, way):
         before = pose
         tracker.observe(Observation(eyes.view, RANGES, moved=motion))
         of_map = COMPARED if tracker.here is None else tracker.compared
-        tracker.confirm(
-            tracker.possible(eyes.match(tracker.nearby(), of_map), of_map=of_map > 0),
-        )
+        seen = eyes.match(dict.fromkeys([*tracker.nearby(), *tracker.elsewhere]), of_map)
+        tracker.confirm(tracker.possible(seen, of_map=of_map > 0))
         found.append(is_wrong(played, tracker.here, pose))
     return found
 

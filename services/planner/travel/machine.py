@@ -101,7 +101,8 @@ class Travel:
         destination, graph, profile = self._destination, self._maps.graph, self._profile
         limits = self._maps.limits()
         pictures = () if destination.picture is None else (destination.picture,)
-        seen = self._matcher.match(self.tracker.nearby(), destination.compared, pictures)
+        nodes = list(dict.fromkeys([*self.tracker.nearby(), *self.tracker.elsewhere]))
+        seen = self._matcher.match(nodes, destination.compared, pictures)
         goal = seen.pop(GOAL, None)
         seen = self.tracker.possible(seen, of_map=True)
         self.tracker.confirm(seen)

@@ -16,6 +16,7 @@ from services.planner.profiles import Profile
 from services.planner.similarity import similarity
 from services.planner.travel.doubts import Doubts
 from services.planner.travel.following.waypoints import is_at
+from services.planner.travel.rivals import Rivals
 from services.planner.travel.sights import Sights
 from services.planner.travel.whereabouts import Whereabouts
 from shared.mapgraph.local.displacement import Displacement
@@ -77,7 +78,7 @@ class Tracker:
         self._resumes = self._at.here is not None
         self._strict = profile.sensing.similarity == "raw"
         self._lost_frames = 0
-        self._doubts = Doubts()
+        self._doubts, self._rivals = Doubts(), Rivals(profile, maps, self._sights, self._at)
         self.mistaken = False
         self._ranges: Ranges | None = None
 
@@ -95,6 +96,7 @@ class Tracker:
         self._at.observe(observation.features, observation.moved)
         self._ranges, self.mistaken = observation.ranges, False
         self._doubts.went(observation.moved)
+        self._rivals.went(observation.moved)
         if self.here is not None:
             self.here = self.here.moved(observation.moved)
 
@@ -105,12 +107,19 @@ class Tracker:
     @property
     def compared(self) -> int:
         """Nodes of the whole map to be compared with a frame on the way: none, but for now and then."""
-        return COMPARED if self._doubts.are_due and not (self._strict or self._certain) else 0
+        due = self._doubts.are_due or self._rivals.are_due
+        return COMPARED if due and not (self._strict or self._certain) else 0
+
+    @property
+    def elsewhere(self) -> list[int]:
+        """Nodes of other places where the robot may be, to be compared with a frame now and then."""
+        return self._rivals.nodes()
 
     def stand_at(self, here: Displacement | None) -> None:
         """It is known where the robot is, or not any more."""
         self.here, self._lost_frames = here, 0
         self._doubts.settle()
+        self._rivals.end()
 
     def shown(self, view: Matches) -> None:
         """A frame surely shows where it was taken: who sees only what lies elsewhere was mistaken.
@@ -139,6 +148,8 @@ class Tracker:
         if self._resumes:
             self._resume()
         if self.here is not None and self.here.node_id in graph.nodes:
+            if of_map and not self._certain:
+                self._choose(self.here, matches)
             within = in_reach(graph, matches, self.here, self._profile)
             if of_map and self._is_refuted(matches, within):
                 return self._likeliest(matches)
@@ -252,6 +263,18 @@ class Tracker:
         self._forget("several views show other places")
         return True
 
+    def _choose(self, here: Displacement, matches: Matches) -> None:
+        """Go by another place that looked alike at first, where the views since speak for that."""
+        self.here = self._rivals.choose(here, matches)
+        if self.here is not here:
+            log.info(
+                "about node %d, not about node %d: views since tell them apart",
+                self.here.node_id,
+                here.node_id,
+            )
+            self._doubts.settle()
+            self.mistaken = True
+
     def _forget(self, why: str) -> None:
         """The robot never was where it believed to be."""
         log.info("not about node %d: %s", self.here.node_id if self.here else -1, why)
@@ -264,5 +287,6 @@ class Tracker:
         if not found or (self._certain and len(found) > 1):
             return {}
         self._at.guessed = len(found) > 1
+        self._rivals.begin(found, matches)
         log.info("about node %d, by what is seen", found[0].nodes[0])
         return {node: matches[node] for node in found[0].nodes}

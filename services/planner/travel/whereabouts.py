@@ -12,6 +12,14 @@ APART_M = 0.05
 where a picture was taken. Where it stands still two frames are one picture, and share more than any other."""
 
 
+@dataclass(frozen=True)
+class Rival:
+    """Where else the robot may be, and how likely that is, as a multiple of that by which it goes."""
+
+    here: Displacement
+    odds: float = 1.0
+
+
 @dataclass
 class Whereabouts:
     """Kept by whoever starts missions, changed by the tracker of the one that runs.
@@ -24,6 +32,7 @@ class Whereabouts:
         map: of which it tells.
         here: where the robot is relative to a node; None while nobody knows.
         guessed: it was found at one of several places that look alike, and followed from there.
+        rivals: the others of these places, followed as well.
         now, before: the frame that says so, and the one before it.
         apart: the latest of the frames that the robot left `APART_M` behind, and somewhat more.
         look_alikes: how often rooms of the map look alike in everything, as the missions in it found out.
@@ -32,6 +41,7 @@ class Whereabouts:
     map: str = ""
     here: Displacement | None = None
     guessed: bool = False
+    rivals: list[Rival] = field(default_factory=list)
     now: Features | None = None
     before: Features | None = None
     apart: Features | None = None

@@ -41,7 +41,8 @@ class Lookahead:
         """Compare the frame with the first waypoints, nodes around the robot, and the goal."""
         ahead = [node for node in dict.fromkeys(waypoints[:WINDOW]) if node != GOAL]
         picture = self._destination.picture
-        nodes = [*ahead, *(node for node in self._tracker.nearby()[:BESIDE] if node not in ahead)]
+        around = [*self._tracker.nearby()[:BESIDE], *self._tracker.elsewhere]
+        nodes = list(dict.fromkeys([*ahead, *around]))
         of_map = self._tracker.compared
         seen = matcher.match(nodes, of_map, () if picture is None else (picture,))
         goal = {GOAL: seen.pop(GOAL)} if GOAL in seen else {}
