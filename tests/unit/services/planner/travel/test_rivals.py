@@ -7,7 +7,7 @@ import pytest
 
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT
-from services.planner.travel.rivals import LOOK_M, SAME_M, SHARPNESS, TAKES_OVER
+from services.planner.travel.rivals import LOOK_M, SHARPNESS, TAKES_OVER
 from services.planner.travel.tracking import Tracker
 from services.planner.travel.whereabouts import Rival, Whereabouts
 from shared.mapgraph.local.displacement import Displacement
@@ -130,8 +130,7 @@ def test_a_place_whose_node_is_gone_is_forgotten(robot):
     assert robot.at.rivals == []
 
 
-@pytest.mark.parametrize(("ahead_m", "left"), [(0.0, 0), (2.0 * SAME_M, 1)])
-def test_what_comes_to_the_place_by_which_the_robot_goes_is_no_other(robot, ahead_m, left):
-    robot.at.rivals = [Rival(robot.tracker.here.moved(Motion(ahead_m, 0.0)))]
+def test_what_comes_to_the_place_by_which_the_robot_goes_is_no_other(robot):
+    robot.at.rivals.append(Rival(robot.tracker.here))
     robot.sees(EQUAL, EQUAL)
-    assert len(robot.at.rivals) == left
+    assert [rival.here.node_id < AWAY for rival in robot.at.rivals] == [True]
