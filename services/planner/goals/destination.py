@@ -102,7 +102,7 @@ class GoalDestination:
         self.places = GoalPlaces(self.candidates, self._at.look_alikes)
         plain, strict = self.candidates.plain, profile.sensing.similarity == "raw"
         self.aliased = not plain or (self._node is not None and not strict)  # its look-alikes are not known
-        self.arrival_rad = profile.arrival.arrival_rad * (1.0 if plain else CLOSER_SHARE)
+        self.arrival_rad = self._arrival_rad()
         self._lies = dict(self._seen_from(found))
         self._targets = self._reachable(found)
         self._targets |= dict.fromkeys(self.places.without(self._targets), LAST_EDGE_M)
@@ -237,11 +237,16 @@ class GoalDestination:
 
     def _settle(self, ruling: Ruling) -> str:
         """Take over what the places say: without any left there are no targets."""
-        if self.places.looks_again:
-            self.arrival_rad = self._profile.arrival.arrival_rad * CLOSER_SHARE * CLOSEST_SHARE
+        self.arrival_rad = self._arrival_rad()
         if ruling.failure:
             self._failure, self._targets = (ruling.failure, ruling.why), {}
         return ruling.why
+
+    def _arrival_rad(self) -> float:
+        """Disparity that is arrival: less where places look alike, and least for another look."""
+        share = 1.0 if self.candidates.plain else CLOSER_SHARE
+        share *= CLOSEST_SHARE if self.places.looks_again else 1.0
+        return self._profile.arrival.arrival_rad * share
 
     def _seen_from(self, found: Matches) -> Iterator[tuple[int, Displacement]]:
         graph = self._maps.graph

@@ -5,7 +5,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 from services.planner.goals.picture_levels import largest, levels
-from services.planner.look_alikes import LookAlikes
+from services.planner.look_alikes import FITS_LEVELS, MAY_FIT_LEVELS, LookAlikes
 from shared.mapgraph.local.hypotheses import Hypothesis
 from shared.messages.arrays import Array
 
@@ -115,6 +115,10 @@ class PlaceEvidence:
     def fits(self, place: Hypothesis, known: LookAlikes) -> bool:
         """Whether the goal differs from a place as little as from the right one."""
         return known.fits(self._differ().get(place, math.inf))
+
+    def may_fit(self, place: Hypothesis) -> bool:
+        """Whether it differs by more than a right place does from 3 cm, but by no more than some from 5."""
+        return FITS_LEVELS < self._differ().get(place, math.inf) <= MAY_FIT_LEVELS
 
     def told(self) -> str:
         """How much the goal differs at each place where that is known, for people, to end a sentence with."""

@@ -63,6 +63,7 @@ class GoalPlaces:
         self._ways: Counter[Hypothesis] = Counter()
         self._shut: set[Hypothesis] = set()
         self._again: Hypothesis | None = None
+        self._looked_nearer = set[Hypothesis]()
         self._has_looked_again = False
 
     @property
@@ -79,7 +80,8 @@ class GoalPlaces:
         if not self._candidates.places:
             return dict(targets)
         places = self._open()
-        comes_first = self._evidence.risk(self._known, self._unseen(places[1:])) <= EQUAL_RISK
+        risk = self._evidence.risk(self._known, self._unseen(places[1:]))
+        comes_first = self.looks_again or risk <= EQUAL_RISK
         later = {place: int(place in self._candidates.unlikely) for place in places}
         if comes_first:
             later |= {place: later[place] + 1 for place in places[1:]}
@@ -138,6 +140,10 @@ class GoalPlaces:
         if place is None:
             return Ruling()
         self._evidence.visited(place, visit)
+        if self._may_fit_from_nearer(place):
+            self._again = place
+            self._looked_nearer.add(place)
+            return Ruling(f"{visit.likeness:.0%} alike: a look from nearer by{self._evidence.told()}")
         return self._judge(place)
 
     def lost(self, node: int | None) -> Ruling:
@@ -176,11 +182,16 @@ class GoalPlaces:
         return replace(ruling, why=f"{WAYS_TRIED} ways to node {place.nodes[0]} failed; {ruling.why}")
 
     def _open(self) -> list[Hypothesis]:
-        """Places to go to: those not visited yet, then that to look at again, then the best one."""
+        """Places to go to: that to look at again, those not visited yet, or the best one."""
         if self._candidates.plain:
             return self._candidates.places
-        best = self._again or self._evidence.best()
-        return self._left() or ([] if best is None else [best])
+        again, best = [] if self._again is None else [self._again], self._evidence.best()
+        return again + self._left() or ([] if best is None else [best])
+
+    def _may_fit_from_nearer(self, place: Hypothesis) -> bool:
+        """Whether a place differs by little more than a right one does: once, while others are left."""
+        new = self._again is None and place not in self._looked_nearer
+        return new and self._evidence.may_fit(place) and bool(self._left())
 
     def _left(self) -> list[Hypothesis]:
         """Places worth going to: one missed before, which differs more than another does, is none.
@@ -201,7 +212,7 @@ class GoalPlaces:
         return place in self._evidence.visits and place != self._again
 
     def _judge(self, here: Hypothesis) -> Ruling:
-        if here == self._again:
+        if here == self._again or self._left():
             self._again = None
         visits, best, left = self._evidence.visits, self._evidence.best(), self._left()
         names = self._candidates.names
