@@ -212,9 +212,9 @@ class GoalPlaces:
         return place in self._evidence.visits and place != self._again
 
     def _judge(self, here: Hypothesis) -> Ruling:
-        if here == self._again or self._left():
-            self._again = None
         visits, best, left = self._evidence.visits, self._evidence.best(), self._left()
+        if left or here == self._again:
+            self._again = None
         names = self._candidates.names
         if left:
             alike = f"{visits[here].likeness:.0%} alike; " if here in visits else ""

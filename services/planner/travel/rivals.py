@@ -14,7 +14,7 @@ from services.planner.travel.following.last_leg import reckoned
 from services.planner.travel.sights import Sights
 from services.planner.travel.whereabouts import Rival, Whereabouts
 from shared.mapgraph.local.displacement import Displacement
-from shared.mapgraph.local.hypotheses import Hypothesis, hypotheses
+from shared.mapgraph.local.hypotheses import Hypothesis
 from shared.motion.motion import Motion
 
 LOOK_M = 0.5
@@ -52,9 +52,11 @@ class Rivals:
 
     def nodes(self) -> list[int]:
         """Nodes around each of them, to be compared with that view whatever resembles it more."""
+        if not self.are_due:
+            return []
         graph, profile = self._maps.graph, self._profile
         around = [nodes_nearby(graph, rival.here, profile, AROUND) for rival in self._at.rivals]
-        return list(dict.fromkeys(node for nodes in around for node in nodes)) if self.are_due else []
+        return list(dict.fromkeys(node for nodes in around for node in nodes))
 
     def begin(self, places: Sequence[Hypothesis], matches: Matches) -> None:
         """The robot goes by the first of some places at which a frame can have been taken."""
@@ -101,9 +103,8 @@ class Rivals:
 
     def _look(self, rival: Rival, matches: Matches) -> tuple[Rival, int]:
         """A place as the view corrects it, and the matches that speak for it."""
-        graph = self._maps.graph
-        within = in_reach(graph, matches, rival.here, self._profile)
-        found = hypotheses(graph, self._sights.claims(within))
+        within = in_reach(self._maps.graph, matches, rival.here, self._profile)
+        found = self._sights.groups(within)
         if not found:
             return rival, 0
         best = max(found, key=lambda place: place.core)

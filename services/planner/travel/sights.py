@@ -46,6 +46,10 @@ class Sights:
         graph, sure = self._maps.graph, self.claims(matches)
         return likely(graph, sure, hypotheses(graph, sure))
 
+    def groups(self, matches: Matches) -> list[Hypothesis]:
+        """Nodes that agree on where the frame was taken, those with most support first."""
+        return hypotheses(self._maps.graph, self.claims(matches))
+
     def is_within(self, reach: Matches, view: Matches) -> bool | None:
         """Whether a view is likely of a place with nodes within reach; None where it shows no place."""
         places = self.places(view)
@@ -53,8 +57,7 @@ class Sights:
 
     def agreeing(self, within: Matches) -> Matches:
         """Without those that put the robot elsewhere than most of them do, though they are in reach."""
-        places = hypotheses(self._maps.graph, self.claims(within))
-        away = {node for place in places[1:] for node in place.nodes}
+        away = {node for place in self.groups(within)[1:] for node in place.nodes}
         return {node: match for node, match in within.items() if node not in away}
 
     def resected(
