@@ -7,7 +7,7 @@ from functools import cache, reduce
 import numpy as np
 import numpy.typing as npt
 
-from services.planner.mapping.floor_views import OCCLUDED, FloorViews
+from services.planner.mapping.floor_views import OCCLUDED, FloorViews, Views
 from services.planner.profiles import Profile
 from services.planner.surroundings import free_ways_m
 from shared.mapgraph.frontiers import SECTOR_RAD, frontier_sectors, mark_explored, sector_rad
@@ -55,10 +55,11 @@ def without_poor_directions(graph: MapGraph, root: int, profile: Profile, views:
     if not covers_m:
         return []
     poses = _poses_around(graph, root)
+    seen = views.around(poses, covers_m)
     near = [n for n, pose in poses.items() if np.linalg.norm(pose.position_m) < (AHEAD[-1] + 2.0) * covers_m]
     changed = []
     for node in (graph.nodes[node_id] for node_id in near):
-        gains = _gains(graph, poses, node, covers_m, views)
+        gains = _gains(graph, poses, node, covers_m, views, seen)
         poor = [sector for sector, gain in gains.items() if gain < profile.mapping.gain_min]
         if poor:
             changed.append(reduce(mark_explored, poor, node))
@@ -98,7 +99,8 @@ def best_sector(
     node, covers_m = graph.nodes[node_id], covered_m(graph, node_id, profile)
     gains = dict.fromkeys(sectors, 1.0)
     if covers_m and sectors:
-        worths = _gains(graph, _poses_around(graph, node_id), node, covers_m, views)
+        poses = _poses_around(graph, node_id)
+        worths = _gains(graph, poses, node, covers_m, views, views.around(poses, covers_m))
         gains = {sector: worths[sector] for sector in sectors}
     return max(gains, key=worth, default=None)
 
@@ -123,7 +125,7 @@ def gain_here(
     spot = np.array([here.x_m, here.y_m])
     new = _new_floor_m(known_m, spot, covers_m)
     if covers_m <= VIEWED_SHARE * views.range_m:
-        return _gain(views.weights(new, views.around(poses), covers_m), covers_m)
+        return _gain(views.weights(new, views.around(poses, covers_m), covers_m), covers_m)
     return _gain(_weights(new - spot, here.yaw_rad, np.array(free_ways_m(ranges, profile))), covers_m)
 
 
@@ -132,14 +134,18 @@ def _poses_around(graph: MapGraph, node_id: int) -> dict[int, RelativePose]:
 
 
 def _gains(
-    graph: MapGraph, poses: Mapping[int, RelativePose], node: Node, covers_m: float, views: FloorViews
+    graph: MapGraph,
+    poses: Mapping[int, RelativePose],
+    node: Node,
+    covers_m: float,
+    views: FloorViews,
+    seen: Views,
 ) -> dict[int, float]:
     sectors = frontier_sectors(node)
     if not sectors:
         return {}
     known_m, own = _known_m(graph, poses, node.node_id, covers_m), poses[node.node_id]
     free_m = node.free_m or (covers_m,) * SECTORS
-    seen = views.around(poses)
 
     def weights(floor_m: FloatArray) -> FloatArray:
         if views.cover(node.node_id) and covers_m <= VIEWED_SHARE * views.range_m:

@@ -45,8 +45,8 @@ def read(distances_m):
     return Ranges(robot="r1", angles_rad=ANGLES_RAD, distances_m=tuple(distances_m), max_range_m=4.0)
 
 
-def counts(views, *floor_m, poses=None):
-    return views.weights(np.array(floor_m), views.around(poses or {0: pose()}), COVERS_M).tolist()
+def counts(views, *floor_m, poses=None, covers_m=COVERS_M):
+    return views.weights(np.array(floor_m), views.around(poses or {0: pose()}, covers_m), covers_m).tolist()
 
 
 def test_floor_that_a_beam_passed_over_counts_in_full():
@@ -65,6 +65,12 @@ def test_behind_a_wall_seen_from_afar_there_may_be_a_room():
 def test_through_the_narrowest_door_floor_is_seen_from_close_by():
     assert counts(along_wall(1.2, door=(-0.41, 0.41)), (0.0, 1.8)) == [1.0]
     assert counts(along_wall(1.2, door=(-0.41, 0.41)), (1.5, 1.8)) == [0.0]
+
+
+def test_where_nodes_cover_much_a_wall_seen_from_afar_along_a_way_hides_nothing():
+    wide = {"covers_m": 4.0}
+    assert counts(along_wall(2.0), (0.0, 3.0), (0.5, 4.0), **wide) == [0.0, 0.0]
+    assert counts(along_wall(2.0, door=(-0.41, 0.41)), (0.0, 3.0), (1.6, 2.5), **wide) == [1.0, 0.0]
 
 
 def test_floor_beside_what_was_seen_may_belong_to_it():
