@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from services.planner.mapping.floor_views import OCCLUDED, FloorViews, Views
+from services.planner.mapping.wall_spots import sector_towards
 from services.planner.profiles import Profile
 from services.planner.surroundings import free_ways_m
 from shared.mapgraph.frontiers import SECTOR_RAD, frontier_sectors, mark_explored, sector_rad
@@ -209,9 +210,7 @@ def _weights(offset: FloatArray, own_yaw_rad: float, free_m: FloatArray) -> Floa
 
 def _saw(offset: FloatArray, own_yaw_rad: float, free_m: FloatArray) -> npt.NDArray[np.bool_]:
     """Whether floor was free as far as there, by its offsets (..., 2) from the sensors."""
-    bearing_rad = np.arctan2(offset[..., 1], offset[..., 0]) - own_yaw_rad
-    sector = np.rint(bearing_rad / SECTOR_RAD).astype(int) % SECTORS
-    return np.asarray(np.linalg.norm(offset, axis=-1) <= free_m[sector])
+    return np.asarray(np.linalg.norm(offset, axis=-1) <= free_m[sector_towards(offset, own_yaw_rad)])
 
 
 def _on_this_side(graph: MapGraph, start: int, far_m: float) -> set[int]:

@@ -15,8 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from services.planner.echoes import by_sector_m
-from services.planner.mapping.wall_spots import ray_of, wall_spots, walls_along_rays
-from shared.mapgraph.frontiers import SECTOR_RAD
+from services.planner.mapping.wall_spots import ray_of, sector_towards, wall_spots, walls_along_rays
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.relative_poses import RelativePose
 from shared.messages.base import SECTORS
@@ -164,7 +163,6 @@ def _echoes_beside(
     apart_m2 = (floor_m**2).sum(axis=1)[:, None] + (at_m**2).sum(axis=1) - 2.0 * floor_m @ at_m.T
     floor, view = np.nonzero(apart_m2 <= reach_m**2)
     offset = floor_m[floor] - at_m[view]
-    bearing_rad = np.arctan2(offset[:, 1], offset[:, 0]) - seen[view, 2]
-    sector = np.rint(bearing_rad / SECTOR_RAD).astype(int) % SECTORS
+    sector = sector_towards(offset, seen[view, 2])
     wall_m = np.full(len(view), np.inf) if views.walls_m is None else views.walls_m[view, ray_of(offset)]
     return floor, np.hypot(offset[:, 0], offset[:, 1]), echoes_m[view, sector], wall_m

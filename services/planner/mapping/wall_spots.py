@@ -72,10 +72,14 @@ def ray_of(offset_m: FloatArray) -> npt.NDArray[np.intp]:
     return np.asarray(np.rint(bearing_rad / RAY_RAD), np.intp) % RAYS
 
 
+def sector_towards(offset_m: FloatArray, yaw_rad: FloatArray | float) -> npt.NDArray[np.intp]:
+    """(...) the sector of a robot turned by `yaw_rad` in which offsets (..., 2) from it lie."""
+    bearing_rad = np.arctan2(offset_m[..., 1], offset_m[..., 0]) - yaw_rad
+    return np.asarray(np.rint(bearing_rad / SECTOR_RAD), np.intp) % SECTORS
+
+
 def _is_free(points_m: FloatArray, views: FloatArray) -> npt.NDArray[np.bool_]:
     """(...) whether any view saw floor at points (..., 2) and further."""
     offset = points_m[..., None, :] - views[:, :2]
-    bearing_rad = np.arctan2(offset[..., 1], offset[..., 0]) - views[:, 2]
-    sector = np.rint(bearing_rad / SECTOR_RAD).astype(int) % SECTORS
-    echo_m = views[np.arange(len(views)), 3 + sector]
+    echo_m = views[np.arange(len(views)), 3 + sector_towards(offset, views[:, 2])]
     return np.asarray((np.linalg.norm(offset, axis=-1) < echo_m - MARGIN_M).any(axis=-1))
