@@ -47,7 +47,7 @@ def without_poor_directions(graph: MapGraph, root: int, profile: Profile, views:
         graph: the map.
         root: the node just added.
         profile: how far a node covers, and the share of that which a new one must add.
-        views: what was seen from the nodes.
+        views: what was seen from the nodes; gets what their directions lead to.
 
     Returns:
         Those nodes, with the directions explored that are not worth the way.
@@ -61,6 +61,8 @@ def without_poor_directions(graph: MapGraph, root: int, profile: Profile, views:
     changed = []
     for node in (graph.nodes[node_id] for node_id in near):
         gains = _gains(graph, poses, node, covers_m, views, seen)
+        if gains:
+            views.gains[node.node_id] = max(gains.values())
         poor = [sector for sector, gain in gains.items() if gain < profile.mapping.gain_min]
         if poor:
             changed.append(reduce(mark_explored, poor, node))

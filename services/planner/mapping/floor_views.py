@@ -60,6 +60,7 @@ class FloorViews:
 
     Attributes:
         range_m: how far the sensors reach; 0 before the first view.
+        gains: the most new floor that a direction of a node leads to, as it was last judged (`floor_gain`).
     """
 
     def __init__(self, robot_radius_m: float) -> None:
@@ -67,6 +68,7 @@ class FloorViews:
         self._views: dict[int, list[FloatArray]] = {}
         self._walls: dict[int, tuple[int, FloatArray]] = {}  # of so many views
         self.range_m = 0.0
+        self.gains: dict[int, float] = {}
 
     def add(self, here: Displacement, ranges: Ranges) -> None:
         """Keep a view, unless one from that node was taken hardly elsewhere.

@@ -63,10 +63,12 @@ class FrontierExploration:
         self._profile, self._maps, self._matcher, self._rng = profile, maps, matcher, rng
         experience = EdgeExperience(profile, maps)
         self._directions = AllowedDirections(maps)
-        self._destination = FrontierDestination(profile, maps, matcher, experience, self._directions)
+        self._views = FloorViews(profile.sensing.robot_slim_m)
+        self._destination = FrontierDestination(
+            profile, maps, matcher, experience, self._directions, self._views
+        )
         self._travel = Travel(profile, maps, matcher, self._destination, experience, whereabouts)
         self._departure: Departure | None = None
-        self._views = FloorViews(profile.sensing.robot_slim_m)
         self._heading_rad = 0.0
         self._told_m = 0.0
         self.progress = Progress()
@@ -79,7 +81,8 @@ class FrontierExploration:
             return self._first(observation)
         if self._departure is not None:
             return self._go_on(observation, self._departure)
-        if self._travel.state is not State.FOLLOWING and not self._destination.targets():
+        here = self._travel.tracker.here
+        if self._travel.state is not State.FOLLOWING and not self._destination.choose(here):
             allowed = " that the rules allow" if open_directions(graph) else ""
             why = f"nothing unexplored is left{allowed}: {len(graph.nodes)} nodes, {len(graph.edges)} edges"
             return Decision("hold", why=why, outcome="succeeded")

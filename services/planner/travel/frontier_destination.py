@@ -1,14 +1,18 @@
-"""The nearest node with something unexplored, as a destination; what cannot be reached is closed."""
+"""The node to explore from next, as a destination; what cannot be reached is closed."""
 
 from collections.abc import Mapping
 
 from services.planner.mapping.allowed_directions import AllowedDirections
+from services.planner.mapping.floor_views import FloorViews
+from services.planner.mapping.visiting_order import first_to_visit
 from services.planner.ports import MapAccess, Matcher, Note
 from services.planner.profiles import Profile
 from services.planner.travel.destination import NodeDestination, Setback, Verdict
 from services.planner.travel.edge_experience import EdgeExperience
+from services.planner.travel.localisation import edge_cost
 from services.planner.travel.tracking import Tracker
 from shared.mapgraph.frontiers import frontier_sectors, without_frontiers
+from shared.mapgraph.local.displacement import Displacement
 from shared.messages.maps import UpdateNode
 from shared.messages.missions import FailureKind
 
@@ -30,6 +34,13 @@ SEARCH_STEPS = 120
 """Steps of searching before exploration ends as lost; chosen: the third growing sweep, 14 m at 0.12 m a
 step."""
 
+NEXT_M = 500.0
+"""Other frontiers than the next one cost so much more; chosen: more than a way across a village, less than a
+suspended edge, so that they are gone to only where no way leads to that one."""
+
+UNJUDGED_GAIN = 0.3
+"""New floor that a node leads to which this mission did not judge, as a share of a disc; chosen: a third."""
+
 
 class FrontierDestination(NodeDestination):
     """Any node with a frontier; remembers what failed, so that exploration always ends.
@@ -48,10 +59,13 @@ class FrontierDestination(NodeDestination):
         matcher: Matcher,
         experience: EdgeExperience,
         directions: AllowedDirections,
+        views: FloorViews,
     ) -> None:
         super().__init__(matcher)
         self._profile, self._maps = profile, maps
         self._directions, self._set_aside = directions, set[int]()
+        self._views = views
+        self._chosen: int | None = None
         self._experience = experience
         self.arrival_rad = profile.arrival.travel_arrival_rad
         self.reached = 0
@@ -63,7 +77,23 @@ class FrontierDestination(NodeDestination):
     def targets(self) -> dict[int, float]:
         """Nodes with a frontier that the rules of the map let a robot leave by."""
         nodes = [n for n, node in self._maps.graph.nodes.items() if frontier_sectors(node)]
-        return {n: 0.0 for n in nodes if n not in self._set_aside and self._directions.of(n)}
+        wanted = [n for n in nodes if n not in self._set_aside and self._directions.of(n)]
+        chosen = self._chosen in wanted
+        return {n: NEXT_M if chosen and n != self._chosen else 0.0 for n in wanted}
+
+    def choose(self, here: Displacement | None) -> bool:
+        """Choose the node to go to next; False where there is none.
+
+        Args:
+            here: where the robot is; None where nobody knows: the nearest is next.
+        """
+        self._chosen = None
+        wanted = self.targets()
+        if here is not None and len(wanted) > 1:
+            graph, gains = self._maps.graph, self._views.gains
+            worth = {n: gains.get(n, UNJUDGED_GAIN) for n in wanted}
+            self._chosen = first_to_visit(graph, here.node_id, worth, edge_cost(graph, self._profile))
+        return bool(wanted)
 
     def beyond(self, _end: int) -> tuple[int, ...]:
         """The path ends at the frontier."""

@@ -3,6 +3,7 @@
 import pytest
 
 from services.planner.mapping.allowed_directions import AllowedDirections
+from services.planner.mapping.floor_views import FloorViews
 from services.planner.profiles import DEFAULT
 from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.frontier_destination import FrontierDestination
@@ -26,7 +27,9 @@ def maps():
 def without_path(maps):
     """What is left to explore after as many frames as it takes to give it up, and what was told."""
     experience = EdgeExperience(DEFAULT, maps)
-    destination = FrontierDestination(DEFAULT, maps, None, experience, AllowedDirections(maps))
+    destination = FrontierDestination(
+        DEFAULT, maps, None, experience, AllowedDirections(maps), FloorViews(0.27)
+    )
     kinds = []
     for _ in range(DEFAULT.mapping.saturation_steps):
         kinds += [note.kind for note in destination.no_path().notes]
@@ -44,5 +47,5 @@ def test_behind_a_rule_they_are_set_aside_and_there_again_when_it_is_lifted(maps
     assert open_directions(maps.graph) == 12
     maps.commit([DeleteRule(name="shut")])
     experience = EdgeExperience(DEFAULT, maps)
-    again = FrontierDestination(DEFAULT, maps, None, experience, AllowedDirections(maps))
+    again = FrontierDestination(DEFAULT, maps, None, experience, AllowedDirections(maps), FloorViews(0.27))
     assert again.targets() == {FAR: 0.0}
