@@ -51,6 +51,12 @@ def test_inside_the_map_nothing_is_worth_the_way_and_at_its_border_what_leads_ou
     assert not found[CORNER] & {1, 2}
 
 
+def test_the_most_that_a_direction_of_each_node_leads_to_is_kept_for_the_order_of_visits():
+    views = FloorViews(RADIUS_M)
+    left(grid(), INSIDE, views)
+    assert views.gains[INSIDE] < DEFAULT.mapping.gain_min < min(views.gains[BORDER], views.gains[CORNER])
+
+
 def test_floor_behind_a_door_is_explored_from_where_it_shows_though_a_nearer_node_sees_the_wall_beside_it():
     graph, past_the_door, walled = grid(), [3.0] * 12, [3.0] * 12
     walled[7:12] = [0.5] * 5

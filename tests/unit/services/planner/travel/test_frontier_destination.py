@@ -1,4 +1,4 @@
-"""Frontiers that no path leads to: closed in the map, but set aside where a rule may be why."""
+"""The frontier to go to next; those that no path leads to: closed, or set aside where a rule may be why."""
 
 import pytest
 
@@ -6,8 +6,9 @@ from services.planner.mapping.allowed_directions import AllowedDirections
 from services.planner.mapping.floor_views import FloorViews
 from services.planner.profiles import DEFAULT
 from services.planner.travel.edge_experience import EdgeExperience
-from services.planner.travel.frontier_destination import FrontierDestination
-from shared.mapgraph.frontiers import open_directions
+from services.planner.travel.frontier_destination import NEXT_M, FrontierDestination
+from shared.mapgraph.frontiers import open_directions, without_frontiers
+from shared.mapgraph.local.displacement import Displacement
 from shared.messages.maps import UpdateNode
 from shared.messages.places import DeleteRule, KeepOut, PutRule
 from tests.plane_world import PlaneMap
@@ -49,3 +50,18 @@ def test_behind_a_rule_they_are_set_aside_and_there_again_when_it_is_lifted(maps
     experience = EdgeExperience(DEFAULT, maps)
     again = FrontierDestination(DEFAULT, maps, None, experience, AllowedDirections(maps), FloorViews(0.27))
     assert again.targets() == {FAR: 0.0}
+
+
+def test_the_next_frontier_is_where_much_floor_comes_early_and_the_nearest_for_who_is_lost(maps):
+    near, here = 3, 4
+    maps.commit([UpdateNode(node=maps.graph.nodes[near].model_copy(update={"open": (True,) * 12}))])
+    views = FloorViews(0.27)
+    views.gains = {near: 0.1, FAR: 1.0}
+    experience = EdgeExperience(DEFAULT, maps)
+    destination = FrontierDestination(DEFAULT, maps, None, experience, AllowedDirections(maps), views)
+    assert destination.choose(Displacement(here))
+    assert destination.targets() == {near: NEXT_M, FAR: 0.0}
+    assert destination.choose(None)
+    assert destination.targets() == {near: 0.0, FAR: 0.0}
+    maps.commit([UpdateNode(node=without_frontiers(maps.graph.nodes[n])) for n in (near, FAR)])
+    assert not destination.choose(Displacement(here))

@@ -1,0 +1,69 @@
+"""Much floor early on short ways: the next frontier is the first of the best order of all."""
+
+from functools import partial
+from itertools import pairwise, permutations
+
+import numpy as np
+import pytest
+
+from services.planner.mapping.visiting_order import first_of, first_to_visit
+from shared.mapgraph.routing import way_m
+from shared.messages.maps import Node
+from tests.unit.shared.mapgraph.local.grid import grid
+
+START = 4
+"""The middle of nine nodes in a row, a metre apart."""
+
+
+def first(gains, start=START, graph=None):
+    graph = grid(9, 1) if graph is None else graph
+    return first_to_visit(graph, start, gains, partial(way_m, graph))
+
+
+@pytest.mark.parametrize(
+    ("gains", "expected"),
+    [
+        ({3: 1.0, 7: 1.0}, 3),
+        ({3: 0.1, 7: 1.0}, 7),
+        ({5: 0.1, 7: 1.0}, 5),
+        ({2: 1.0, 6: 0.7, 7: 0.7, 8: 0.7}, 6),
+        ({START: 0.1, 7: 1.0}, START),
+        ({7: 0.5}, 7),
+        ({}, None),
+    ],
+    ids=[
+        "the nearest of equal ones",
+        "much floor before the nearest",
+        "little floor that lies on the way",
+        "a group before one that is as near",
+        "here",
+        "the only one",
+        "none",
+    ],
+)
+def test_the_next_frontier_is(gains, expected):
+    assert first(gains) == expected
+
+
+def test_frontiers_without_a_way_are_left_out_and_who_stands_apart_has_none():
+    graph = grid(9, 1)
+    graph.nodes[20] = Node(node_id=20)
+    assert first({20: 9.0, 7: 0.1}, graph=graph) == 7
+    assert first({20: 9.0}, graph=graph) is None
+    assert first({7: 1.0}, start=20, graph=graph) is None
+
+
+def waited_m(order, apart_m, gains):
+    legs_m = [apart_m[a, b] for a, b in pairwise((0, *order))]
+    return float(np.cumsum(legs_m) @ [gains[place - 1] for place in order])
+
+
+def test_the_first_of_the_best_of_all_orders_is_found():
+    """Of 720 orders of six places on a plane; a search by single moves may stop before the best."""
+    rng, right = np.random.default_rng(1), 0
+    for _ in range(30):
+        spots_m, gains = rng.uniform(0.0, 10.0, (7, 2)), rng.uniform(0.1, 1.0, 6)
+        apart_m = np.linalg.norm(spots_m[:, None] - spots_m[None], axis=2)
+        best = min(permutations(range(1, 7)), key=lambda order: waited_m(order, apart_m, gains))
+        right += first_of(apart_m, gains) == best[0] - 1
+    assert right >= 28
