@@ -75,7 +75,7 @@ class FrontierDestination(NodeDestination):
         self._in_vain = self._cut_off = self._stranded = 0
 
     def targets(self) -> dict[int, float]:
-        """Nodes with a frontier that the rules of the map let a robot leave by."""
+        """Nodes with a frontier that the rules let a robot leave by; NEXT_M more for others than the next."""
         nodes = [n for n, node in self._maps.graph.nodes.items() if frontier_sectors(node)]
         wanted = [n for n in nodes if n not in self._set_aside and self._directions.of(n)]
         chosen = self._chosen in wanted
