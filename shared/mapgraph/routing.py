@@ -79,11 +79,10 @@ def plan_path(
     """
 
     def cost(edge: Edge) -> float:
-        key = (edge.a, edge.b)
-        return math.inf if key in banned else edge_cost(edge) + UNCLEAR_M * (key in unclear)
+        return edge_cost(edge) + UNCLEAR_M * ((edge.a, edge.b) in unclear)
 
     beyond = {n: more + UNCLEAR_M * (edge_key(GOAL, n) in unclear) for n, more in targets.items()}
-    to_go, paths = _to_targets(graph, beyond, cost, limits)
+    to_go, paths = _to_targets(open_ways(graph, cost, banned, limits), beyond)
     reachable = [(there + to_go[node], node) for node, there in starts.items() if node in to_go]
     return paths[min(reachable)[1]] if reachable else []
 
@@ -97,7 +96,28 @@ def metres_to(graph: MapGraph, node_id: int, limits: Limits = NO_LIMITS) -> dict
     def length_m(edge: Edge) -> float:
         return edge_length_m(graph, edge) + SUSPENDED_M * edge.suspended
 
-    return _to_targets(graph, {node_id: 0.0}, length_m, limits)[0]
+    return _to_targets(open_ways(graph, length_m, (), limits), {node_id: 0.0})[0]
+
+
+def open_ways(
+    graph: MapGraph, edge_cost: EdgeCost, banned: Collection[EdgeKey], limits: Limits
+) -> "nx.Graph[int]":
+    """The nodes that may be entered and the ways between them, with what each costs as its weight.
+
+    Directed from here to there where some way is closed in one direction. An edge of infinite cost is no way.
+    The arguments are those of `plan_path`.
+    """
+    ways: nx.Graph[int] = nx.DiGraph() if limits.closed else nx.Graph()
+    allowed = graph.nodes.keys() - limits.forbidden.keys()
+    ways.add_nodes_from(sorted(allowed))
+    for (a, b), edge in sorted(graph.edges.items()):
+        cost = math.inf if (a, b) in banned else edge_cost(edge)
+        if cost == math.inf or not {a, b} <= allowed:
+            continue
+        for here, there in ((a, b), (b, a)):
+            if (here, there) not in limits.closed:
+                ways.add_edge(here, there, weight=cost / limits.speed_share(here, there))
+    return ways
 
 
 def _is_free(edge: Edge) -> bool:
@@ -106,29 +126,17 @@ def _is_free(edge: Edge) -> bool:
 
 
 def _to_targets(
-    graph: MapGraph, targets: Mapping[int, float], cost: EdgeCost, limits: Limits
+    ways: "nx.Graph[int]", targets: Mapping[int, float]
 ) -> tuple[dict[int, float], dict[int, list[int]]]:
-    """Cost and path from every node to its cheapest target; an edge of infinite cost is not used.
-
-    Paths are searched from the goal back: an arc from b to a stands for the way from a to b.
-    """
-    weighted: nx.Graph[int] = nx.DiGraph() if limits.closed else nx.Graph()
-    allowed = graph.nodes.keys() - limits.forbidden.keys()
-    weighted.add_nodes_from(sorted(allowed))
-    for (a, b), edge in sorted(graph.edges.items()):
-        weight = cost(edge)
-        if weight == math.inf or not {a, b} <= allowed:
-            continue
-        for back, there in ((a, b), (b, a)):
-            if (there, back) not in limits.closed:
-                weighted.add_edge(back, there, weight=weight / limits.speed_share(there, back))
+    """Cost and path from every node to its cheapest target, searched from the goal back."""
+    back = ways.reverse() if isinstance(ways, nx.DiGraph) else ways.copy()
     for node_id, extra in sorted(targets.items()):
-        if node_id in allowed:
-            weighted.add_edge(GOAL, node_id, weight=extra)
-    if GOAL not in weighted:
+        if node_id in back:
+            back.add_edge(GOAL, node_id, weight=extra)
+    if GOAL not in back:
         return {}, {}
     costs: dict[int, float]
     paths: dict[int, list[int]]
-    costs, paths = nx.single_source_dijkstra(weighted, GOAL)  # type: ignore[assignment]
-    reached = [node for node in graph.nodes if node in paths]
+    costs, paths = nx.single_source_dijkstra(back, GOAL)  # type: ignore[assignment]
+    reached = [node for node in ways if node in paths]
     return {n: costs[n] for n in reached}, {n: list(reversed(paths[n][1:])) for n in reached}

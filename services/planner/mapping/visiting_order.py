@@ -7,15 +7,12 @@ repairman. That a tour of all of them tells the next goal is from Kulich, Faigl 
 utility in the exploration task" (ICRA 2011).
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
 
 import networkx as nx
 import numpy as np
 import numpy.typing as npt
-
-from shared.mapgraph.graph import MapGraph
-from shared.messages.maps import Edge
 
 FloatArray = npt.NDArray[np.float64]
 IndexArray = npt.NDArray[np.intp]
@@ -24,33 +21,30 @@ ORDERED = 40
 """Nearest frontiers put in order; chosen: a tenth of a second, and more than lie around one place."""
 MOVED_TOGETHER = 3
 """Up to so many neighbours of an order are moved elsewhere in it (or-opt); the usual number."""
+NO_WAY_M = 1e6
+"""Between places where the way is closed in one direction; chosen: more than all ways of a map together."""
 SHORTER_M = 1e-9
 """An order must be better by more than this, which is less than rounding makes of equal ones."""
 
 
-def first_to_visit(
-    graph: MapGraph, start: int, gains: Mapping[int, float], way_m: Callable[[Edge], float]
-) -> int | None:
+def first_to_visit(ways: "nx.Graph[int]", start: int, gains: Mapping[int, float]) -> int | None:
     """The node to go to next; None where no way leads to any.
 
     Args:
-        graph: the map.
+        ways: between the nodes of the map, of `shared.mapgraph.routing.open_ways`.
         start: where the robot is.
         gains: the nodes to visit, with the floor that each leads to, in any unit.
-        way_m: what an edge costs.
     """
     if start in gains:
         return start
-    edges: nx.Graph[int] = nx.Graph()
-    edges.add_weighted_edges_from((a, b, way_m(edge)) for (a, b), edge in sorted(graph.edges.items()))
-    if start not in edges:
+    if start not in ways:
         return None
-    there_m = _ways_m(edges, start)
+    there_m = _ways_m(ways, start)
     nodes = sorted(gains.keys() & there_m.keys(), key=lambda node: (there_m[node], node))[:ORDERED]
     if len(nodes) < 2:
         return next(iter(nodes), None)
-    ways_m = [there_m, *(_ways_m(edges, node) for node in nodes)]
-    apart_m = np.array([[of_one[node] for node in (start, *nodes)] for of_one in ways_m])
+    ways_m = [there_m, *(_ways_m(ways, node) for node in nodes)]
+    apart_m = np.array([[of_one.get(node, NO_WAY_M) for node in (start, *nodes)] for of_one in ways_m])
     return nodes[first_of(apart_m, np.array([gains[node] for node in nodes]))]
 
 
@@ -76,9 +70,9 @@ def first_of(apart_m: FloatArray, gains: FloatArray) -> int:
         order, best_m = orders[chosen], waited_m[chosen]
 
 
-def _ways_m(edges: "nx.Graph[int]", start: int) -> dict[int, float]:
-    ways_m: dict[int, float] = nx.single_source_dijkstra_path_length(edges, start)
-    return ways_m
+def _ways_m(ways: "nx.Graph[int]", start: int) -> dict[int, float]:
+    metres: dict[int, float] = nx.single_source_dijkstra_path_length(ways, start)
+    return metres
 
 
 def _nearest_next(apart_m: FloatArray) -> IndexArray:

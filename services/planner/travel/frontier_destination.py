@@ -13,6 +13,7 @@ from services.planner.travel.localisation import edge_cost
 from services.planner.travel.tracking import Tracker
 from shared.mapgraph.frontiers import frontier_sectors, without_frontiers
 from shared.mapgraph.local.displacement import Displacement
+from shared.mapgraph.routing import open_ways
 from shared.messages.maps import UpdateNode
 from shared.messages.missions import FailureKind
 
@@ -91,8 +92,10 @@ class FrontierDestination(NodeDestination):
         wanted = self.targets()
         if here is not None and len(wanted) > 1:
             graph, gains = self._maps.graph, self._views.gains
+            cost, banned = edge_cost(graph, self._profile), self._experience.banned
+            ways = open_ways(graph, cost, banned, self._maps.limits())
             worth = {n: gains.get(n, UNJUDGED_GAIN) for n in wanted}
-            self._chosen = first_to_visit(graph, here.node_id, worth, edge_cost(graph, self._profile))
+            self._chosen = first_to_visit(ways, here.node_id, worth)
         return bool(wanted)
 
     def beyond(self, _end: int) -> tuple[int, ...]:

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from services.planner.mapping.visiting_order import first_of, first_to_visit
-from shared.mapgraph.routing import way_m
+from shared.mapgraph.routing import open_ways, way_m
+from shared.mapgraph.rules import NO_LIMITS, Limits
 from shared.messages.maps import Node
 from tests.unit.shared.mapgraph.local.grid import grid
 
@@ -15,9 +16,9 @@ START = 4
 """The middle of nine nodes in a row, a metre apart."""
 
 
-def first(gains, start=START, graph=None):
+def first(gains, start=START, graph=None, banned=(), limits=NO_LIMITS):
     graph = grid(9, 1) if graph is None else graph
-    return first_to_visit(graph, start, gains, partial(way_m, graph))
+    return first_to_visit(open_ways(graph, partial(way_m, graph), banned, limits), start, gains)
 
 
 @pytest.mark.parametrize(
@@ -52,6 +53,22 @@ def test_frontiers_without_a_way_are_left_out_and_who_stands_apart_has_none():
     assert first({20: 9.0}, graph=graph) is None
     assert first({7: 1.0}, start=20, graph=graph) is None
     assert first({20: 1.0, 7: 1.0}, start=20, graph=graph) == 20
+
+
+@pytest.mark.parametrize(
+    ("forbidden", "expected"),
+    [
+        ({"limits": Limits(forbidden={3: "shut"})}, 7),
+        ({"limits": Limits(closed={(3, 2): "down"})}, 7),
+        ({"limits": Limits(closed={(2, 3): "up"})}, 7),
+        ({"limits": Limits(slow={(4, 3): 0.1, (3, 4): 0.1})}, 7),
+        ({"banned": {(2, 3)}}, 7),
+        ({}, 2),
+    ],
+    ids=["a keep-out", "one way", "no way back", "a slow way", "an edge that failed", "nothing"],
+)
+def test_what_is_in_the_way_of_the_nearer_frontier_counts(forbidden, expected):
+    assert first({2: 0.9, 7: 1.0}, **forbidden) == expected
 
 
 def test_the_first_of_the_best_of_all_orders_is_found():

@@ -65,3 +65,23 @@ def test_the_next_frontier_is_where_much_floor_comes_early_and_the_nearest_for_w
     assert destination.targets() == {near: 0.0, FAR: 0.0}
     maps.commit([UpdateNode(node=without_frontiers(maps.graph.nodes[n])) for n in (near, FAR)])
     assert not destination.choose(Displacement(here))
+
+
+def test_the_next_frontier_is_one_that_the_rules_and_what_failed_leave_a_way_to(maps):
+    near, here = 2, 4
+    maps.commit([UpdateNode(node=maps.graph.nodes[near].model_copy(update={"open": (True,) * 12}))])
+    views = FloorViews(0.27)
+    views.gains = {near: 1.0, FAR: 1.0}
+    experience = EdgeExperience(DEFAULT, maps)
+    destination = FrontierDestination(DEFAULT, maps, None, experience, AllowedDirections(maps), views)
+
+    def chosen():
+        assert destination.choose(Displacement(here))
+        return next(node for node, more_m in destination.targets().items() if not more_m)
+
+    assert chosen() == near
+    maps.commit([PutRule(rule=KeepOut(name="shut", nodes=(near + 1,)))])
+    assert chosen() == FAR
+    maps.commit([DeleteRule(name="shut")])
+    experience.banned.add((near, near + 1))
+    assert chosen() == FAR
