@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass
 
 from services.planner.mapping.edges import judge_edges
-from services.planner.mapping.floor_gain import gain_here
-from services.planner.mapping.floor_views import FloorViews
+from services.planner.mapping.frontiers.floor_gain import gain_here
+from services.planner.mapping.frontiers.floor_views import FloorViews
 from services.planner.mapping.near_nodes import NearNodes
 from services.planner.mapping.nodes import add_node, is_new_node
 from services.planner.ports import Decision, MapAccess, Matcher, Matches, Note, Observation, Progress

@@ -6,8 +6,8 @@ from typing import Any
 
 from services.planner.echoes import by_sector_m
 from services.planner.mapping.edges import NewEdges
-from services.planner.mapping.floor_gain import covered_m, without_poor_directions
-from services.planner.mapping.floor_views import FloorViews
+from services.planner.mapping.frontiers.floor_gain import covered_m, without_poor_directions
+from services.planner.mapping.frontiers.floor_views import FloorViews
 from services.planner.ports import MapAccess, Matches, Note, Observation
 from services.planner.profiles import Profile
 from services.planner.similarity import heading_of, ranked, similarity

@@ -8,7 +8,7 @@ the view of the last one fades, whatever else is seen: one that follows another 
 from dataclasses import dataclass
 
 from services.planner.mapping.edges import judge_edges
-from services.planner.mapping.floor_views import FloorViews
+from services.planner.mapping.frontiers.floor_views import FloorViews
 from services.planner.mapping.near_nodes import NearNodes
 from services.planner.mapping.nodes import add_node, is_new_node
 from services.planner.ports import MapAccess, Matcher, Matches, Note, Observation

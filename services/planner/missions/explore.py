@@ -9,11 +9,11 @@ import math
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
-from services.planner.mapping.allowed_directions import AllowedDirections
 from services.planner.mapping.departure import Departure, NewNode
 from services.planner.mapping.edges import NewEdges
-from services.planner.mapping.floor_gain import best_sector
-from services.planner.mapping.floor_views import FloorViews
+from services.planner.mapping.frontiers.allowed_directions import AllowedDirections
+from services.planner.mapping.frontiers.floor_gain import best_sector
+from services.planner.mapping.frontiers.floor_views import FloorViews
 from services.planner.mapping.nodes import add_node
 from services.planner.mapping.reach import nodes_nearby
 from services.planner.mapping.reobservation import close_known_directions

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pydantic import BaseModel, ConfigDict, Field
 
 from services.planner.mapping.edges import NewEdges
-from services.planner.mapping.floor_views import FloorViews
+from services.planner.mapping.frontiers.floor_views import FloorViews
 from services.planner.mapping.nodes import add_node
 from services.planner.mapping.passage import Passage, Reached
 from services.planner.mission_kinds import MissionContext, MissionError, MissionKind

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from services.planner.mapping.allowed_directions import AllowedDirections
-from services.planner.mapping.floor_views import FloorViews
-from services.planner.mapping.visiting_order import first_to_visit
+from services.planner.mapping.frontiers.allowed_directions import AllowedDirections
+from services.planner.mapping.frontiers.floor_views import FloorViews
+from services.planner.mapping.frontiers.visiting_order import first_to_visit
 from services.planner.ports import MapAccess, Matcher, Note
 from services.planner.profiles import Profile
 from services.planner.travel.destination import NodeDestination, Setback, Verdict

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from services.planner.mapping.departure import UNSURE_FRAMES, Departure, NewNode
-from services.planner.mapping.floor_views import FloorViews
+from services.planner.mapping.frontiers.floor_views import FloorViews
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT
 from shared.mapgraph.graph import MapGraph

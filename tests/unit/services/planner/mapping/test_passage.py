@@ -1,6 +1,6 @@
 """With a person at the wheel: a node is made before the last one is out of sight, whatever else is seen."""
 
-from services.planner.mapping.floor_views import FloorViews
+from services.planner.mapping.frontiers.floor_views import FloorViews
 from services.planner.mapping.passage import Passage
 from services.planner.ports import Observation
 from services.planner.profiles import DEFAULT

@@ -2,8 +2,8 @@
 
 import pytest
 
-from services.planner.mapping.allowed_directions import AllowedDirections
-from services.planner.mapping.floor_views import FloorViews
+from services.planner.mapping.frontiers.allowed_directions import AllowedDirections
+from services.planner.mapping.frontiers.floor_views import FloorViews
 from services.planner.profiles import DEFAULT
 from services.planner.travel.edge_experience import EdgeExperience
 from services.planner.travel.frontier_destination import NEXT_M, FrontierDestination

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from services.planner.mapping.floor_views import APART_M, OCCLUDED, FloorViews
+from services.planner.mapping.frontiers.floor_views import APART_M, OCCLUDED, FloorViews
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.relative_poses import RelativePose
 from shared.messages.sensors import Ranges

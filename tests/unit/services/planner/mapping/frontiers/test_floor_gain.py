@@ -2,8 +2,8 @@
 
 import pytest
 
-from services.planner.mapping.floor_gain import best_sector, without_poor_directions
-from services.planner.mapping.floor_views import FloorViews
+from services.planner.mapping.frontiers.floor_gain import best_sector, without_poor_directions
+from services.planner.mapping.frontiers.floor_views import FloorViews
 from services.planner.profiles import DEFAULT
 from shared.mapgraph.frontiers import frontier_sectors, sector_rad
 from shared.mapgraph.graph import MapGraph

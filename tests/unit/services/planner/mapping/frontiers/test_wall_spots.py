@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from services.planner.mapping.wall_spots import RAY_RAD, wall_spots, walls_along_rays
+from services.planner.mapping.frontiers.wall_spots import RAY_RAD, wall_spots, walls_along_rays
 from shared.messages.base import SECTORS
 
 RADIUS_M, RANGE_M, NOISE_M = 0.27, 12.0, 0.01

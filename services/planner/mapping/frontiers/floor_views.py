@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from services.planner.echoes import by_sector_m
-from services.planner.mapping.wall_spots import ray_of, sector_towards, wall_spots, walls_along_rays
+from services.planner.mapping.frontiers.wall_spots import ray_of, sector_towards, wall_spots, walls_along_rays
 from shared.mapgraph.local.displacement import Displacement
 from shared.mapgraph.local.relative_poses import RelativePose
 from shared.messages.base import SECTORS

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from services.planner.mapping.allowed_directions import AllowedDirections
+from services.planner.mapping.frontiers.allowed_directions import AllowedDirections
 from shared.mapgraph.frontiers import frontier_sectors
 from shared.mapgraph.local.displacement import Displacement
 from shared.messages.maps import UpdateNode

@@ -6,7 +6,7 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from services.planner.mapping.visiting_order import first_of, first_to_visit
+from services.planner.mapping.frontiers.visiting_order import first_of, first_to_visit
 from shared.mapgraph.routing import open_ways, way_m
 from shared.mapgraph.rules import NO_LIMITS, Limits
 from shared.messages.maps import Node
