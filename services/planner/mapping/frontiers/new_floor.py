@@ -94,7 +94,7 @@ class Neighbourhood:
         return most
 
     def _seen_nearer(self, node_id: int, spot_m: FloatArray) -> bool:
-        """Whether another node is nearer to a spot, which is its to explore, and saw free floor up to there."""
+        """Whether another node is nearer to a spot, which is its to explore, and saw free floor so far."""
         far_m = np.linalg.norm(spot_m - self._poses[node_id].position_m)
         for other, pose in self._poses.items():
             offset, free_m = spot_m - pose.position_m, self._graph.nodes[other].free_m
