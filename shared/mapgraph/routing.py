@@ -128,8 +128,11 @@ def _is_free(edge: Edge) -> bool:
 def _to_targets(
     ways: "nx.Graph[int]", targets: Mapping[int, float]
 ) -> tuple[dict[int, float], dict[int, list[int]]]:
-    """Cost and path from every node to its cheapest target, searched from the goal back."""
-    back = ways.reverse() if isinstance(ways, nx.DiGraph) else ways.copy()
+    """Cost and path from every node to its cheapest target, searched from the goal back.
+
+    The goal joins `ways`, which nobody else reads: a copy would take as long as building them.
+    """
+    back = ways.reverse() if isinstance(ways, nx.DiGraph) else ways
     for node_id, extra in sorted(targets.items()):
         if node_id in back:
             back.add_edge(GOAL, node_id, weight=extra)
@@ -138,5 +141,5 @@ def _to_targets(
     costs: dict[int, float]
     paths: dict[int, list[int]]
     costs, paths = nx.single_source_dijkstra(back, GOAL)  # type: ignore[assignment]
-    reached = [node for node in ways if node in paths]
+    reached = [node for node in paths if node != GOAL]
     return {n: costs[n] for n in reached}, {n: list(reversed(paths[n][1:])) for n in reached}
